@@ -1,0 +1,5 @@
+//! The command `fosssim-oracle`: a shim around [`fosssim_oracle::cli`].
+
+fn main() -> std::process::ExitCode {
+    fosssim_oracle::cli::main()
+}

@@ -1,0 +1,1 @@
+//! The scene's constants as one array per attribute (filled by `Simulation::new`).

@@ -1,0 +1,170 @@
+//! What the simulator tells while it computes: every detection call, pass, impulse and zone.
+use super::simulation::State;
+use crate::num::{polynomial::Polynomial, vector::Vec2};
+
+/// Hears what happens inside a step. Every method does nothing by default.
+///
+/// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`,
+/// a `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that
+/// caused it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronise` (continuous-time:
+/// at the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part:
+/// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last
+/// `end_step`.
+pub trait Observer {
+    /// A step begins; steps count from 1.
+    fn begin_step(&mut self, _step: u32) {}
+    /// A detection pass begins.
+    fn begin_pass(&mut self, _pass: Pass) {}
+    /// A pair was looked at.
+    fn detection(&mut self, _detection: &Detection<'_>) {}
+    /// The pass is over; `hits` pairs collide.
+    fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
+    /// A response was applied.
+    fn impulse(&mut self, _impulse: &Impulse) {}
+    /// The synchronisation point: the state that the mid record holds. What is written here is what the step goes on
+    /// with, except that the geometric part of `hybrid` starts from the simulator's own values (collisions.md 5.4).
+    fn synchronise(&mut self, _state: &mut State) {}
+    /// Impact zones after the merge of geometric round `round` (0: before the first failsafe).
+    fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
+    /// The rigid failsafe is about to move this zone.
+    fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {}
+    /// The step is over, with this state.
+    fn end_step(&mut self, _step: u32, _state: &State) {}
+}
+
+/// The observer that hears nothing.
+impl Observer for () {}
+
+/// The kind of a pair; the numbers are those of the trace format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PairKind {
+    /// Two particles (0).
+    ParticleParticle,
+    /// A particle and an edge (1).
+    ParticleEdge,
+    /// A particle and a half-plane (2).
+    ParticleHalfPlane,
+}
+
+impl PairKind {
+    /// How many polynomials a detection call of this kind logs: 2, 4, 2.
+    #[must_use]
+    pub const fn polynomials(self) -> usize {
+        match self {
+            Self::ParticleEdge => 4,
+            Self::ParticleParticle | Self::ParticleHalfPlane => 2,
+        }
+    }
+
+    /// The number that a trace writes.
+    #[must_use]
+    pub const fn code(self) -> i32 {
+        match self {
+            Self::ParticleParticle => 0,
+            Self::ParticleEdge => 1,
+            Self::ParticleHalfPlane => 2,
+        }
+    }
+}
+
+/// Two objects that detection looks at: a particle, and a particle, edge or half-plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pair {
+    /// What the second object is.
+    pub kind: PairKind,
+    /// Index of the particle.
+    pub first: u32,
+    /// Index of the second object among its kind.
+    pub second: u32,
+}
+
+/// One detection pass over all pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pass {
+    /// Which part of the handling asks.
+    pub stage: Stage,
+    /// Number of the pass within the step, from 0.
+    pub index: u32,
+}
+
+/// The part of collision handling that a detection pass belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// The only pass of `simple`.
+    Simple,
+    /// The only pass of `continuous-time`.
+    ContinuousTime,
+    /// An impulse round of `hybrid`, from 0.
+    Impulses {
+        /// The round.
+        round: u32,
+    },
+    /// A pass of the geometric part of `hybrid`: 0 is the one that builds the first zones.
+    Geometric {
+        /// The round.
+        round: u32,
+    },
+}
+
+/// What one detection call saw and decided.
+#[derive(Debug, Clone, Copy)]
+pub struct Detection<'a> {
+    /// The pair.
+    pub pair: Pair,
+    /// The polynomials as logged, in the order of the trace; empty for `simple`.
+    pub polynomials: &'a [Polynomial],
+    /// The decision.
+    pub decision: Decision,
+    /// Positions at the start of the step, 2N.
+    pub q_start: &'a [f64],
+    /// Positions at the end of the step as this pass sees them, 2N.
+    pub q_end: &'a [f64],
+}
+
+/// How a detection call ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Decision {
+    /// They collide at `time` (fraction of the step) with contact normal `normal`, from the first object to the second.
+    Hit {
+        /// Time of impact in [0, 1]; 0 for `simple`.
+        time: f64,
+        /// Contact normal, not normalised.
+        normal: Vec2,
+    },
+    /// They do not collide within the step.
+    Miss {
+        /// What is known of the time.
+        time: Time,
+    },
+}
+
+/// What is known of the time of a pair that does not collide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Time {
+    /// Nothing was searched: a certificate proves that it is not within the step.
+    Excluded,
+    /// The search gave this time (greater than 1, infinite; or at most 1 with a zero normal).
+    Found(f64),
+    /// `simple` knows no times.
+    None,
+}
+
+/// An applied response; in `simple` and `continuous-time` also what the trace logs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impulse {
+    /// The pair.
+    pub pair: Pair,
+    /// Contact normal, not normalised.
+    pub normal: Vec2,
+    /// Time of impact as a fraction of the step.
+    pub time: f64,
+}
+
+/// An impact zone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Zone<'a> {
+    /// Its particles, ascending.
+    pub particles: &'a [u32],
+    /// Whether a half-plane is part of it.
+    pub half_plane: bool,
+}

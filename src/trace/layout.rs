@@ -1,0 +1,46 @@
+//! Which blocks a record of a given scene has, and how many records there are.
+use crate::scene::{Collision, Scene};
+
+/// Everything about a trace's shape that the scene decides (trace-format.md 1, 2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Layout {
+    /// Number of particles N.
+    pub particles: usize,
+    /// Whether records hold an impulse list (`simple`, `continuous-time`, `hybrid`).
+    pub impulses: bool,
+    /// Whether records hold polynomials and each step has a mid record (`continuous-time`, `hybrid`).
+    pub polynomials: bool,
+    /// Number of steps.
+    pub steps: u32,
+}
+
+impl Layout {
+    /// The layout of this scene's traces.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let (impulses, polynomials) = match scene.collision {
+            Collision::None | Collision::Penalty { .. } => (false, false),
+            Collision::Simple { .. } => (true, false),
+            Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => (true, true),
+        };
+        Self { particles: scene.particles.len(), impulses, polynomials, steps: scene.steps() }
+    }
+
+    /// Bytes of positions and velocities: 32 N.
+    #[must_use]
+    pub const fn state_bytes(&self) -> usize {
+        32 * self.particles
+    }
+
+    /// Records per step: 2 with a mid record, else 1.
+    #[must_use]
+    pub const fn records_per_step(&self) -> u32 {
+        if self.polynomials { 2 } else { 1 }
+    }
+
+    /// Records of a complete trace, the initial one included.
+    #[must_use]
+    pub fn records(&self) -> u64 {
+        1 + u64::from(self.records_per_step()) * u64::from(self.steps)
+    }
+}
