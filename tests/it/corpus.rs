@@ -1,0 +1,29 @@
+//! The ground-truth corpus, when it lies beside the checkout: real scenes, traces, verdicts and root-finder vectors.
+//!
+//! It is not part of the project. Tests over it say how many cases they ran; without it they say that they were
+//! skipped, and an empty corpus is a failure.
+use std::path::{Path, PathBuf};
+
+/// The corpus folder: `FOSSSIM_CORPUS`, else `../shared/corpus` beside the checkout.
+pub fn folder() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus");
+    let folder = std::env::var_os("FOSSSIM_CORPUS").map_or(beside, PathBuf::from);
+    if folder.is_dir() {
+        Some(folder)
+    } else {
+        eprintln!("skipped: no corpus at {}", folder.display());
+        None
+    }
+}
+
+/// Says how many cases a corpus test ran; an empty corpus is a failure.
+pub fn ran(test: &str, cases: usize) {
+    assert!(cases > 0, "corpus test {test}: the corpus is there but holds no case");
+    eprintln!("corpus test {test}: {cases} cases");
+}
+
+/// The decompressed bytes of a `.zst` file of the corpus.
+pub fn unpack(path: &Path) -> Vec<u8> {
+    let packed = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    zstd::decode_all(&packed[..]).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
