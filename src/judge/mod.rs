@@ -1,1 +1,13 @@
-//! (follows)
+//! The verdict on one trace: the original's rules (`parity`), findings, and where trace and reference first part.
+//!
+//! Knows nothing of processes and reports; it takes a scene and a reader, and yields typed findings. The rules are
+//! those of `oracle-behaviour.md`, sections 4 to 6.
+#![forbid(unsafe_code)]
+#![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
+
+mod finding;
+mod outcome;
+pub mod parity;
+
+pub use finding::{Detail, Finding, Kind, PolynomialPlace, Role};
+pub use outcome::{Counts, Damage, Outcome, Overall, Residuals, Stop, Unreadable};
