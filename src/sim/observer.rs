@@ -35,6 +35,77 @@ pub trait Observer {
 /// The observer that hears nothing.
 impl Observer for () {}
 
+/// An observer that is lent hears the same.
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn begin_step(&mut self, step: u32) {
+        (**self).begin_step(step);
+    }
+    fn begin_pass(&mut self, pass: Pass) {
+        (**self).begin_pass(pass);
+    }
+    fn detection(&mut self, detection: &Detection<'_>) {
+        (**self).detection(detection);
+    }
+    fn end_pass(&mut self, pass: Pass, hits: usize) {
+        (**self).end_pass(pass, hits);
+    }
+    fn impulse(&mut self, impulse: &Impulse) {
+        (**self).impulse(impulse);
+    }
+    fn synchronise(&mut self, state: &mut State) {
+        (**self).synchronise(state);
+    }
+    fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
+        (**self).zones(round, zones);
+    }
+    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+        (**self).failsafe(round, zone);
+    }
+    fn end_step(&mut self, step: u32, state: &State) {
+        (**self).end_step(step, state);
+    }
+}
+
+/// Two observers hear the same, the first one first; what it writes at `synchronise` the second one sees.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    fn begin_step(&mut self, step: u32) {
+        self.0.begin_step(step);
+        self.1.begin_step(step);
+    }
+    fn begin_pass(&mut self, pass: Pass) {
+        self.0.begin_pass(pass);
+        self.1.begin_pass(pass);
+    }
+    fn detection(&mut self, detection: &Detection<'_>) {
+        self.0.detection(detection);
+        self.1.detection(detection);
+    }
+    fn end_pass(&mut self, pass: Pass, hits: usize) {
+        self.0.end_pass(pass, hits);
+        self.1.end_pass(pass, hits);
+    }
+    fn impulse(&mut self, impulse: &Impulse) {
+        self.0.impulse(impulse);
+        self.1.impulse(impulse);
+    }
+    fn synchronise(&mut self, state: &mut State) {
+        self.0.synchronise(state);
+        self.1.synchronise(state);
+    }
+    fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
+        self.0.zones(round, zones);
+        self.1.zones(round, zones);
+    }
+    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+        self.0.failsafe(round, zone);
+        self.1.failsafe(round, zone);
+    }
+    fn end_step(&mut self, step: u32, state: &State) {
+        self.0.end_step(step, state);
+        self.1.end_step(step, state);
+    }
+}
+
 /// The kind of a pair; the numbers are those of the trace format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PairKind {

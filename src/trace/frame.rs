@@ -1,5 +1,8 @@
 //! One record in memory.
-use crate::{num::vector::Vec2, sim::State};
+use crate::{
+    num::vector::Vec2,
+    sim::{Impulse, State},
+};
 
 /// A frame: one saved state with its logs. Buffers are reused from record to record.
 #[derive(Debug, Clone, Default)]
@@ -25,6 +28,14 @@ pub struct LoggedImpulse {
     pub normal: Vec2,
     /// Time of impact as a fraction of the step.
     pub time: f64,
+}
+
+impl From<Impulse> for LoggedImpulse {
+    fn from(impulse: Impulse) -> Self {
+        #[expect(clippy::cast_possible_wrap, reason = "the format has 32 signed bits for an index")]
+        let (first, second) = (impulse.pair.first as i32, impulse.pair.second as i32);
+        Self { kind: impulse.pair.kind.code(), first, second, normal: impulse.normal, time: impulse.time }
+    }
 }
 
 /// The polynomials of a frame, in one array.
