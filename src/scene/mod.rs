@@ -4,6 +4,7 @@
 //! `scene-format.md`.
 
 mod model;
+pub mod original;
 
 pub use model::{
     Collision, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport,

@@ -1,0 +1,372 @@
+//! The original's XML: elements of the first `scene` root, from text whose lines have been joined.
+//!
+//! A small in-situ parser without validation (scene-format.md 1.4). Closing tags close whatever is open, text and
+//! comments are skipped, and only the children of the scene are kept.
+use std::borrow::Cow;
+
+/// A child of the scene.
+#[derive(Debug)]
+pub(super) struct Element<'t> {
+    pub(super) name: &'t [u8],
+    attributes: Vec<(&'t [u8], Cow<'t, [u8]>)>,
+}
+
+impl Element<'_> {
+    /// The text of an attribute; of several with one name the first counts. A NUL (from `&#0;`) ends the text.
+    pub(super) fn attribute(&self, name: &str) -> Option<&[u8]> {
+        let (_, value) = self.attributes.iter().find(|(found, _)| *found == name.as_bytes())?;
+        Some(value.split(|&byte| byte == 0).next().unwrap_or_default())
+    }
+}
+
+/// Joins the lines of a file as the original does: line feeds vanish, a NUL ends everything.
+pub(super) fn join(bytes: &[u8]) -> Vec<u8> {
+    // The NUL is looked for after joining in the original; the order makes no difference.
+    bytes.iter().copied().take_while(|&byte| byte != 0).filter(|&byte| byte != b'\n').collect()
+}
+
+/// The children of the first root named `scene`, or nothing when there is no such root. The error is the text of the
+/// original's exception.
+pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static str> {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let mut cursor = Cursor { text, at: 0 };
+    let mut children: Option<Vec<Element<'_>>> = None;
+    let mut inside_scene = false;
+    let mut depth = 0_usize;
+    loop {
+        cursor.skip(is_space);
+        match (cursor.peek(0), depth) {
+            (0, 0) => return Ok(children),
+            (0, _) => return Err(END),
+            (b'<', 1..) if cursor.peek(1) == b'/' => {
+                cursor.close()?;
+                depth -= 1;
+            }
+            (b'<', _) => {
+                cursor.at += 1;
+                let Some((element, opens)) = cursor.node()? else { continue };
+                match depth {
+                    0 => {
+                        inside_scene = children.is_none() && element.name == b"scene";
+                        if inside_scene {
+                            children = Some(Vec::new());
+                        }
+                    }
+                    1 if inside_scene => children.get_or_insert_default().push(element),
+                    _ => {}
+                }
+                depth += usize::from(opens);
+            }
+            (_, 0) => return Err("expected <"),
+            // Character references are translated in text, too, although nobody reads the result.
+            _ => drop(cursor.value(b'<')?),
+        }
+    }
+}
+
+const END: &str = "unexpected end of data";
+const CLOSE: &str = "expected >";
+
+fn is_space(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\n' | b'\r' | b'\t')
+}
+
+fn is_element_name(byte: u8) -> bool {
+    !is_space(byte) && !matches!(byte, b'/' | b'>' | b'?' | 0)
+}
+
+fn is_attribute_name(byte: u8) -> bool {
+    !is_space(byte) && !matches!(byte, b'/' | b'<' | b'>' | b'=' | b'?' | b'!' | 0)
+}
+
+struct Cursor<'t> {
+    text: &'t [u8],
+    at: usize,
+}
+
+impl<'t> Cursor<'t> {
+    /// The byte `ahead` of the place; 0 from the end on (the text itself holds no NUL).
+    fn peek(&self, ahead: usize) -> u8 {
+        self.text.get(self.at + ahead).copied().unwrap_or(0)
+    }
+
+    /// What is left, never past the end.
+    fn rest(&self) -> &'t [u8] {
+        self.text.get(self.at..).unwrap_or_default()
+    }
+
+    fn skip(&mut self, wanted: impl Fn(u8) -> bool) -> &'t [u8] {
+        let rest = self.rest();
+        let length = rest.iter().position(|&byte| !wanted(byte)).unwrap_or(rest.len());
+        self.at += length;
+        &rest[..length]
+    }
+
+    /// Goes behind the next `end`.
+    fn skip_past(&mut self, end: &[u8]) -> Result<(), &'static str> {
+        let found = self.rest().windows(end.len()).position(|window| window == end).ok_or(END)?;
+        self.at += found + end.len();
+        Ok(())
+    }
+
+    fn close(&mut self) -> Result<(), &'static str> {
+        self.at += 2;
+        self.skip(is_element_name);
+        self.skip(is_space);
+        if self.peek(0) != b'>' {
+            return Err(CLOSE);
+        }
+        self.at += 1;
+        Ok(())
+    }
+
+    /// What follows a `<` that does not close: an element and whether it has contents, or something to ignore.
+    fn node(&mut self) -> Result<Option<(Element<'t>, bool)>, &'static str> {
+        match self.peek(0) {
+            b'?' => {
+                self.at += 1;
+                self.skip_past(b"?>")?;
+                Ok(None)
+            }
+            b'!' => {
+                self.declaration()?;
+                Ok(None)
+            }
+            _ => self.element().map(Some),
+        }
+    }
+
+    fn declaration(&mut self) -> Result<(), &'static str> {
+        let rest = self.rest();
+        if rest.starts_with(b"!--") {
+            self.at += 3;
+            self.skip_past(b"-->")
+        } else if rest.starts_with(b"![CDATA[") {
+            self.at += 8;
+            self.skip_past(b"]]>")
+        } else if rest.starts_with(b"!DOCTYPE") && is_space(self.peek(8)) {
+            self.at += 9;
+            self.document_type()
+        } else {
+            self.skip_past(b">")
+        }
+    }
+
+    /// Behind the `>` that is not in brackets.
+    fn document_type(&mut self) -> Result<(), &'static str> {
+        let mut depth = 0_usize;
+        loop {
+            match self.peek(0) {
+                0 => return Err(END),
+                b'[' => depth += 1,
+                b']' => depth = depth.saturating_sub(1),
+                b'>' if depth == 0 => break,
+                _ => {}
+            }
+            self.at += 1;
+        }
+        self.at += 1;
+        Ok(())
+    }
+
+    fn element(&mut self) -> Result<(Element<'t>, bool), &'static str> {
+        let name = self.skip(is_element_name);
+        if name.is_empty() {
+            return Err("expected element name");
+        }
+        self.skip(is_space);
+        let mut attributes = Vec::new();
+        while is_attribute_name(self.peek(0)) {
+            let name = self.skip(is_attribute_name);
+            self.skip(is_space);
+            if self.peek(0) != b'=' {
+                return Err("expected =");
+            }
+            self.at += 1;
+            self.skip(is_space);
+            let quote = self.peek(0);
+            if quote != b'\'' && quote != b'"' {
+                return Err("expected ' or \"");
+            }
+            self.at += 1;
+            let value = self.value(quote)?;
+            if self.peek(0) != quote {
+                return Err("expected ' or \"");
+            }
+            self.at += 1;
+            self.skip(is_space);
+            attributes.push((name, value));
+        }
+        let opens = match self.peek(0) {
+            b'>' => true,
+            b'/' => {
+                self.at += 1;
+                if self.peek(0) != b'>' {
+                    return Err(CLOSE);
+                }
+                false
+            }
+            _ => return Err(CLOSE),
+        };
+        self.at += 1;
+        Ok((Element { name, attributes }, opens))
+    }
+
+    /// Text up to `end` (not included) or to the end of everything, with its references translated.
+    fn value(&mut self, end: u8) -> Result<Cow<'t, [u8]>, &'static str> {
+        let plain = self.skip(|byte| byte != end && byte != b'&');
+        if self.peek(0) != b'&' {
+            return Ok(Cow::Borrowed(plain));
+        }
+        let mut value = plain.to_vec();
+        loop {
+            match self.peek(0) {
+                b'&' => self.reference(&mut value)?,
+                byte if byte == end || byte == 0 => return Ok(Cow::Owned(value)),
+                byte => {
+                    value.push(byte);
+                    self.at += 1;
+                }
+            }
+        }
+    }
+
+    /// One `&...;`; an unknown name is copied as it stands.
+    fn reference(&mut self, value: &mut Vec<u8>) -> Result<(), &'static str> {
+        const NAMED: [(&[u8], u8); 5] =
+            [(b"&amp;", b'&'), (b"&apos;", b'\''), (b"&quot;", b'"'), (b"&gt;", b'>'), (b"&lt;", b'<')];
+        let rest = self.rest();
+        if let Some((name, byte)) = NAMED.iter().find(|(name, _)| rest.starts_with(name)) {
+            value.push(*byte);
+            self.at += name.len();
+            return Ok(());
+        }
+        let base = match (self.peek(1), self.peek(2)) {
+            (b'#', b'x') => 16_u64,
+            (b'#', _) => 10,
+            _ => {
+                value.push(b'&');
+                self.at += 1;
+                return Ok(());
+            }
+        };
+        self.at += if base == 16 { 3 } else { 2 };
+        // Digits up to F count in both bases, and the number wraps: `&#1A;` is 20.
+        let mut code = 0_u64;
+        while let Some(digit) = char::from(self.peek(0)).to_digit(16) {
+            code = code.wrapping_mul(base).wrapping_add(u64::from(digit));
+            self.at += 1;
+        }
+        encode(code, value)?;
+        if self.peek(0) != b';' {
+            return Err("expected ;");
+        }
+        self.at += 1;
+        Ok(())
+    }
+}
+
+/// The UTF-8 form of a code, surrogates included.
+fn encode(code: u64, value: &mut Vec<u8>) -> Result<(), &'static str> {
+    let code = u32::try_from(code).ok().filter(|&code| code < 0x11_0000).ok_or("invalid numeric character entity")?;
+    let six = |shift: u32| ((code >> shift) & 0x3f) as u8 | 0x80;
+    match code {
+        0..0x80 => value.push(code as u8),
+        0x80..0x800 => value.extend([(code >> 6) as u8 | 0xc0, six(0)]),
+        0x800..0x1_0000 => value.extend([(code >> 12) as u8 | 0xe0, six(6), six(0)]),
+        _ => value.extend([(code >> 18) as u8 | 0xf0, six(12), six(6), six(0)]),
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(text: &str) -> Result<Option<Vec<String>>, &'static str> {
+        let text = join(text.as_bytes());
+        let children = parse(&text)?;
+        Ok(children.map(|all| all.iter().map(|one| String::from_utf8_lossy(one.name).into_owned()).collect()))
+    }
+
+    fn value(text: &str) -> Vec<u8> {
+        let text = join(text.as_bytes());
+        let children = parse(&text).expect("parses").expect("has a scene");
+        children[0].attribute("a").expect("has the attribute").to_vec()
+    }
+
+    #[test]
+    fn only_children_of_the_first_scene_are_kept() {
+        let text = "<x><scene><n/></scene></x><scene><a><deep/></a><b/></scene><scene><c/></scene>";
+        assert_eq!(names(text), Ok(Some(vec!["a".into(), "b".into()])));
+    }
+
+    #[test]
+    fn closing_tags_close_whatever_is_open() {
+        assert_eq!(names("<scene><a></q><b></r></s>"), Ok(Some(vec!["a".into(), "b".into()])));
+    }
+
+    #[test]
+    fn a_line_feed_after_a_name_glues_it_to_the_attribute() {
+        assert_eq!(names("<scene><edge\ni='0' j='1'/></scene>"), Ok(Some(vec!["edgei='0'".into()])));
+        assert_eq!(names("<scene><edge\ni = '0'/></scene>"), Err(CLOSE));
+        assert_eq!(names("<scene><edge\r\ni='0'/></scene>"), Ok(Some(vec!["edge".into()])));
+    }
+
+    #[test]
+    fn what_is_not_an_element_is_skipped() {
+        let text = "\u{feff}<?xml version='1.0'?><!DOCTYPE scene [ <!ELEMENT [a] (b)> ]><!-- <scene> -->\
+                    <scene>text<![CDATA[<b/>]]><!whatever><?pi?><a/></scene>";
+        assert_eq!(names(text), Ok(Some(vec!["a".into()])));
+    }
+
+    #[test]
+    fn no_scene_is_not_a_syntax_error() {
+        assert_eq!(names(""), Ok(None));
+        assert_eq!(names(" \r\n\t"), Ok(None));
+        assert_eq!(names("<Scene/>"), Ok(None));
+        assert_eq!(names("\0<scene/>"), Ok(None));
+    }
+
+    #[test]
+    fn attributes_need_no_white_space_and_the_first_counts() {
+        assert_eq!(value("<scene><e a='1'\na=\"2\"b='3'/></scene>"), b"1");
+        assert_eq!(value("<scene><e a = '1\n2'/></scene>"), b"12");
+    }
+
+    #[test]
+    fn references_are_translated() {
+        assert_eq!(value("<scene><e a='&lt;&gt;&amp;&apos;&quot;'/></scene>"), b"<>&'\"");
+        assert_eq!(value("<scene><e a='&#65;&#x41;&#1A;&#xe9;&#x20AC;&#x1F600;'/></scene>"), "AA\u{14}é€😀".as_bytes());
+        assert_eq!(value("<scene><e a='&nbsp; & &amp &'/></scene>"), b"&nbsp; & &amp &");
+        assert_eq!(value("<scene><e a='x&#0;y'/></scene>"), b"x");
+    }
+
+    #[test]
+    fn every_syntax_error_has_the_original_s_words() {
+        for (text, error) in [
+            ("scene", "expected <"),
+            ("<scene/>x", "expected <"),
+            ("<scene>", END),
+            ("<scene><a/>text", END),
+            ("<!--", END),
+            ("<!x", END),
+            ("<?xml", END),
+            ("<!DOCTYPE [", END),
+            ("<![CDATA[]]", END),
+            ("< scene/>", "expected element name"),
+            ("</scene>", "expected element name"),
+            ("<scene a/>", "expected ="),
+            ("<scene a=1/>", "expected ' or \""),
+            ("<scene a='1/>", "expected ' or \""),
+            ("<scene / >", CLOSE),
+            ("<scene <a/>", CLOSE),
+            ("<scene></scene", CLOSE),
+            ("<scene a='&#65'/>", "expected ;"),
+            ("<scene>&#xZ;</scene>", "expected ;"),
+            ("<scene a='&#x110000;'/>", "invalid numeric character entity"),
+        ] {
+            assert_eq!(names(text), Err(error), "{text}");
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! The original program's lenient scene reader, rule for rule.
+//!
+//! The drop-in command must accept what the original accepts, read the same values from it and refuse the rest with
+//! the same words, so this reader keeps its habits (scene-format.md 1 to 6): lines are joined without a separator, a
+//! number is whatever prefix looks like one, unknown names are ignored, the first problem ends everything. Somebody
+//! who writes scenes is better served by the strict reader, [`crate::scene::read`].
+//!
+//! The original's XML parser accepts closing tags of any name, several roots and attributes without white space between
+//! them, and dies of some things that XML allows. No well-kept XML library behaves like that, hence the small parser
+//! in `markup`. It is iterative and borrows from the text, so that neither depth nor size can hurt it.
+//!
+//! What the original goes on to simulate from memory that is not its own (an index out of range) has no defined
+//! outcome; it is refused as [`RefusalKind::Undefined`] in our own words.
+
+mod item;
+mod markup;
+mod reader;
+#[cfg(test)]
+mod reader_tests;
+mod single;
+mod values;
+
+pub use reader::read;
+
+use super::model::Scene;
+
+/// A scene as the original understands it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OriginalScene {
+    /// The scene. Text that is not UTF-8 is replaced there; trails of particles that do not exist are left out, since
+    /// they have no effect.
+    pub scene: Scene,
+    /// What the banner prints as the description, byte for byte; the original's default when the scene has none.
+    pub description: Vec<u8>,
+}
+
+/// Why the original does not run a scene.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{explanation}")]
+pub struct Refusal {
+    /// Which way it ends.
+    pub kind: RefusalKind,
+    /// The bytes on standard error, escape sequences and final newline included. For [`RefusalKind::Undefined`] these
+    /// are our own.
+    pub stderr: Vec<u8>,
+    /// The exit code as a shell shows it: 1, 0 for half-planes, 134 for broken XML.
+    pub exit_code: u8,
+    /// The same in plain words, without escape sequences.
+    pub explanation: String,
+}
+
+/// The ways in which the original refuses a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RefusalKind {
+    /// It prints a message and exits.
+    Message,
+    /// It dies of an uncaught exception (broken XML).
+    Crash,
+    /// It would read memory that is not its own; we refuse instead.
+    Undefined,
+}
+
+impl Refusal {
+    /// The original's message about a scene file that cannot be opened (scene-format.md 1).
+    #[must_use]
+    pub fn unreadable(name: &str) -> Self {
+        let text = format!("XML scene file {name}. Failed to read file.");
+        let stderr = format!("\x1b[31;1mERROR IN TWODSCENEXMLPARSER:\x1b[m {text}\n").into_bytes();
+        Self { kind: RefusalKind::Message, stderr, exit_code: 1, explanation: text }
+    }
+
+    /// A message of the scene parser. `text` may hold bytes of the scene that are not UTF-8.
+    fn message(text: &[u8], exit_code: u8) -> Self {
+        let mut stderr = b"\x1b[31;1mERROR IN XMLSCENEPARSER:\x1b[m ".to_vec();
+        stderr.extend_from_slice(text);
+        stderr.push(b'\n');
+        let explanation = String::from_utf8_lossy(text).into_owned();
+        Self { kind: RefusalKind::Message, stderr, exit_code, explanation }
+    }
+
+    /// The end by an uncaught exception of the XML parser.
+    fn crash(what: &str) -> Self {
+        let stderr =
+            format!("terminate called after throwing an instance of 'rapidxml::parse_error'\n  what():  {what}\n");
+        let explanation = format!("the scene is not well-formed XML: {what}");
+        Self { kind: RefusalKind::Crash, stderr: stderr.into_bytes(), exit_code: 134, explanation }
+    }
+
+    /// What has no defined outcome in the original.
+    fn undefined(explanation: String) -> Self {
+        let stderr = format!("{explanation}\n").into_bytes();
+        Self { kind: RefusalKind::Undefined, stderr, exit_code: 1, explanation }
+    }
+}

@@ -1,0 +1,209 @@
+//! From elements to a scene, in the original's order of evaluation (scene-format.md 3).
+use super::item::Item;
+use super::markup::{self, Element};
+use super::single::Singles;
+use super::{OriginalScene, Refusal};
+use crate::scene::model::{Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene};
+
+/// Reads a scene as the original does.
+///
+/// # Errors
+///
+/// A [`Refusal`] with the original's words where the original refuses or dies, and with ours where it would go on with
+/// memory that is not its own. Of both, a message of the original comes first, wherever it stands in the file.
+pub fn read(bytes: &[u8]) -> Result<OriginalScene, Refusal> {
+    let text = markup::join(bytes);
+    let elements = markup::parse(&text).map_err(Refusal::crash)?.ok_or_else(|| {
+        Refusal::message(b"Failed to parse xml scene file. Failed to locate root <scene> node. Exiting.", 1)
+    })?;
+    let singles = Singles(&elements);
+    let duration = singles.duration()?;
+    let max_frequency = singles.max_frequency()?;
+    let viewport = singles.viewport()?;
+    let background = singles.background()?;
+    let description = singles.description()?;
+    let tag = singles.tag()?;
+    check_type(singles.simulation_type())?;
+
+    let mut repeated = Repeated { elements: &elements, undefined: None };
+    let particles = repeated.particles()?;
+    let edges = repeated.edges(particles.len())?;
+    let half_planes = repeated.half_planes()?;
+    let forces = repeated.forces(particles.len(), edges.len())?;
+    let (integrator, time_step) = singles.integrator()?;
+    let collision = singles.collision()?;
+    let display = Display {
+        max_frequency,
+        viewport,
+        background,
+        tag: tag.map(lossy),
+        particle_colors: repeated.colors("particlecolor", "particle", particles.len())?,
+        edge_colors: repeated.colors("edgecolor", "edge", edges.len())?,
+        half_plane_colors: repeated.colors("halfplanecolor", "half-plane", half_planes.len())?,
+        paths: repeated.paths(particles.len())?,
+    };
+    if let Some(explanation) = repeated.undefined {
+        return Err(Refusal::undefined(explanation));
+    }
+    let scene = Scene {
+        duration,
+        time_step,
+        integrator,
+        collision,
+        particles,
+        edges,
+        half_planes,
+        forces,
+        description: description.map(lossy),
+        display,
+    };
+    Ok(OriginalScene { scene, description: description.unwrap_or(b"No description specified.").to_vec() })
+}
+
+fn lossy(text: &[u8]) -> String {
+    String::from_utf8_lossy(text).into_owned()
+}
+
+fn check_type(written: &[u8]) -> Result<(), Refusal> {
+    match written {
+        b"" | b"particle-system" => Ok(()),
+        b"rigid-body" => Err(Refusal::undefined(
+            "simtype 'rigid-body' is an unfinished stub of the original: it makes no step and gives no verdict".into(),
+        )),
+        _ => {
+            let mut text = b"Invalid simtype '".to_vec();
+            text.extend_from_slice(written);
+            text.extend_from_slice(b"' specified. Valid options are 'particle-system' and 'rigid-body'. Exiting.");
+            Err(Refusal::message(&text, 1))
+        }
+    }
+}
+
+/// The repeated elements, and the first thing among them that the original reads garbage for.
+struct Repeated<'e> {
+    elements: &'e [Element<'e>],
+    undefined: Option<String>,
+}
+
+impl<'e> Repeated<'e> {
+    fn all(&self, name: &'static str) -> impl Iterator<Item = Item<'e>> + use<'e> {
+        Item::all(self.elements, name, name)
+    }
+
+    /// `index` when it is below `count`; otherwise 0, and the scene will be refused.
+    fn within(&mut self, item: &Item<'_>, kind: &str, what: &str, index: i32, count: usize) -> usize {
+        match usize::try_from(index) {
+            Ok(index) if index < count => index,
+            _ => {
+                self.undefined.get_or_insert_with(|| {
+                    format!(
+                        "{kind} {} names {what} {index}, but the scene has {count}; the original would read memory \
+                         that is not its own",
+                        item.number()
+                    )
+                });
+                0
+            }
+        }
+    }
+
+    fn particles(&self) -> Result<Vec<Particle>, Refusal> {
+        let read = |item: Item<'_>| {
+            Ok(Particle {
+                position: item.numerics("px", "py")?,
+                velocity: item.numerics("vx", "vy")?,
+                mass: item.numeric("m")?,
+                fixed: item.boolean("fixed")?,
+                radius: item.radius(0.1)?,
+                tag: item.text("tag").map(lossy),
+            })
+        };
+        self.all("particle").map(read).collect()
+    }
+
+    fn edges(&mut self, particles: usize) -> Result<Vec<Edge>, Refusal> {
+        let mut edges = Vec::new();
+        for item in self.all("edge") {
+            let (i, j, radius) = (item.index("i")?, item.index("j")?, item.radius(0.015)?);
+            let first = self.within(&item, "edge", "particle", i, particles);
+            let second = self.within(&item, "edge", "particle", j, particles);
+            edges.push(Edge { first, second, radius });
+        }
+        Ok(edges)
+    }
+
+    fn half_planes(&self) -> Result<Vec<HalfPlane>, Refusal> {
+        let read = |item: Item<'_>| Ok(HalfPlane { point: item.reals("px", "py")?, normal: item.reals("nx", "ny")? });
+        self.all("halfplane").map(read).collect()
+    }
+
+    /// All forces, in the order in which they act.
+    fn forces(&mut self, particles: usize, edges: usize) -> Result<Vec<Force>, Refusal> {
+        let mut forces = Vec::new();
+        for item in self.all("springforce") {
+            let edge = item.index("edge")?;
+            let (stiffness, rest_length) = (item.numeric("k")?, item.numeric("l0")?);
+            let damping = item.optional("b", 0.0, "value of ", "numeric")?;
+            let edge = self.within(&item, "springforce", "edge", edge, edges);
+            forces.push(Force::Spring { edge, stiffness, rest_length, damping });
+        }
+        // The original calls this one a constant force in its messages, too.
+        for item in Item::all(self.elements, "simplegravity", "constantforce") {
+            forces.push(Force::SimpleGravity { acceleration: item.numerics("fx", "fy")? });
+        }
+        for item in self.all("gravitationalforce") {
+            let (i, j, constant) = (item.index("i")?, item.index("j")?, item.numeric("G")?);
+            let first = self.within(&item, "gravitationalforce", "particle", i, particles);
+            let second = self.within(&item, "gravitationalforce", "particle", j, particles);
+            forces.push(Force::Gravitation { first, second, constant });
+        }
+        for item in self.all("constantforce") {
+            forces.push(Force::Constant { force: item.numerics("fx", "fy")? });
+        }
+        for item in self.all("dragdamping") {
+            forces.push(Force::Drag { coefficient: item.numeric("b")? });
+        }
+        for item in self.all("vortexforce") {
+            let (i, j) = (item.index("i")?, item.index("j")?);
+            let (strength, coupling) = (item.numeric("kbs")?, item.numeric("kvc")?);
+            let first = self.within(&item, "vortexforce", "particle", i, particles);
+            let second = self.within(&item, "vortexforce", "particle", j, particles);
+            forces.push(Force::Vortex { first, second, strength, coupling });
+        }
+        Ok(forces)
+    }
+
+    /// Colours of one kind of object. The original's check lets an edge or half-plane pass whose index is the count.
+    fn colors(&mut self, name: &'static str, what: &str, count: usize) -> Result<Vec<(usize, Color)>, Refusal> {
+        let slack = usize::from(what != "particle");
+        let mut colors = Vec::new();
+        for item in self.all(name) {
+            let index = item.index("i")?;
+            if usize::try_from(index).ok().is_none_or(|index| index >= count + slack) {
+                // A count of zero wraps around in the original.
+                let last = (count as u64).wrapping_sub(1);
+                let end = format!("Invalid {what} specified. Valid range is 0...{last}");
+                return Err(item.refusal("value of ", "i", &end));
+            }
+            let color = item.color()?;
+            colors.push((self.within(&item, name, what, index, count), color));
+        }
+        Ok(colors)
+    }
+
+    /// The trails; one of a particle that does not exist has no effect in the original and is left out.
+    fn paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Refusal> {
+        let mut paths = Vec::new();
+        for item in self.all("particlepath") {
+            let index = item.index("i")?;
+            let duration = item.text("duration").and_then(super::values::scalar).filter(|&duration| duration >= 0.0);
+            let duration =
+                duration.ok_or_else(|| item.refusal("value of ", "duration", "Value must be positive scalar."))?;
+            let color = item.color()?;
+            if let Some(particle) = usize::try_from(index).ok().filter(|&index| index < particles) {
+                paths.push(ParticlePath { particle, duration, color });
+            }
+        }
+        Ok(paths)
+    }
+}
