@@ -1,1 +1,169 @@
-//! (interface; body follows)
+//! Sorted lists of disjoint intervals of time, in fixed storage.
+//!
+//! Intervals are closed where they meet others: touching ones merge, and an intersection may be a single point
+//! (root-finder.md 15.4 and 16). The lists never allocate.
+
+/// The largest number of intervals in a [`Intervals`] list. The positive set of a polynomial of degree six has at
+/// most four, and each further polynomial of an intersection adds at most three.
+pub const MAX_INTERVALS: usize = 32;
+
+/// The times from `lo` to `hi`, either of which may be infinite. `lo <= hi` unless a bound is NaN.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Interval {
+    /// Where it starts, as a fraction of the step.
+    pub lo: f64,
+    /// Where it ends.
+    pub hi: f64,
+}
+
+impl Interval {
+    /// All times.
+    pub const EVERYTHING: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+
+    /// Whether the two share at least a point (closed comparison; false with a NaN bound).
+    #[inline]
+    #[must_use]
+    pub fn touches(self, other: Self) -> bool {
+        other.lo <= self.hi && self.lo <= other.hi
+    }
+}
+
+/// A list of intervals, normalised unless it is just being filled.
+#[derive(Debug, Clone, Copy)]
+pub struct Intervals {
+    length: usize,
+    list: [Interval; MAX_INTERVALS],
+}
+
+impl Default for Intervals {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Intervals {
+    /// The empty set.
+    #[inline]
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { length: 0, list: [Interval { lo: 0.0, hi: 0.0 }; MAX_INTERVALS] }
+    }
+
+    /// The intervals, in order.
+    #[inline]
+    #[must_use]
+    pub fn as_slice(&self) -> &[Interval] {
+        &self.list[..self.length]
+    }
+
+    /// Appends an interval without merging it.
+    ///
+    /// # Panics
+    /// When the list already holds [`MAX_INTERVALS`].
+    #[inline]
+    pub fn push(&mut self, interval: Interval) {
+        self.list[self.length] = interval;
+        self.length += 1;
+    }
+
+    /// Sorts by `lo` (stable) and merges neighbours that touch (root-finder.md 15.4).
+    #[inline]
+    pub fn normalise(&mut self) {
+        if self.length < 2 {
+            return;
+        }
+        for i in 1..self.length {
+            let moved = self.list[i];
+            let mut place = i;
+            while place > 0 && self.list[place - 1].lo > moved.lo {
+                self.list[place] = self.list[place - 1];
+                place -= 1;
+            }
+            self.list[place] = moved;
+        }
+        let mut last = 0;
+        for i in 1..self.length {
+            let (current, next) = (self.list[last], self.list[i]);
+            if current.touches(next) {
+                self.list[last] = Interval { lo: current.lo.min(next.lo), hi: current.hi.max(next.hi) };
+            } else {
+                last += 1;
+                self.list[last] = next;
+            }
+        }
+        self.length = last + 1;
+    }
+
+    /// The times in both lists (root-finder.md 16.1). Intervals that only touch give a single point.
+    ///
+    /// # Panics
+    /// When the result would hold more than [`MAX_INTERVALS`].
+    #[inline]
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        let mut both = Self::new();
+        for &a in self.as_slice() {
+            for &b in other.as_slice() {
+                if a.touches(b) {
+                    both.push(Interval { lo: a.lo.max(b.lo), hi: a.hi.min(b.hi) });
+                }
+            }
+        }
+        both.normalise();
+        both
+    }
+
+    /// The first time of the set from `now` on, `+inf` if none (root-finder.md 16.2). An interval that ends exactly
+    /// at `now` does not count.
+    #[inline]
+    #[must_use]
+    pub fn next_time(&self, now: f64) -> f64 {
+        for interval in self.as_slice() {
+            // An interval with a NaN end is not skipped.
+            if interval.hi <= now {
+                continue;
+            }
+            return if interval.lo <= now { now } else { interval.lo };
+        }
+        f64::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Interval, Intervals};
+
+    fn intervals(list: &[(f64, f64)]) -> Intervals {
+        let mut intervals = Intervals::new();
+        for &(lo, hi) in list {
+            intervals.push(Interval { lo, hi });
+        }
+        intervals.normalise();
+        intervals
+    }
+
+    fn pairs(intervals: &Intervals) -> Vec<(f64, f64)> {
+        intervals.as_slice().iter().map(|interval| (interval.lo, interval.hi)).collect()
+    }
+
+    #[test]
+    fn normalising_sorts_and_merges_what_touches() {
+        assert_eq!(pairs(&intervals(&[(3.0, 4.0), (0.0, 1.0), (1.0, 2.0)])), [(0.0, 2.0), (3.0, 4.0)]);
+        assert_eq!(pairs(&intervals(&[(0.0, 5.0), (1.0, 2.0), (6.0, 7.0)])), [(0.0, 5.0), (6.0, 7.0)]);
+    }
+
+    #[test]
+    fn intersections_keep_single_points() {
+        let both = intervals(&[(0.0, 1.0), (2.0, 5.0)]).intersection(&intervals(&[(1.0, 3.0), (4.0, 9.0)]));
+        assert_eq!(pairs(&both), [(1.0, 1.0), (2.0, 3.0), (4.0, 5.0)]);
+    }
+
+    #[test]
+    fn the_next_time_skips_what_has_ended() {
+        let set = intervals(&[(-2.0, 0.0), (0.5, 1.0)]);
+        assert_eq!(set.next_time(0.0), 0.5);
+        assert_eq!(set.next_time(0.75), 0.75);
+        assert_eq!(set.next_time(1.0), f64::INFINITY);
+        assert_eq!(Intervals::new().next_time(0.0), f64::INFINITY);
+    }
+}

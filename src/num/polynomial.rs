@@ -19,11 +19,7 @@ impl Polynomial {
     #[inline]
     #[must_use]
     pub fn trimmed(coefficients: &[f64]) -> Self {
-        let mut start = 0;
-        while start < coefficients.len() && coefficients[start].abs() < super::tolerances::LEADING_COEFFICIENT {
-            start += 1;
-        }
-        Self::untrimmed(&coefficients[start..])
+        Self::untrimmed(trim(coefficients))
     }
 
     /// Takes the list as it is (the non-dropping build of later milestones).
@@ -46,10 +42,51 @@ impl Polynomial {
         &self.coefficients[..usize::from(self.length)]
     }
 
-    /// The value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, hence not positive).
+    /// The value at `t`, see [`evaluate`].
     #[inline]
     #[must_use]
     pub fn evaluate(&self, t: f64) -> f64 {
-        self.coefficients().iter().fold(0.0, |value, &c| value * t + c)
+        evaluate(self.coefficients(), t)
+    }
+}
+
+/// The list without its small leading coefficients (root-finder.md 15.1, the dropping build; a NaN stops the
+/// dropping). The result may be empty.
+#[inline]
+#[must_use]
+pub fn trim(coefficients: &[f64]) -> &[f64] {
+    let mut rest = coefficients;
+    while let [first, others @ ..] = rest
+        && first.abs() < super::tolerances::LEADING_COEFFICIENT
+    {
+        rest = others;
+    }
+    rest
+}
+
+/// The value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, hence not positive).
+#[inline]
+#[must_use]
+pub fn evaluate(coefficients: &[f64], t: f64) -> f64 {
+    coefficients.iter().fold(0.0, |value, &c| value * t + c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Polynomial;
+
+    #[test]
+    fn only_small_leading_coefficients_are_dropped() {
+        assert_eq!(Polynomial::trimmed(&[1e-13, -9e-13, 1.0, 0.0]).coefficients(), [1.0, 0.0]);
+        assert_eq!(Polynomial::trimmed(&[1e-12, 1.0]).coefficients(), [1e-12, 1.0]);
+        assert_eq!(Polynomial::trimmed(&[0.0, 1e-13]).coefficients(), [0.0; 0]);
+        assert_eq!(Polynomial::untrimmed(&[0.0, 1e-13]).coefficients(), [0.0, 1e-13]);
+        assert_eq!(Polynomial::trimmed(&[f64::NAN, 1.0]).coefficients().len(), 2);
+    }
+
+    #[test]
+    fn a_zero_coefficient_at_an_infinite_time_is_not_a_number() {
+        assert!(Polynomial::trimmed(&[-1.0, 0.0]).evaluate(0.0) == 0.0);
+        assert!(Polynomial::trimmed(&[1.0]).evaluate(f64::INFINITY).is_nan());
     }
 }

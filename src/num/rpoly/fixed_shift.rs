@@ -1,0 +1,153 @@
+//! The fixed-shift stage, and the choice between the two variable-shift iterations (root-finder.md 11 and 12).
+use super::{
+    Coefficients, Found, linear_iteration, quadratic_iteration,
+    scalars::{Division, Kind, Scalars},
+};
+
+/// The convergence tests of one sequence of estimates: of the factor's `v`, or of the real zero `s`.
+#[derive(Clone, Copy)]
+struct Convergence {
+    previous: f64,
+    previous_change: f64,
+    threshold: f64,
+}
+
+/// What one step says about a sequence.
+#[derive(Clone, Copy)]
+struct Measure {
+    change: f64,
+    product: f64,
+    passes: bool,
+}
+
+impl Convergence {
+    const START: Self = Self { previous: 0.0, previous_change: 1.0, threshold: 0.25 };
+
+    /// Two successive small relative changes pass.
+    #[inline(always)]
+    fn measure(&self, estimate: f64) -> Measure {
+        let change = if estimate == 0.0 { 1.0 } else { ((estimate - self.previous) / estimate).abs() };
+        let product = if change < self.previous_change { change * self.previous_change } else { 1.0 };
+        Measure { change, product, passes: product < self.threshold }
+    }
+
+    #[inline(always)]
+    fn remember(&mut self, estimate: f64, change: f64) {
+        self.previous = estimate;
+        self.previous_change = change;
+    }
+
+    /// After an iteration has failed, convergence must be clearer before it is tried again.
+    #[inline(always)]
+    fn tighten(&mut self) {
+        self.threshold *= 0.25;
+    }
+}
+
+/// Steps with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit` steps
+/// at most.
+pub(super) fn run<const N: usize>(
+    polynomial: &Coefficients,
+    mut k: Coefficients,
+    u: f64,
+    v: f64,
+    limit: usize,
+) -> Option<Found> {
+    let mut factor = Convergence::START;
+    let mut real = Convergence::START;
+    let division = Division::<N>::new(polynomial, u, v);
+    let mut scalars = Scalars::new(&k, &division);
+    for step in 0..limit {
+        k = scalars.next_k(&division);
+        scalars = Scalars::new(&k, &division);
+        let estimate = scalars.estimate(&k, polynomial, &division);
+        let zero = if k[N - 1] == 0.0 { 0.0 } else { -polynomial[N] / k[N - 1] };
+        let (mut factor_change, mut real_change) = (1.0, 1.0);
+        if step > 0 && scalars.kind != Kind::Divides {
+            let by_factor = factor.measure(estimate.1);
+            let by_zero = real.measure(zero);
+            (factor_change, real_change) = (by_factor.change, by_zero.change);
+            if by_factor.passes || by_zero.passes {
+                let attempt = Attempt { polynomial, k, estimate, zero, by_factor, by_zero };
+                let found = attempt.run::<N>(&mut factor, &mut real);
+                if found.is_some() {
+                    return found;
+                }
+            }
+        }
+        factor.remember(estimate.1, factor_change);
+        real.remember(zero, real_change);
+    }
+    None
+}
+
+/// The state of the fixed-shift stage at the moment when a sequence passes.
+struct Attempt<'a> {
+    polynomial: &'a Coefficients,
+    k: Coefficients,
+    estimate: (f64, f64),
+    zero: f64,
+    by_factor: Measure,
+    by_zero: Measure,
+}
+
+/// Where the chain of iterations stands.
+enum Stage {
+    Quadratic,
+    Linear,
+    Restore,
+}
+
+impl Attempt<'_> {
+    /// Chains the variable-shift iterations; each failure tightens its threshold.
+    #[inline(never)]
+    fn run<const N: usize>(&self, factor: &mut Convergence, real: &mut Convergence) -> Option<Found> {
+        let mut k = self.k;
+        let (mut u, mut v) = self.estimate;
+        let (mut factor_tried, mut zero_tried) = (false, false);
+        let linear_first =
+            (self.by_zero.passes && !self.by_factor.passes) || self.by_zero.product < self.by_factor.product;
+        let mut stage = if linear_first { Stage::Linear } else { Stage::Quadratic };
+        loop {
+            stage = match stage {
+                Stage::Quadratic => {
+                    if let Some((zeros, quotient)) = quadratic_iteration::run::<N>(self.polynomial, &mut k, u, v) {
+                        return Some(Found::Two { zeros, quotient });
+                    }
+                    factor_tried = true;
+                    factor.tighten();
+                    if zero_tried || !self.by_zero.passes {
+                        Stage::Restore
+                    } else {
+                        k = self.k;
+                        Stage::Linear
+                    }
+                }
+                Stage::Linear => {
+                    let outcome = linear_iteration::run::<N>(self.polynomial, &mut k, self.zero);
+                    if let linear_iteration::Outcome::Zero(zero, quotient) = outcome {
+                        return Some(Found::One { zero, quotient });
+                    }
+                    zero_tried = true;
+                    real.tighten();
+                    if let linear_iteration::Outcome::Cluster(s) = outcome {
+                        // The double zero at s; K stays as the linear iteration left it.
+                        u = -(s + s);
+                        v = s * s;
+                        Stage::Quadratic
+                    } else {
+                        Stage::Restore
+                    }
+                }
+                Stage::Restore => {
+                    k = self.k;
+                    if self.by_factor.passes && !factor_tried {
+                        Stage::Quadratic
+                    } else {
+                        return None;
+                    }
+                }
+            };
+        }
+    }
+}

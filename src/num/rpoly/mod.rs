@@ -1,0 +1,180 @@
+//! All zeros of one real polynomial by the Jenkins-Traub algorithm, bit for bit as the original.
+//!
+//! Jenkins and Traub, *A three-stage algorithm for real polynomials using quadratic iteration*, SIAM J. Numer. Anal.
+//! 7, 1970; Jenkins, *Algorithm 493: Zeros of a real polynomial*, ACM TOMS 1, 1975; in the variant that root-finder.md
+//! part I describes. The stages carry the names of the papers, one file each. Nothing is remembered between calls,
+//! nothing allocates, and no operation is reordered: where a formula looks odd, it is odd in the original.
+//!
+//! The degree of the current polynomial is a compile-time parameter `N` of the inner functions, so that their loops
+//! unroll and their index checks vanish; this changes no operation.
+
+mod bound;
+mod constants;
+mod fixed_shift;
+mod linear_iteration;
+mod no_shift;
+mod quadratic;
+mod quadratic_iteration;
+mod scalars;
+mod scaling;
+
+use constants::{ROTATION_COSINE, ROTATION_SINE, START_X, START_Y};
+
+/// The highest degree that [`zeros`] accepts; the simulator itself needs five.
+pub const MAX_DEGREE: usize = 6;
+
+/// The shifts that are tried before the search gives up.
+const MAX_SHIFTS: usize = 20;
+
+/// Coefficients of a polynomial or of a quotient, highest power first; those beyond the degree are unused.
+type Coefficients = [f64; MAX_DEGREE + 1];
+
+/// A zero: real and imaginary part.
+type Zero = (f64, f64);
+
+/// The search would never end: a coefficient is not finite (root-finder.md 9.4), or the Newton iteration of the bound
+/// cycles among subnormal numbers (9.5). The original hangs here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the root search does not terminate")]
+pub struct DoesNotTerminate;
+
+/// The zeros of a polynomial **in the order in which they were found**: neither sorted nor by modulus.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Zeros {
+    rejected: bool,
+    length: usize,
+    list: [Zero; MAX_DEGREE],
+}
+
+impl Zeros {
+    const REJECTED: Self = Self { rejected: true, length: 0, list: [(0.0, 0.0); MAX_DEGREE] };
+
+    /// The count that the original returns: the degree, less when the search gave up, `-1` when the polynomial was
+    /// rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
+    #[must_use]
+    pub fn count(&self) -> i32 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most six")]
+        if self.rejected { -1 } else { self.length as i32 }
+    }
+
+    /// The zeros as pairs (real part, imaginary part); none when the polynomial was rejected.
+    #[inline]
+    #[must_use]
+    pub fn as_slice(&self) -> &[(f64, f64)] {
+        &self.list[..self.length]
+    }
+
+    #[inline]
+    fn report(&mut self, zero: Zero) {
+        self.list[self.length] = zero;
+        self.length += 1;
+    }
+}
+
+/// What a search stage found, with the polynomial that is left: its first `n + 1 - found` coefficients.
+enum Found {
+    One { zero: f64, quotient: Coefficients },
+    Two { zeros: [Zero; 2], quotient: Coefficients },
+}
+
+/// All zeros of the polynomial with these coefficients, highest power first (root-finder.md 3).
+///
+/// The result depends on nothing but the coefficients. A leading zero and `c z^m` are rejected; when all twenty
+/// shifts fail, the zeros found before that are returned. Degrees 1 and 2 use closed forms and accept coefficients
+/// that are not finite; the zeros are then whatever infinities and NaN the formulas give.
+///
+/// # Errors
+/// [`DoesNotTerminate`] for inputs with which the original hangs.
+///
+/// # Panics
+/// Unless there are 2 to [`MAX_DEGREE`]` + 1` coefficients.
+#[inline]
+pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
+    assert!((2..=MAX_DEGREE + 1).contains(&coefficients.len()), "degrees 1 to 6 are supported");
+    let mut zeros = Zeros::default();
+    let mut degree = coefficients.len() - 1;
+    if coefficients[0] == 0.0 {
+        return Ok(Zeros::REJECTED);
+    }
+    while coefficients[degree] == 0.0 {
+        zeros.report((0.0, 0.0));
+        degree -= 1;
+    }
+    match degree {
+        // Zeros at the origin that have just been found are discarded.
+        0 => return Ok(Zeros::REJECTED),
+        1 | 2 => closed_form(&mut zeros, &coefficients[..=degree]),
+        _ => {
+            let mut polynomial = Coefficients::default();
+            polynomial[..=degree].copy_from_slice(&coefficients[..=degree]);
+            search(&mut zeros, polynomial, degree)?;
+        }
+    }
+    Ok(zeros)
+}
+
+/// The zeros of a line or a parabola: the ends of the recursion.
+#[inline]
+fn closed_form(zeros: &mut Zeros, coefficients: &[f64]) {
+    match *coefficients {
+        [slope, value] => zeros.report((-value / slope, 0.0)),
+        [a, b, c] => quadratic::zeros(a, b, c).into_iter().for_each(|zero| zeros.report(zero)),
+        _ => {}
+    }
+}
+
+/// Finds one or two zeros at a time and deflates, until a closed form is left or all shifts fail.
+fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) -> Result<(), DoesNotTerminate> {
+    // The direction carries over from one zero to the next.
+    let mut direction = (START_X, START_Y);
+    loop {
+        let found = match degree {
+            3 => find::<3>(&mut polynomial, &mut direction)?,
+            4 => find::<4>(&mut polynomial, &mut direction)?,
+            5 => find::<5>(&mut polynomial, &mut direction)?,
+            6 => find::<6>(&mut polynomial, &mut direction)?,
+            _ => {
+                closed_form(zeros, &polynomial[..=degree]);
+                return Ok(());
+            }
+        };
+        match found {
+            None => return Ok(()),
+            Some(Found::One { zero, quotient }) => {
+                zeros.report((zero, 0.0));
+                polynomial = quotient;
+                degree -= 1;
+            }
+            Some(Found::Two { zeros: pair, quotient }) => {
+                pair.into_iter().for_each(|zero| zeros.report(zero));
+                polynomial = quotient;
+                degree -= 2;
+            }
+        }
+    }
+}
+
+/// One search: scaling, bound, no-shift stage, then up to twenty shifts (root-finder.md 3, steps 5 and 6).
+#[inline(never)]
+fn find<const N: usize>(
+    polynomial: &mut Coefficients,
+    direction: &mut (f64, f64),
+) -> Result<Option<Found>, DoesNotTerminate> {
+    scaling::scale::<N>(polynomial);
+    let bound = bound::lower_bound::<N>(polynomial)?;
+    let start = no_shift::run::<N>(polynomial);
+    for shift in 1..=MAX_SHIFTS {
+        let (x, y) = *direction;
+        *direction = (ROTATION_COSINE * x - ROTATION_SINE * y, ROTATION_SINE * x + ROTATION_COSINE * y);
+        let real_part = bound * direction.0;
+        // The published algorithm has the bound's square here; the original has the bound.
+        let found = fixed_shift::run::<N>(polynomial, start, -2.0 * real_part, bound, MAX_SHIFTS * shift);
+        if found.is_some() {
+            return Ok(found);
+        }
+    }
+    Ok(None)
+}
+
+#[cfg(test)]
+mod tests;

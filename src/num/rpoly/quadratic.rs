@@ -1,0 +1,48 @@
+//! Quadratic factors: dividing by one, and its zeros (root-finder.md 4 and 5).
+use super::{Coefficients, Zero};
+
+/// Divides a polynomial of degree `M` by `z^2 + u z + v`; the last two entries are the remainder's.
+#[inline(always)]
+pub(super) fn divide<const M: usize>(f: &Coefficients, u: f64, v: f64) -> Coefficients {
+    let mut g = Coefficients::default();
+    g[0] = f[0];
+    g[1] = f[1] - g[0] * u;
+    for i in 2..=M {
+        g[i] = (f[i] - g[i - 1] * u) - g[i - 2] * v;
+    }
+    g
+}
+
+/// The zeros of `a z^2 + b z + c`, the smaller first; in a complex pair the positive imaginary part first.
+///
+/// `a = 0` gives the zero of the line and a second zero at the origin. Coefficients need not be finite.
+#[inline]
+pub(super) fn zeros(a: f64, b: f64, c: f64) -> [Zero; 2] {
+    if a == 0.0 {
+        return [(if b == 0.0 { 0.0 } else { -c / b }, 0.0), (0.0, 0.0)];
+    }
+    if c == 0.0 {
+        return [(0.0, 0.0), (-b / a, 0.0)];
+    }
+    let half = b / 2.0;
+    // The discriminant, divided by whichever of its terms is larger.
+    let (discriminant, root) = if half.abs() < c.abs() {
+        let signed = if c < 0.0 { -a } else { a };
+        let e = half * (half / c.abs()) - signed;
+        (e, e.abs().sqrt() * c.abs().sqrt())
+    } else {
+        let e = 1.0 - (a / half) * (c / half);
+        (e, e.abs().sqrt() * half.abs())
+    };
+    if discriminant < 0.0 {
+        let re = -half / a;
+        let im = (root / a).abs();
+        return [(re, im), (re, -im)];
+    }
+    // A NaN discriminant ends here as well.
+    let root = if half >= 0.0 { -root } else { root };
+    let large = (-half + root) / a;
+    // The test is written as the original's: a NaN is not zero.
+    let small = if large == 0.0 { 0.0 } else { (c / large) / a };
+    [(small, 0.0), (large, 0.0)]
+}
