@@ -1,4 +1,5 @@
 //! The command line (follows).
+mod original;
 
 /// Runs the command.
 #[must_use]
