@@ -1,5 +1,4 @@
 //! The command line (follows).
-mod original;
 
 /// Runs the command.
 #[must_use]

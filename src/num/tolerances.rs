@@ -24,3 +24,7 @@ pub const PARITY_MAXIMUM: f64 = 1e-10;
 
 /// Newton's method of implicit-euler stops when the update's norm is below this (velocity unit; simulation.md 4).
 pub const NEWTON_UPDATE: f64 = 1e-9;
+
+/// Newton's method of implicit-euler is given up after this many iterations. The original has no limit and hangs
+/// (simulation.md 4); convergence takes fewer than ten. Lowering it far could refuse a scene that the original records.
+pub const NEWTON_ITERATIONS: u32 = 10_000;

@@ -7,7 +7,12 @@
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod bodies;
+mod collision;
+mod forces;
+mod integrators;
 mod observer;
+#[cfg(test)]
+mod samples;
 mod simulation;
 
 pub use observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Stage, Time, Zone};

@@ -1,5 +1,11 @@
 //! The simulation: a state and the step that advances it.
-use super::observer::{Observer, Pair};
+use super::{
+    bodies::Bodies,
+    collision::Handler,
+    forces::Forces,
+    integrators::{DoesNotConverge, Stepper},
+    observer::{Observer, Pair},
+};
 use crate::scene::Scene;
 
 /// Positions and velocities in trace order (`x0, y0, x1, y1, ...`), 2N each.
@@ -64,20 +70,36 @@ pub enum StepError {
 /// The reference simulator of one scene.
 #[derive(Debug, Clone)]
 pub struct Simulation {
+    bodies: Bodies,
+    forces: Forces,
+    stepper: Stepper,
+    handler: Handler,
+    q_start: Vec<f64>,
     state: State,
     steps_done: u32,
 }
 
 impl Simulation {
     /// Sets the scene up at its initial state.
+    ///
+    /// # Panics
+    /// When an edge names a particle that does not exist; the strict reader refuses such scenes.
     #[must_use]
-    pub fn new(scene: &Scene, _root_search: RootSearch) -> Self {
+    pub fn new(scene: &Scene, root_search: RootSearch) -> Self {
         let mut state = State::default();
         for particle in &scene.particles {
             state.positions.extend([particle.position.x, particle.position.y]);
             state.velocities.extend([particle.velocity.x, particle.velocity.y]);
         }
-        Self { state, steps_done: 0 }
+        Self {
+            bodies: Bodies::new(scene),
+            forces: Forces::new(scene),
+            stepper: Stepper::new(scene),
+            handler: Handler::new(scene, root_search),
+            q_start: Vec::with_capacity(state.positions.len()),
+            state,
+            steps_done: 0,
+        }
     }
 
     /// The current state.
@@ -86,7 +108,8 @@ impl Simulation {
         &self.state
     }
 
-    /// The current state, to be replaced from outside (a submission's own, before a step is judged).
+    /// The current state, to be replaced from outside (a submission's own, before a step is judged). Both arrays must
+    /// keep their length 2N.
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.state
     }
@@ -105,15 +128,29 @@ impl Simulation {
     /// Advances the state by one time step and tells `observer` everything (simulation.md 1).
     ///
     /// # Errors
-    /// [`StepError`], naming the step. The state is unspecified afterwards.
-    pub fn step<O: Observer>(&mut self, _observer: &mut O) -> Result<(), StepError> {
-        self.steps_done += 1;
+    /// [`StepError`], naming the step. The state is unspecified afterwards, and the step does not count as done.
+    ///
+    /// # Panics
+    /// When the state has other lengths than 2N, or a force names something that the scene does not have.
+    pub fn step<O: Observer>(&mut self, observer: &mut O) -> Result<(), StepError> {
+        let step = self.steps_done + 1;
+        observer.begin_step(step);
+        if self.stepper.is_implicit() && !self.forces.have_hessians() {
+            return Err(StepError::VortexHessian { step });
+        }
+        self.q_start.clone_from(&self.state.positions);
+        self.stepper
+            .advance(&self.bodies, &self.forces, &mut self.state)
+            .map_err(|DoesNotConverge| StepError::Newton { step })?;
+        self.handler.handle(&self.bodies, step, &self.q_start, &mut self.state, observer)?;
+        self.steps_done = step;
+        observer.end_step(step, &self.state);
         Ok(())
     }
 
     /// Counts of root searches, over all steps so far.
     #[must_use]
     pub fn search_counts(&self) -> SearchCounts {
-        SearchCounts::default()
+        self.handler.counts()
     }
 }

@@ -1,3 +1,0 @@
-//! The drop-in for the original program (oracle-behaviour.md 1, 2).
-mod arguments;
-mod usage;

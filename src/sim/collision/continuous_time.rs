@@ -1,0 +1,48 @@
+//! `continuous-time` handling: one pass, each hit answered at once (collisions.md 4).
+//!
+//! Later pairs of the pass see the positions that earlier responses left.
+use super::{
+    super::{
+        bodies::Bodies,
+        observer::{Impulse, Observer, PairKind, Pass, Stage},
+        simulation::{State, StepError},
+    },
+    particle_edge, particle_half_plane, particle_particle,
+    pass::{Detector, Reaction},
+    response::{Law, Response, Setting},
+};
+
+/// Handles the impacts of a step, then reaches the synchronisation point.
+///
+/// # Errors
+/// [`StepError::RootSearch`]
+pub(super) fn handle<O: Observer>(
+    bodies: &Bodies,
+    law: &Law,
+    detector: &mut Detector,
+    q_start: &[f64],
+    state: &mut State,
+    observer: &mut O,
+) -> Result<(), StepError> {
+    let State { positions, velocities } = state;
+    let pass = Pass { stage: Stage::ContinuousTime, index: detector.passes() };
+    detector.run(bodies, pass, q_start, positions, observer, |observer, impulse, q_end| {
+        let response = respond(&Setting { bodies, law, q_start, q_end }, impulse);
+        response.apply(q_end, velocities);
+        observer.impulse(impulse);
+        Reaction::Moved
+    })?;
+    observer.synchronise(state);
+    Ok(())
+}
+
+/// The response to an impact (collisions.md 3).
+pub(super) fn respond(setting: &Setting<'_>, impulse: &Impulse) -> Response {
+    let Impulse { pair, normal, time } = *impulse;
+    let (first, second) = (pair.first as usize, pair.second as usize);
+    match pair.kind {
+        PairKind::ParticleParticle => particle_particle::response(setting, first, second, normal),
+        PairKind::ParticleEdge => particle_edge::response(setting, first, setting.bodies.edges[second], normal, time),
+        PairKind::ParticleHalfPlane => particle_half_plane::response(setting, first, normal),
+    }
+}

@@ -1,0 +1,134 @@
+//! `hybrid` handling: rounds of simultaneous impulses, then the geometric part that moves impact zones as rigid bodies
+//! (collisions.md 5). The penalty force that belongs to it is part of the integration.
+use super::{
+    super::{
+        bodies::Bodies,
+        observer::{Impulse, Observer, Pass, Stage, Zone},
+        simulation::{State, StepError},
+    },
+    continuous_time::respond,
+    failsafe,
+    pass::{Detector, Reaction},
+    response::{Law, Setting},
+    zones::{Builder, Zones},
+};
+
+/// Memory that the handler keeps from step to step: O(particles + hits).
+#[derive(Debug, Clone, Default)]
+pub(super) struct HybridScratch {
+    hits: Vec<Impulse>,
+    round_start: Vec<f64>,
+    positions: Vec<f64>,
+    velocities: Vec<f64>,
+    builder: Builder,
+    zones: Zones,
+    merged: Zones,
+    shown: Vec<Zone<'static>>,
+}
+
+/// Handles the impacts of a step. The synchronisation point lies after the impulses.
+///
+/// # Errors
+/// [`StepError::RootSearch`]
+#[expect(clippy::too_many_arguments, reason = "the parts of Handler, borrowed one by one")]
+pub(super) fn handle<O: Observer>(
+    bodies: &Bodies,
+    law: &Law,
+    max_iterations: i32,
+    detector: &mut Detector,
+    scratch: &mut HybridScratch,
+    q_start: &[f64],
+    state: &mut State,
+    observer: &mut O,
+) -> Result<(), StepError> {
+    let mut round = 0;
+    let mut done = false;
+    while i64::from(round) < i64::from(max_iterations) && !done {
+        detect(bodies, detector, Stage::Impulses { round }, q_start, &mut state.positions, scratch, observer)?;
+        if scratch.hits.is_empty() {
+            done = true;
+        } else {
+            // All responses of a round are computed from the positions before the first of them.
+            scratch.round_start.clone_from(&state.positions);
+            let setting = Setting { bodies, law, q_start, q_end: &scratch.round_start };
+            for impulse in &scratch.hits {
+                respond(&setting, impulse).apply(&mut state.positions, &mut state.velocities);
+                observer.impulse(impulse);
+            }
+            round += 1;
+        }
+    }
+    if done {
+        observer.synchronise(state);
+        return Ok(());
+    }
+    // The geometric part goes on with these values, whatever the observer makes of the state.
+    scratch.positions.clone_from(&state.positions);
+    scratch.velocities.clone_from(&state.velocities);
+    observer.synchronise(state);
+    geometric(bodies, law, detector, scratch, q_start, observer)?;
+    state.positions.clone_from(&scratch.positions);
+    state.velocities.clone_from(&scratch.velocities);
+    Ok(())
+}
+
+/// Moves impact zones rigidly until a detection pass makes no zone grow. Every round joins zones, adds particles to
+/// one or adds a half-plane to one, so there are at most about 3N rounds.
+fn geometric<O: Observer>(
+    bodies: &Bodies,
+    law: &Law,
+    detector: &mut Detector,
+    scratch: &mut HybridScratch,
+    q_start: &[f64],
+    observer: &mut O,
+) -> Result<(), StepError> {
+    let mut round = 0;
+    let mut positions = std::mem::take(&mut scratch.positions);
+    let result = (|| {
+        detect(bodies, detector, Stage::Geometric { round }, q_start, &mut positions, scratch, observer)?;
+        let HybridScratch { hits, builder, zones, shown, .. } = scratch;
+        builder.begin(bodies.particles());
+        builder.add_hits(bodies, hits);
+        builder.finish(zones);
+        zones.show(shown, |zones| observer.zones(round, zones));
+        loop {
+            round += 1;
+            for zone in scratch.zones.iter() {
+                observer.failsafe(round, &zone);
+                failsafe::apply(bodies, law.time_step, zone, q_start, &mut positions, &mut scratch.velocities);
+            }
+            detect(bodies, detector, Stage::Geometric { round }, q_start, &mut positions, scratch, observer)?;
+            let HybridScratch { hits, builder, zones, merged, shown, .. } = scratch;
+            builder.begin(bodies.particles());
+            builder.add_zones(zones);
+            builder.add_hits(bodies, hits);
+            builder.finish(merged);
+            merged.show(shown, |zones| observer.zones(round, zones));
+            if zones == merged {
+                return Ok(());
+            }
+            std::mem::swap(zones, merged);
+        }
+    })();
+    scratch.positions = positions;
+    result
+}
+
+/// One pass that collects its hits and answers none of them.
+fn detect<O: Observer>(
+    bodies: &Bodies,
+    detector: &mut Detector,
+    stage: Stage,
+    q_start: &[f64],
+    q_end: &mut [f64],
+    scratch: &mut HybridScratch,
+    observer: &mut O,
+) -> Result<(), StepError> {
+    let hits = &mut scratch.hits;
+    hits.clear();
+    let pass = Pass { stage, index: detector.passes() };
+    detector.run(bodies, pass, q_start, q_end, observer, |_, impulse, _| {
+        hits.push(*impulse);
+        Reaction::Kept
+    })
+}

@@ -1,0 +1,326 @@
+//! A particle and an edge: detection and responses (collisions.md 2, 3, 6).
+//!
+//! End caps are not handled: the particles at the ends are expected to be at least as thick as the edge.
+use super::response::{Change, Response, Setting, clamp};
+use crate::num::{
+    polynomial::Polynomial,
+    vector::{Vec2, at, length, unit},
+};
+use crate::sim::bodies::Bodies;
+
+/// What the polynomials of one edge with every particle share: its motion, and the products that hold no particle.
+///
+/// Every value is computed by the operations that the formulas prescribe, so it does not matter how often it is used.
+/// `x23` is computed and not taken as `-x32`: where they vanish their zeros have the same sign.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EdgeMotion {
+    x2: Vec2,
+    d2: Vec2,
+    x3: Vec2,
+    d3: Vec2,
+    x32: Vec2,
+    d32: Vec2,
+    x23: Vec2,
+    d23: Vec2,
+    /// `dot(x32, x32)`
+    g: f64,
+    /// `dot(d32, x32)`
+    h: f64,
+    /// `dot(d32, d32)`
+    i: f64,
+}
+
+impl EdgeMotion {
+    /// The motion of an edge whose endpoints start at `x2`, `x3` and move by `d2`, `d3` in the step.
+    #[inline]
+    pub fn new(x2: Vec2, d2: Vec2, x3: Vec2, d3: Vec2) -> Self {
+        let (x32, d32) = (x3 - x2, d3 - d2);
+        Self {
+            x2,
+            d2,
+            x3,
+            d3,
+            x32,
+            d32,
+            x23: x2 - x3,
+            d23: d2 - d3,
+            g: x32.dot(&x32),
+            h: d32.dot(&x32),
+            i: d32.dot(&d32),
+        }
+    }
+}
+
+/// The four polynomials of a disc that starts at `x1` and moves by `d1` in the step: "closer than `radii` to the line",
+/// "beyond the first end", "before the second end" and "approaching". Letters are those of collisions.md 2.
+///
+/// The t^3 coefficient of the last one is mathematically wrong (`g` where `h` belongs); it is the formula that every
+/// student was given.
+#[inline]
+#[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
+pub(super) fn polynomials(x1: Vec2, d1: Vec2, edge: &EdgeMotion, radii: f64) -> [Polynomial; 4] {
+    let EdgeMotion { x2, d2, x3, d3, x32, d32, x23, d23, g, h, i } = *edge;
+    let s = radii * radii;
+    let (x12, x21, x13) = (x1 - x2, x2 - x1, x1 - x3);
+    let (d12, d21, d13) = (d1 - d2, d2 - d1, d1 - d3);
+
+    let a = x12.dot(&x32);
+    let b = x12.dot(&d32) + d12.dot(&x32);
+    let c = d12.dot(&d32);
+    let d = x21.dot(&x21);
+    let e = d21.dot(&x21);
+    let f = d21.dot(&d21);
+    let distance = Polynomial::trimmed(&[
+        c * c - f * i,
+        2.0 * b * c - 2.0 * e * i - 2.0 * f * h,
+        2.0 * c * a + b * b - d * i - f * g - 4.0 * e * h + s * i,
+        2.0 * a * b - 2.0 * d * h - 2.0 * e * g + 2.0 * s * h,
+        a * a - d * g + s * g,
+    ]);
+    let beyond_first = Polynomial::trimmed(&[c, b, a]);
+    let before_second = Polynomial::trimmed(&[d13.dot(&d23), d13.dot(&x23) + x13.dot(&d23), x13.dot(&x23)]);
+    // Products are commutative bit for bit, so `dot(x32, d32)` is `h` from above.
+    let approach = approach([g, h, i, f, e, a, b, c], d32.dot(&x21) + d21.dot(&x32), d32.dot(&d21));
+    [distance, beyond_first, before_second, approach]
+}
+
+/// The velocity quintic with its own letters `a..h`, `i`, `j`.
+#[inline]
+#[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
+fn approach([a, b, c, d, e, f, g, h]: [f64; 8], i: f64, j: f64) -> Polynomial {
+    let k = a * f;
+    let l = a * g + 2.0 * b * f;
+    let m = a * h + 2.0 * b * g + c * f;
+    let n = c * g + 2.0 * b * h;
+    let o = c * h;
+    let p = b;
+    let q = c;
+    Polynomial::trimmed(&[
+        -h * h * q - c * c * d - 2.0 * o * j,
+        -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,
+        -2.0 * g * h * p
+            - 2.0 * f * g * q
+            - g * g * q
+            - 2.0 * a * c * d
+            - 4.0 * b * b * d
+            - 4.0 * b * c * e
+            - n * i
+            - 2.0 * m * j,
+        -2.0 * f * h * p
+            - g * g * p
+            - 2.0 * f * g * q
+            - 4.0 * a * b * d
+            - 2.0 * a * c * e
+            - 4.0 * b * b * e
+            - m * i
+            - 2.0 * l * j,
+        -2.0 * f * g * p - f * f * q - a * a * d - 4.0 * a * b * e - l * i - 2.0 * k * j,
+        -f * f * p - a * a * e - k * i,
+    ])
+}
+
+/// The contact normal at time `t`: from the particle to the point of the edge's line beside it. `None` when it is
+/// zero, which is no hit; a NaN is one.
+#[inline]
+pub(super) fn normal(x1: Vec2, d1: Vec2, edge: &EdgeMotion, t: f64) -> Option<Vec2> {
+    let EdgeMotion { x2, d2, x3, d3, .. } = *edge;
+    let a = ((x1 + t * d1) - x2) - t * d2;
+    let b = ((x3 + t * d3) - x2) - t * d2;
+    let alpha = a.dot(&b) / b.dot(&b);
+    let n = (((x2 + t * d2) + alpha * b) - x1) - t * d1;
+    (length(n) != 0.0).then_some(n)
+}
+
+/// The response along normal `n` at time `t`, from the mean velocities of the step.
+pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize; 2], n: Vec2, t: f64) -> Response {
+    let Setting { bodies, law, q_start, q_end } = *setting;
+    let v1 = law.mean_velocity(q_start, q_end, i);
+    let v2 = law.mean_velocity(q_start, q_end, first);
+    let v3 = law.mean_velocity(q_start, q_end, second);
+    let time = t * law.time_step;
+    let y1 = at(q_start, i) + time * v1;
+    let y2 = at(q_start, first) + time * v2;
+    let y3 = at(q_start, second) + time * v3;
+    let alpha = beside(y1, y2, y3);
+    let on_edge = v2 + alpha * (v3 - v2);
+    exchange(bodies, law.factor, law.time_step, [i, first, second], alpha, on_edge - v1, unit(n))
+}
+
+/// The simple detection: the vector to the nearest point of the edge when the disc overlaps it and approaches.
+#[inline]
+pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, edge: usize) -> Option<Vec2> {
+    let [first, second] = bodies.edges[edge];
+    let (x1, x2, x3) = (at(x, i), at(x, first), at(x, second));
+    let alpha = beside(x1, x2, x3);
+    let n = (x2 + alpha * (x3 - x2)) - x1;
+    if length(n) < bodies.radii[i] + bodies.edge_radii[edge] {
+        let (v1, v2, v3) = (at(v, i), at(v, first), at(v, second));
+        return (((v1 - v2) - alpha * (v3 - v2)).dot(&n) > 0.0).then_some(n);
+    }
+    None
+}
+
+/// The simple response along normal `n`, from the velocities `v`; positions stay.
+pub(super) fn simple_response(
+    bodies: &Bodies,
+    factor: f64,
+    x: &[f64],
+    v: &[f64],
+    i: usize,
+    [first, second]: [usize; 2],
+    n: Vec2,
+) -> Response {
+    let alpha = beside(at(x, i), at(x, first), at(x, second));
+    let (v1, v2, v3) = (at(v, i), at(v, first), at(v, second));
+    let on_edge = v2 + alpha * (v3 - v2);
+    exchange(bodies, factor, 0.0, [i, first, second], alpha, on_edge - v1, unit(n))
+}
+
+/// The parameter in [0, 1] of the point of the edge from `y2` to `y3` that is nearest to `y1`; 0 for NaN.
+#[inline]
+fn beside(y1: Vec2, y2: Vec2, y3: Vec2) -> f64 {
+    let edge = y3 - y2;
+    clamp((y1 - y2).dot(&edge) / edge.dot(&edge))
+}
+
+/// The exchange of momentum along the unit vector `u` at parameter `alpha` of the edge for relative velocity `relative`
+/// (edge minus particle).
+fn exchange(
+    bodies: &Bodies,
+    factor: f64,
+    dt: f64,
+    [i, first, second]: [usize; 3],
+    alpha: f64,
+    relative: Vec2,
+    u: Vec2,
+) -> Response {
+    let (m1, m2, m3) = (bodies.response_masses[i], bodies.response_masses[first], bodies.response_masses[second]);
+    let numerator = (2.0 * factor) * relative.dot(&u);
+    let b = 1.0 - alpha;
+    let denominator1 = 1.0 + b * b * m1 / m2 + alpha * alpha * m1 / m3;
+    let denominator2 = m2 / m1 + b * b + alpha * alpha * m2 / m3;
+    let denominator3 = m3 / m1 + b * b * m3 / m2 + alpha * alpha;
+    let gain = (!bodies.fixed[i]).then(|| Change {
+        particle: i,
+        velocity: (numerator / denominator1) * u,
+        position: ((dt * numerator) / denominator1) * u,
+    });
+    let share = |particle: usize, weight: f64, denominator: f64| {
+        (!bodies.fixed[particle]).then(|| Change {
+            particle,
+            velocity: ((weight * numerator) / denominator) * u,
+            position: (((dt * weight) * numerator) / denominator) * u,
+        })
+    };
+    Response { gain, loss: [share(first, b, denominator2), share(second, alpha, denominator3)] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{
+        collision::response::Law,
+        samples::{Numbers, edge, particle, scene},
+    };
+
+    fn vector((x, y): (f64, f64)) -> Vec2 {
+        Vec2::new(x, y)
+    }
+
+    /// Hoisting the edge's values changes no bit: the formulas of the specification, written out.
+    #[test]
+    fn shared_values_are_those_of_the_formulas() {
+        let mut numbers = Numbers(3);
+        for round in 0..2000 {
+            let [x1, d1, x2, d2, mut x3, mut d3] = std::array::from_fn(|_| vector(numbers.pair()));
+            if round % 4 == 0 {
+                d3 = d2;
+            }
+            if round % 16 == 0 {
+                x3 = Vec2::new(x2.x, x3.y);
+            }
+            let r = numbers.next().abs();
+            let s = r * r;
+            let (x12, x32, x21, x13, x23) = (x1 - x2, x3 - x2, x2 - x1, x1 - x3, x2 - x3);
+            let (d12, d32, d21, d13, d23) = (d1 - d2, d3 - d2, d2 - d1, d1 - d3, d2 - d3);
+            let a = x12.dot(&x32);
+            let b = x12.dot(&d32) + d12.dot(&x32);
+            let c = d12.dot(&d32);
+            let d = x21.dot(&x21);
+            let e = d21.dot(&x21);
+            let f = d21.dot(&d21);
+            let g = x32.dot(&x32);
+            let h = d32.dot(&x32);
+            let i = d32.dot(&d32);
+            let distance = [
+                (c * c) - (f * i),
+                ((((2.0 * b) * c) - ((2.0 * e) * i)) - ((2.0 * f) * h)),
+                (((((((2.0 * c) * a) + (b * b)) - (d * i)) - (f * g)) - ((4.0 * e) * h)) + (s * i)),
+                (((((2.0 * a) * b) - ((2.0 * d) * h)) - ((2.0 * e) * g)) + ((2.0 * s) * h)),
+                (((a * a) - (d * g)) + (s * g)),
+            ];
+            let ends = [[c, b, a], [d13.dot(&d23), d13.dot(&x23) + x13.dot(&d23), x13.dot(&x23)]];
+            let approach = {
+                let a = x32.dot(&x32);
+                let b = x32.dot(&d32);
+                let c = d32.dot(&d32);
+                let d = d21.dot(&d21);
+                let e = d21.dot(&x21);
+                let f = x12.dot(&x32);
+                let g = x12.dot(&d32) + d12.dot(&x32);
+                let h = d12.dot(&d32);
+                super::approach([a, b, c, d, e, f, g, h], d32.dot(&x21) + d21.dot(&x32), d32.dot(&d21))
+            };
+            let expected = [
+                Polynomial::trimmed(&distance),
+                Polynomial::trimmed(&ends[0]),
+                Polynomial::trimmed(&ends[1]),
+                approach,
+            ];
+            let actual = polynomials(x1, d1, &EdgeMotion::new(x2, d2, x3, d3), r);
+            for (actual, expected) in actual.iter().zip(&expected) {
+                let bits = |p: &Polynomial| p.coefficients().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+                assert_eq!(bits(actual), bits(expected));
+            }
+        }
+    }
+
+    /// On an edge that only translates the polynomials are those of the exact definition.
+    #[test]
+    fn a_translating_edge_gives_the_exact_polynomials() {
+        let edge = EdgeMotion::new(vector((-1.0, 0.0)), vector((0.0, 0.5)), vector((1.0, 0.0)), vector((0.0, 0.5)));
+        let [distance, first, second, approach] = polynomials(vector((0.0, 1.0)), vector((0.0, -0.5)), &edge, 0.25);
+        // The gap along y is 1 - t and the squared length 4: 4 (1/16 - (1 - t)^2).
+        assert_eq!(distance.coefficients(), [-4.0, 8.0, -3.75]);
+        // With no relative motion along the edge both ends stay at distance 1 of 2, times the length.
+        assert_eq!(first.coefficients(), [2.0]);
+        assert_eq!(second.coefficients(), [2.0]);
+        assert_eq!(approach.coefficients().len(), 2);
+        assert!(approach.evaluate(0.0) > 0.0 && approach.evaluate(1.0) == 0.0);
+        assert_eq!(normal(vector((0.0, 1.0)), vector((0.0, -0.5)), &edge, 0.75), Some(vector((0.0, -0.25))));
+        assert_eq!(normal(vector((0.0, 1.0)), vector((0.0, -0.5)), &edge, 1.0), None);
+    }
+
+    /// An impact keeps the momentum, and with restitution 1 turns the relative speed at the contact round.
+    #[test]
+    fn impacts_conserve_momentum() {
+        let mut numbers = Numbers(11);
+        for _ in 0..1000 {
+            let masses: [f64; 3] = std::array::from_fn(|_| 1.5 + numbers.next());
+            let start: [f64; 6] = std::array::from_fn(|_| numbers.next());
+            let v: [f64; 6] = std::array::from_fn(|_| numbers.next());
+            let mut scene =
+                scene((0..3).map(|p| particle((start[2 * p], start[2 * p + 1]), (0.0, 0.0), masses[p], 0.1)).collect());
+            scene.edges.push(edge(1, 2, 0.05));
+            let bodies = Bodies::new(&scene);
+            let end: [f64; 6] = std::array::from_fn(|k| start[k] + 0.5 * v[k]);
+            let setting = Setting { bodies: &bodies, law: &Law::new(1.0, 0.5), q_start: &start, q_end: &end };
+            let (mut q, mut after) = (end, v);
+            response(&setting, 0, [1, 2], vector(numbers.pair()), 0.5).apply(&mut q, &mut after);
+            for axis in 0..2 {
+                let momentum = |v: &[f64; 6]| (0..3).map(|p| masses[p] * v[2 * p + axis]).sum::<f64>();
+                assert!((momentum(&v) - momentum(&after)).abs() < 1e-12);
+            }
+        }
+    }
+}
