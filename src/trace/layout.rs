@@ -43,4 +43,38 @@ impl Layout {
     pub fn records(&self) -> u64 {
         1 + u64::from(self.records_per_step()) * u64::from(self.steps)
     }
+
+    /// The step that record `record` belongs to, from 1; 0 for the initial record.
+    #[must_use]
+    pub fn step_of(&self, record: u64) -> u32 {
+        u32::try_from(record.div_ceil(u64::from(self.records_per_step()))).unwrap_or(u32::MAX)
+    }
+
+    /// Whether record `record` is a mid record, i.e. not the last one of its step.
+    #[must_use]
+    pub fn is_mid(&self, record: u64) -> bool {
+        self.polynomials && record % 2 == 1
+    }
+
+    /// Number of the end record of step `step` (0: the initial record).
+    #[must_use]
+    pub fn end_record(&self, step: u32) -> u64 {
+        u64::from(self.records_per_step()) * u64::from(step)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_and_steps_correspond() {
+        let layout = Layout { particles: 1, impulses: true, polynomials: true, steps: 3 };
+        assert_eq!((0..layout.records()).map(|r| layout.step_of(r)).collect::<Vec<_>>(), [0, 1, 1, 2, 2, 3, 3]);
+        assert_eq!((0..3).map(|r| layout.is_mid(r)).collect::<Vec<_>>(), [false, true, false]);
+        assert_eq!(layout.end_record(3), 6);
+        let layout = Layout { polynomials: false, ..layout };
+        assert_eq!((0..layout.records()).map(|r| layout.step_of(r)).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert!(!layout.is_mid(1));
+    }
 }

@@ -4,13 +4,23 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod decode;
 mod encode;
+mod error;
 mod frame;
+mod index;
 mod layout;
+mod lenient;
+mod reader;
 mod recorder;
+mod source;
 mod writer;
 
+pub use error::{List, Malformation, TraceError};
 pub use frame::{Frame, LoggedImpulse, PolynomialLog};
+pub use index::Indexed;
 pub use layout::Layout;
+pub use lenient::{Cause, Lenient, LenientFrame, Stop};
+pub use reader::{FRAME_LIMIT, Reader};
 pub use recorder::Recorder;
 pub use writer::{Writer, Written};

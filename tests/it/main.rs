@@ -5,3 +5,4 @@ mod corpus;
 mod recordings;
 mod root_vectors;
 mod scenes_corpus;
+mod trace_props;

@@ -1,0 +1,445 @@
+//! The original's reading, bit for bit (oracle-behaviour.md 5): what it believes, what it passes over, where it stops.
+//!
+//! A stream that has run out stays failed; a value that is only partly there takes the bytes that are there as its
+//! low-order ones; polynomials are read without any check. The one thing not reproduced is how the original dies of
+//! nonsense counts: memory is bounded, and [`Cause::Memory`] is the answer instead.
+use super::{
+    decode,
+    error::{List, Malformation, TraceError},
+    frame::{LoggedImpulse, PolynomialLog},
+    layout::Layout,
+    source::Source,
+};
+use crate::{
+    num::{polynomial::MAX_COEFFICIENTS, tolerances::LEADING_COEFFICIENT},
+    sim::State,
+};
+use std::io::Read;
+
+/// Memory that the lists of one record and its raw polynomial bytes may take together, in bytes.
+const LIMIT: usize = 256 * 1024 * 1024;
+
+/// The original stores as many impulses as the count says before it looks at the stream, and runs out of the corpus's
+/// 6 GiB of address space above this count (48 bytes each, in an array that doubles).
+const STORABLE_IMPULSES: usize = 1 << 26;
+
+/// A record as the original reads it. Buffers are reused from record to record.
+#[derive(Debug, Clone, Default)]
+pub struct LenientFrame {
+    /// Positions and velocities.
+    pub state: State,
+    /// The impulse list; empty where the layout has none.
+    pub impulses: Vec<LoggedImpulse>,
+    /// The polynomial list **without its small leading coefficients** (|c| < 1e-12; a NaN is kept); empty where the
+    /// layout has none.
+    pub polynomials: PolynomialLog,
+    /// The polynomial list's bytes as they are in the trace, without the count.
+    pub raw: Vec<u8>,
+    /// Whether `raw` is exactly the encoding of `polynomials`: nothing was trimmed, cut or negative.
+    pub plain: bool,
+    /// The first damage that the original passes over in this record.
+    pub note: Option<TraceError>,
+}
+
+/// Why the original goes no further.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{at}")]
+pub struct Stop {
+    /// What could not be read.
+    pub cause: Cause,
+    /// The damage.
+    pub at: TraceError,
+}
+
+/// What could not be read; the original has a message for each of the first two.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// "Failed to load timestep".
+    State,
+    /// "Error while trying to deserialize time step impulses".
+    Impulses,
+    /// The original runs out of memory (SIGABRT), or would with more bytes than we read.
+    Memory,
+    /// The stream reported an error. The original takes it for the end of the file.
+    Io,
+}
+
+/// Reads records as the original does.
+#[derive(Debug)]
+pub struct Lenient<R> {
+    source: Source<R>,
+    layout: Layout,
+    record: u64,
+    begin: u64,
+    /// Once a read has found fewer bytes than it wanted, no read finds any.
+    failed: bool,
+    note: Option<TraceError>,
+    limit: usize,
+}
+
+impl<'a> Lenient<&'a [u8]> {
+    /// A reader of a trace in memory.
+    #[must_use]
+    pub fn of_slice(trace: &'a [u8], layout: Layout) -> Self {
+        let mut reader = Self::new(trace, layout);
+        reader.source = reader.source.with_length(trace.len() as u64);
+        reader
+    }
+}
+
+impl<R: Read> Lenient<R> {
+    /// A reader at the beginning of `stream`, which needs no buffer of its own.
+    pub fn new(stream: R, layout: Layout) -> Self {
+        Self { source: Source::new(stream, None), layout, record: 0, begin: 0, failed: false, note: None, limit: LIMIT }
+    }
+
+    /// Replaces `frame` by the next record, whether or not the scene has so many.
+    ///
+    /// # Errors
+    /// [`Stop`]; `frame` is unspecified then.
+    pub fn next(&mut self, frame: &mut LenientFrame) -> Result<(), Stop> {
+        self.begin = self.source.offset();
+        self.note = None;
+        self.source.stop_tape();
+        frame.impulses.clear();
+        frame.polynomials.clear();
+        frame.raw.clear();
+        frame.plain = true;
+        self.state(&mut frame.state)?;
+        if self.layout.impulses {
+            self.impulses(&mut frame.impulses)?;
+        }
+        if self.layout.polynomials {
+            self.polynomials(frame)?;
+        }
+        frame.note = self.note.take();
+        self.record += 1;
+        Ok(())
+    }
+
+    /// Number of records read.
+    #[must_use]
+    pub fn records(&self) -> u64 {
+        self.record
+    }
+
+    /// Byte offset of the last record (of the next one before the first call of [`Lenient::next`]).
+    #[must_use]
+    pub fn record_offset(&self) -> u64 {
+        self.begin
+    }
+
+    /// Byte offset of what is read next.
+    #[must_use]
+    pub fn offset(&self) -> u64 {
+        self.source.offset()
+    }
+
+    /// Whether bytes follow; the original never looks at those behind the last record.
+    pub fn has_more(&mut self) -> bool {
+        self.source.ensure(1) > 0
+    }
+
+    fn error(&self, offset: u64, what: Malformation) -> TraceError {
+        TraceError { offset, frame: self.record, step: self.layout.step_of(self.record), what }
+    }
+
+    fn stop(&self, cause: Cause, offset: u64, what: Malformation) -> Stop {
+        match self.source.error().cloned() {
+            Some((kind, message)) if matches!(cause, Cause::State | Cause::Impulses) => {
+                let at = self.error(self.source.offset(), Malformation::Io { kind, message });
+                Stop { cause: Cause::Io, at }
+            }
+            _ => Stop { cause, at: self.error(offset, what) },
+        }
+    }
+
+    fn out_of_memory(&self, offset: u64) -> Stop {
+        self.stop(Cause::Memory, offset, Malformation::FrameTooLarge { limit: self.limit as u64 })
+    }
+
+    /// Memory that the record takes so far.
+    fn memory(&self, frame: &LenientFrame) -> usize {
+        decode::IMPULSE_MEMORY * frame.impulses.len() + decode::memory(&frame.polynomials) + self.source.taped()
+    }
+
+    fn note(&mut self, offset: u64, what: Malformation) {
+        if self.note.is_none() {
+            self.note = Some(self.error(offset, what));
+        }
+    }
+
+    /// Reads into `value`: bytes that are missing leave the high-order ones as they are.
+    fn bytes<const N: usize>(&mut self, value: &mut [u8; N]) {
+        if !self.failed {
+            let there = self.source.ensure(N).min(N);
+            value[..there].copy_from_slice(&self.source.window()[..there]);
+            self.source.consume(there);
+            self.failed = there < N;
+        }
+    }
+
+    fn state(&mut self, state: &mut State) -> Result<(), Stop> {
+        self.failed = self.failed || !decode::state(&mut self.source, self.layout.particles, state);
+        if !self.failed {
+            return Ok(());
+        }
+        let left = self.source.offset() - self.begin + self.source.ensure(1) as u64;
+        let what = match (left, self.record) {
+            (0, 0) => Malformation::Empty,
+            (0, records) => Malformation::TooFewRecords { records, expected: self.layout.records() },
+            _ => Malformation::State { needs: self.layout.state_bytes() as u64, left },
+        };
+        Err(self.stop(Cause::State, self.begin, what))
+    }
+
+    fn impulses(&mut self, impulses: &mut Vec<LoggedImpulse>) -> Result<(), Stop> {
+        let (list, offset) = (List::Impulses, self.source.offset());
+        let mut bytes = [0; 4];
+        self.bytes(&mut bytes);
+        let begin = self.source.offset();
+        if self.failed {
+            return Err(self.stop(Cause::Impulses, offset, Malformation::CountCut { list, left: begin - offset }));
+        }
+        let count = i32::from_le_bytes(bytes);
+        if count < 0 {
+            self.note(offset, Malformation::NegativeCount { list, count });
+        }
+        let entries = usize::try_from(count).unwrap_or(0);
+        while impulses.len() < entries {
+            if impulses.len() * decode::IMPULSE_MEMORY > self.limit {
+                return Err(self.out_of_memory(offset));
+            }
+            if decode::impulses(&mut self.source, entries - impulses.len(), impulses) == 0 {
+                let left = self.source.offset() - begin + self.source.ensure(1) as u64;
+                let needs = entries as u64 * list.entry_bytes();
+                let cause = if entries > STORABLE_IMPULSES { Cause::Memory } else { Cause::Impulses };
+                return Err(self.stop(cause, offset, Malformation::CountBeyondEnd { list, count, needs, left }));
+            }
+        }
+        Ok(())
+    }
+
+    fn polynomials(&mut self, frame: &mut LenientFrame) -> Result<(), Stop> {
+        let (list, offset) = (List::Polynomials, self.source.offset());
+        let mut bytes = [0; 4];
+        self.bytes(&mut bytes);
+        let begin = self.source.offset();
+        let count = i32::from_le_bytes(bytes);
+        if self.failed {
+            frame.plain = false;
+            self.note(offset, Malformation::CountCut { list, left: begin - offset });
+        } else if count < 0 {
+            self.note(offset, Malformation::NegativeCount { list, count });
+        }
+        let entries = u64::try_from(count).unwrap_or(0);
+        self.source.start_tape(std::mem::take(&mut frame.raw));
+        let mut done = 0;
+        while done < entries && !self.failed {
+            let log = &mut frame.polynomials;
+            let (used, ordinary, trimmed) = decode::polynomials::<true>(self.source.window(), entries - done, log);
+            self.source.consume(used);
+            frame.plain &= !trimmed;
+            done += ordinary;
+            if self.memory(frame) > self.limit {
+                return Err(self.out_of_memory(offset));
+            }
+            if done < entries && !self.ordinary_in_window() {
+                self.polynomial(frame, done, count)?;
+                done += 1;
+            }
+        }
+        // Every polynomial behind the end has size 0.
+        let missing = usize::try_from(entries - done).unwrap_or(usize::MAX);
+        let log = &mut frame.polynomials;
+        if missing > (self.limit / 2) / size_of::<usize>() {
+            let left = self.source.offset() - begin;
+            let what = Malformation::CountBeyondEnd { list, count, needs: 4 * entries, left };
+            return Err(self.stop(Cause::Memory, offset, what));
+        }
+        log.ends.resize(log.ends.len() + missing, log.coefficients.len());
+        frame.raw = self.source.stop_tape();
+        Ok(())
+    }
+
+    /// Whether the next polynomial has an ordinary size and is wholly in the window now.
+    fn ordinary_in_window(&mut self) -> bool {
+        if self.source.ensure(4) < 4 {
+            return false;
+        }
+        let size = i32::from_le_bytes(self.source.window()[..4].try_into().expect("four bytes"));
+        usize::try_from(size)
+            .is_ok_and(|size| size <= MAX_COEFFICIENTS && self.source.ensure(4 + 8 * size) >= 4 + 8 * size)
+    }
+
+    /// Reads one polynomial the long way: any size, the stream may end anywhere.
+    fn polynomial(&mut self, frame: &mut LenientFrame, number: u64, count: i32) -> Result<(), Stop> {
+        let offset = self.source.offset();
+        let mut bytes = [0; 4];
+        self.bytes(&mut bytes);
+        let size = i32::from_le_bytes(bytes);
+        if self.failed {
+            self.note(offset, Malformation::PolynomialCut { polynomial: number, count });
+        } else if size < 0 {
+            self.note(offset, Malformation::NegativeSize { polynomial: number, size });
+        }
+        let size = usize::try_from(size).unwrap_or(0);
+        if self.memory(frame) + size.saturating_mul(8) > self.limit {
+            return Err(self.out_of_memory(offset));
+        }
+        let whole = !self.failed;
+        let begin = self.source.offset();
+        let log = &mut frame.polynomials;
+        let start = log.coefficients.len();
+        // What was read so far and not dropped, as the original keeps it, coefficient by coefficient.
+        let mut value = [0; 8];
+        for read in 0..size {
+            self.bytes(&mut value);
+            let coefficient = f64::from_le_bytes(value);
+            let leading = log.coefficients.len() == start && coefficient.abs() < LEADING_COEFFICIENT;
+            frame.plain &= !leading;
+            // Once the stream has failed, all the others repeat this one.
+            let times = if self.failed { size - read } else { 1 };
+            if !leading {
+                log.coefficients.resize(log.coefficients.len() + times, coefficient);
+            }
+            if self.failed {
+                break;
+            }
+        }
+        log.ends.push(log.coefficients.len());
+        frame.plain &= !self.failed && bytes[3] < 0x80;
+        if whole && self.failed {
+            let left = self.source.offset() - begin;
+            let size = i32::from_le_bytes(bytes);
+            self.note(offset, Malformation::SizeBeyondEnd { polynomial: number, size, left });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::{Frame, Writer};
+
+    const LAYOUT: Layout = Layout { particles: 0, impulses: true, polynomials: true, steps: 0 };
+
+    /// A record without particles that holds these polynomials.
+    fn record(polynomials: &[&[f64]]) -> Vec<u8> {
+        let mut frame = Frame::default();
+        polynomials.iter().for_each(|p| frame.polynomials.push(p));
+        let mut writer = Writer::new(Vec::new(), LAYOUT);
+        writer.frame(&frame);
+        writer.finish().unwrap().0
+    }
+
+    /// Reads one record, and gives the frame and what reading another one stops at.
+    fn read(bytes: &[u8]) -> (LenientFrame, Stop) {
+        let mut reader = Lenient::of_slice(bytes, LAYOUT);
+        let mut frame = LenientFrame::default();
+        reader.next(&mut frame).unwrap();
+        let stop = reader.next(&mut LenientFrame::default()).unwrap_err();
+        (frame, stop)
+    }
+
+    #[test]
+    fn a_missing_coefficient_repeats_the_one_before() {
+        let bytes = record(&[&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0], &[7.0]]);
+        let (frame, stop) = read(&bytes[..8 + 28 + 4 + 16]);
+        let read: Vec<&[f64]> = frame.polynomials.iter().collect();
+        assert_eq!(read, [&[1.0, 2.0, 3.0][..], &[4.0, 5.0, 5.0], &[]]);
+        assert!(!frame.plain);
+        let note = frame.note.unwrap();
+        assert_eq!(note.what, Malformation::SizeBeyondEnd { polynomial: 1, size: 3, left: 16 });
+        assert_eq!(note.offset, 36);
+        assert_eq!(stop.cause, Cause::State, "a failed stream has not even a state of zero bytes");
+    }
+
+    #[test]
+    fn a_cut_coefficient_keeps_the_high_order_bytes_of_the_one_before() {
+        let (a, b) = (f64::from_bits(0x3ff0_0000_0000_1111), f64::from_bits(0x4008_2222_3333_4444));
+        let bytes = record(&[&[a, b]]);
+        let (frame, _) = read(&bytes[..8 + 4 + 8 + 3]);
+        assert_eq!(frame.polynomials.get(0)[1].to_bits(), 0x3ff0_0000_0033_4444);
+        // Without one before, the other bytes are 0; what results is tiny here, hence dropped with all that follow.
+        let (frame, _) = read(&bytes[..8 + 4 + 7]);
+        assert_eq!(frame.polynomials.get(0), [0.0; 0]);
+        let (frame, _) = read(&record(&[&[f64::from_bits(0x00ff_0000_0000_0001)]])[..8 + 4 + 7]);
+        assert_eq!(frame.polynomials.len(), 1);
+    }
+
+    #[test]
+    fn polynomials_behind_a_cut_are_empty() {
+        let bytes = record(&[&[1.0], &[2.0], &[3.0]]);
+        for cut in 8 + 12..8 + 12 + 4 {
+            let (frame, _) = read(&bytes[..cut]);
+            assert_eq!(frame.polynomials.iter().collect::<Vec<_>>(), [&[1.0][..], &[], &[]], "cut at {cut}");
+            assert_eq!(frame.note.unwrap().what, Malformation::PolynomialCut { polynomial: 1, count: 3 });
+        }
+    }
+
+    #[test]
+    fn small_leading_coefficients_are_dropped_and_nan_stops_the_dropping() {
+        let bytes = record(&[&[1e-13, -1e-13, 2.0, 0.0], &[0.0, 0.0], &[0.0, f64::NAN, 1.0], &[1e-12]]);
+        let mut frame = LenientFrame::default();
+        Lenient::of_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
+        let log = &frame.polynomials;
+        assert_eq!((log.get(0), log.get(1), log.get(3)), (&[2.0, 0.0][..], &[][..], &[1e-12][..]));
+        assert!(log.get(2)[0].is_nan() && log.get(2)[1] == 1.0);
+        assert!(!frame.plain && frame.note.is_none());
+        assert_eq!(frame.raw, bytes[8..]);
+    }
+
+    #[test]
+    fn a_sound_list_is_plain_and_raw() {
+        let bytes = record(&[&[1.0, 0.0], &[], &[f64::NAN; 6], &[2.0; 9]]);
+        let mut frame = LenientFrame::default();
+        Lenient::of_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
+        assert!(frame.plain);
+        assert_eq!(frame.raw, bytes[8..]);
+        assert_eq!(frame.polynomials.get(3), [2.0; 9]);
+    }
+
+    #[test]
+    fn negative_counts_and_sizes_are_zero_and_skip_nothing() {
+        let mut bytes = record(&[&[], &[1.0]]);
+        bytes[0..4].copy_from_slice(&(-3_i32).to_le_bytes());
+        bytes[8..12].copy_from_slice(&(-1_i32).to_le_bytes());
+        let (frame, stop) = read(&bytes);
+        assert_eq!(frame.polynomials.iter().collect::<Vec<_>>(), [&[][..], &[1.0]]);
+        assert_eq!(frame.note.unwrap().what, Malformation::NegativeCount { list: List::Impulses, count: -3 });
+        assert!(!frame.plain);
+        assert_eq!(stop.cause, Cause::Impulses, "at the end of the file the count is missing");
+    }
+
+    #[test]
+    fn nonsense_counts_cost_no_memory() {
+        let count = |count: i32| count.to_le_bytes();
+        let cases = [
+            (vec![count(i32::MAX)], Cause::Memory),
+            (vec![count(1000)], Cause::Impulses),
+            (vec![count(0), count(i32::MAX)], Cause::Memory),
+            (vec![count(0), count(1), count(i32::MAX)], Cause::Memory),
+        ];
+        for (words, cause) in cases {
+            let stop = Lenient::of_slice(&words.concat(), LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
+            assert_eq!(stop.cause, cause);
+        }
+        let (frame, _) = read(&[count(0), count(1_000_000)].concat());
+        assert_eq!(frame.polynomials.len(), 1_000_000, "the original makes as many empty ones");
+    }
+
+    #[test]
+    fn an_error_of_the_stream_is_named() {
+        struct Broken;
+        impl Read for Broken {
+            fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+                Err(std::io::Error::other("cable unplugged"))
+            }
+        }
+        let stop = Lenient::new(Broken, LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
+        assert_eq!(stop.cause, Cause::Io);
+        assert!(stop.to_string().ends_with("reading failed: cable unplugged"), "{stop}");
+    }
+}
