@@ -83,6 +83,12 @@ fn course_scenes_are_recorded_byte_for_byte() {
     all_are_byte_identical("course_scenes_are_recorded_byte_for_byte", "manifest.json");
 }
 
+#[test]
+fn scenes_of_earlier_milestones_are_recorded_byte_for_byte() {
+    let name = "scenes_of_earlier_milestones_are_recorded_byte_for_byte";
+    all_are_byte_identical(name, "manifest-earlier-milestones.json");
+}
+
 /// No certificate excludes an impact that the root finder finds, and asking it changes no byte.
 #[test]
 fn certificates_agree_with_the_root_finder_on_every_course_scene() {

@@ -87,10 +87,50 @@ fn norm_by_halves(d: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        scene::{Collision, Force, Integrator},
+        sim::{
+            RootSearch, Simulation, StepError,
+            samples::{edge, particle, scene},
+        },
+    };
 
     #[test]
     fn the_norm_adds_even_and_odd_squares() {
         assert_eq!(norm_by_halves(&[1.0, 4.0, 2.0, 2.0]), 5.0);
         assert_eq!(norm_by_halves(&[]), 0.0);
+    }
+
+    /// The end state satisfies the implicit equations `v' = v - h g(x', v') / m` and `x' = x + h v'`.
+    #[test]
+    fn a_step_solves_the_implicit_equations() {
+        let mut scene =
+            scene(vec![particle((0.0, 0.0), (1.0, 0.5), 2.0, 0.1), particle((1.0, 0.25), (-0.5, 0.75), 1.0, 0.1)]);
+        scene.integrator = Integrator::ImplicitEuler;
+        scene.edges.push(edge(0, 1, 0.01));
+        scene.forces.push(Force::Spring { edge: 0, stiffness: 2.0, rest_length: 0.8, damping: 0.3 });
+        let mut simulation = Simulation::new(&scene, RootSearch::default());
+        let before = simulation.state().clone();
+        simulation.step(&mut ()).expect("Newton's method converges");
+        let after = simulation.state();
+        let mut gradient = vec![0.0; 4];
+        let (bodies, forces) = (Bodies::new(&scene), Forces::new(&scene));
+        forces.gradient(&bodies, &after.positions, &after.velocities, &mut gradient);
+        for (k, gradient) in gradient.iter().enumerate() {
+            let velocity = before.velocities[k] - 0.5 * gradient / bodies.masses[k / 2];
+            assert!((after.velocities[k] - velocity).abs() < 1e-8, "{k}");
+            assert!((after.positions[k] - (before.positions[k] + 0.5 * after.velocities[k])).abs() < 1e-12, "{k}");
+        }
+    }
+
+    /// The penalty force has no Hessian: inside the layer the iterates jump in and out for ever.
+    #[test]
+    fn an_endless_iteration_is_an_error() {
+        let mut scene =
+            scene(vec![particle((0.0, 0.0), (1.0, 0.0), 1.0, 0.1), particle((1.25, 0.0), (-1.0, 0.0), 1.0, 0.1)]);
+        scene.integrator = Integrator::ImplicitEuler;
+        scene.collision = Collision::Penalty { stiffness: 1000.0, thickness: 0.1 };
+        let mut simulation = Simulation::new(&scene, RootSearch::default());
+        assert_eq!(simulation.step(&mut ()), Err(StepError::Newton { step: 1 }));
     }
 }
