@@ -8,6 +8,10 @@
 mod finding;
 mod outcome;
 pub mod parity;
+mod replay;
+mod tally;
+mod words;
 
 pub use finding::{Detail, Finding, Kind, PolynomialPlace, Role};
 pub use outcome::{Counts, Damage, Outcome, Overall, Residuals, Stop, Unreadable};
+pub use words::{PairWords, PassWords, Power, passes};

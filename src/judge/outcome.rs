@@ -59,10 +59,24 @@ impl Counts {
         self.0[kind as usize] += count;
     }
 
+    /// Findings that fail the original's collision verdict: collisions and polynomials.
+    #[must_use]
+    pub fn collisions(&self) -> u64 {
+        self.total() - self.get(Kind::Position) - self.get(Kind::Velocity)
+    }
+
     /// The sum over all kinds.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
+    }
+}
+
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        for (own, others) in self.0.iter_mut().zip(other.0) {
+            *own += others;
+        }
     }
 }
 

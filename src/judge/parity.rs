@@ -1,11 +1,8 @@
 //! The original's rule book: lock-step comparison (oracle-behaviour.md 4 to 6).
-use super::{
-    finding::{Finding, Kind},
-    outcome::{Outcome, Residuals},
-};
+use super::{finding::Kind, outcome::Outcome};
 use crate::{
     scene::Scene,
-    sim::{Impulse, RootSearch, SearchCounts},
+    sim::{Impulse, RootSearch},
     trace::LoggedImpulse,
 };
 
@@ -56,27 +53,14 @@ pub enum Remark {
     Polynomials(Kind, u32),
 }
 
-/// Judges a trace as the original does, in lock step with the reference.
-pub fn judge(
-    _scene: &Scene,
-    _trace: impl std::io::Read + Send,
-    _options: &Options,
-    _progress: &mut dyn Progress,
+/// Judges a trace as the original does, in lock step with the reference: each step starts from the trace's own state,
+/// takes over its mid record, and is compared with its end record (oracle-behaviour.md 4 to 6). Memory does not depend
+/// on the trace's length. What follows the last record is not read, save for one byte that tells whether it is there.
+pub fn judge<R: std::io::Read + Send>(
+    scene: &Scene,
+    trace: R,
+    options: &Options,
+    progress: &mut dyn Progress,
 ) -> Outcome {
-    let _unused: Option<Finding> = None;
-    Outcome {
-        overall: super::Overall::None,
-        residuals: Residuals::default(),
-        collisions_passed: None,
-        counts: super::Counts::default(),
-        wrong_steps: 0,
-        examples: Vec::new(),
-        first_divergence: None,
-        steps_judged: 0,
-        steps: 0,
-        stop: None,
-        damage: None,
-        trailing_bytes: false,
-        searches: SearchCounts::default(),
-    }
+    super::replay::judge(scene, trace, options, progress)
 }

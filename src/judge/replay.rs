@@ -1,0 +1,363 @@
+//! Reads the trace step by step, has the steps judged in batches, and puts the results together in their order.
+//!
+//! Once a step's frames are in memory the step depends on nothing else: the reference starts from the submission's
+//! own state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
+//! reported, and in which order, does not depend on the number of threads.
+use super::{
+    finding::Finding,
+    outcome::{Counts, Damage, Outcome, Overall, Residuals, Stop, Unreadable},
+    parity::{Options, Progress},
+    tally::{self, Buffers, StepResult, Tally},
+};
+use crate::{
+    scene::{Collision, Scene},
+    sim::{SearchCounts, Simulation, State, StepError},
+    trace::{Cause, Layout, Lenient, LenientFrame},
+};
+use std::{
+    io::Read,
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
+
+/// A batch is full when its frames hold this many bytes ...
+const BATCH_BYTES: usize = 1 << 19;
+/// ... or this many steps.
+const BATCH_STEPS: usize = 256;
+/// More threads than this only cost memory: reading is sequential.
+const MOST_THREADS: usize = 8;
+
+/// One step as read, and what judging it yields.
+#[derive(Debug, Default)]
+struct Slot {
+    step: u32,
+    before: State,
+    mid: State,
+    end: LenientFrame,
+    damage: Option<Damage>,
+    result: StepResult,
+    error: Option<StepError>,
+}
+
+/// What one thread needs to judge a step.
+struct Worker {
+    simulation: Simulation,
+    buffers: Buffers,
+}
+
+/// Steps in a row; slots are reused from batch to batch.
+#[derive(Default)]
+struct Batch {
+    slots: Vec<Mutex<Slot>>,
+    filled: usize,
+}
+
+/// Judges a trace (the body of [`super::parity::judge`]).
+pub(super) fn judge<R: Read + Send>(
+    scene: &Scene,
+    trace: R,
+    options: &Options,
+    progress: &mut dyn Progress,
+) -> Outcome {
+    let mut replay = Replay::new(scene, trace);
+    if let Err(stop) = replay.read_initial() {
+        replay.outcome.damage = replay.damage.take();
+        replay.outcome.stop = Some(stop);
+        return replay.outcome;
+    }
+    replay.outcome.damage = replay.damage.take();
+    progress.begins();
+    let threads = match options.threads {
+        0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
+        given => given,
+    }
+    .min(MOST_THREADS);
+    let mut workers: Vec<Worker> = (0..threads)
+        .map(|_| Worker { simulation: Simulation::new(scene, options.root_search), buffers: Buffers::default() })
+        .collect();
+    let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten();
+    let (mut current, mut next) = (Batch::default(), Batch::default());
+    let mut stop = replay.read_batch(&mut current);
+    loop {
+        let mut stop_after = None;
+        match &pool {
+            None => judge_batch(&current, &mut workers[..1], replay.shape),
+            Some(pool) => {
+                let shape = replay.shape;
+                let read_on = stop.is_none() && !replay.complete();
+                let reader = &mut replay;
+                pool.install(|| {
+                    rayon::join(
+                        || judge_batch(&current, &mut workers, shape),
+                        || {
+                            if read_on {
+                                stop_after = reader.read_batch(&mut next);
+                            }
+                        },
+                    );
+                });
+            }
+        }
+        if replay.deliver(&mut current, progress, options.stop_at_first) {
+            break;
+        }
+        if let Some(stop) = stop {
+            if let Stop::Trace { step, .. } = stop {
+                progress.step_begins(step);
+            }
+            replay.outcome.damage = replay.outcome.damage.take().or(replay.damage.take());
+            replay.outcome.stop = Some(stop);
+            break;
+        }
+        if replay.outcome.steps_judged == replay.outcome.steps {
+            replay.outcome.trailing_bytes = replay.reader.has_more();
+            break;
+        }
+        if pool.is_none() {
+            stop_after = replay.read_batch(&mut next);
+        }
+        stop = stop_after;
+        std::mem::swap(&mut current, &mut next);
+    }
+    replay.outcome.searches = sum_of_searches(&workers);
+    replay.conclude()
+}
+
+/// Which parts of a step are compared.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    layout: Layout,
+    logs_impulses: bool,
+}
+
+/// The sequential side: the reader, the state that the next step starts from, and the outcome so far.
+struct Replay<R> {
+    reader: Lenient<R>,
+    shape: Shape,
+    /// The end state of the last step that was read.
+    state: State,
+    steps_read: u32,
+    /// Damage of the record that could not be read at last.
+    damage: Option<Damage>,
+    outcome: Outcome,
+}
+
+impl<R: Read> Replay<R> {
+    fn new(scene: &Scene, trace: R) -> Self {
+        let layout = Layout::of(scene);
+        let logs_impulses = layout.impulses && !matches!(scene.collision, Collision::Hybrid { .. });
+        Self {
+            reader: Lenient::new(trace, layout),
+            shape: Shape { layout, logs_impulses },
+            state: State::default(),
+            steps_read: 0,
+            damage: None,
+            outcome: Outcome {
+                overall: Overall::None,
+                residuals: Residuals::default(),
+                collisions_passed: None,
+                counts: Counts::default(),
+                wrong_steps: 0,
+                examples: Vec::new(),
+                first_divergence: None,
+                steps_judged: 0,
+                steps: layout.steps,
+                stop: None,
+                damage: None,
+                trailing_bytes: false,
+                searches: SearchCounts::default(),
+            },
+        }
+    }
+
+    fn complete(&self) -> bool {
+        self.steps_read == self.outcome.steps
+    }
+
+    fn read_initial(&mut self) -> Result<(), Stop> {
+        let mut frame = LenientFrame::default();
+        let mut damage = None;
+        let read = self.read_frame(&mut frame, 0, &mut damage);
+        self.damage = damage;
+        self.state = frame.state;
+        read
+    }
+
+    /// Reads one record; the first damage of a slot is kept.
+    fn read_frame(&mut self, frame: &mut LenientFrame, step: u32, damage: &mut Option<Damage>) -> Result<(), Stop> {
+        match self.reader.next(frame) {
+            Ok(()) => {
+                if let (None, Some(note)) = (&damage, frame.note.take()) {
+                    let (offset, message) = (note.offset, note.what.to_string());
+                    *damage = Some(Damage { frame: note.frame, step, offset, message });
+                }
+                Ok(())
+            }
+            Err(stop) => {
+                let cause = match stop.cause {
+                    Cause::State => Unreadable::State,
+                    Cause::Impulses => Unreadable::Impulses,
+                    Cause::Memory => Unreadable::Memory,
+                    Cause::Io => Unreadable::Io,
+                };
+                let (offset, message) = (stop.at.offset, stop.at.what.to_string());
+                Err(Stop::Trace { frame: stop.at.frame, step, cause, offset, message })
+            }
+        }
+    }
+
+    /// Fills a batch. A stop is that of the first step that could not be read; the batch holds the steps before it.
+    fn read_batch(&mut self, batch: &mut Batch) -> Option<Stop> {
+        batch.filled = 0;
+        let mut bytes = 0;
+        while !self.complete() && batch.filled < BATCH_STEPS && bytes < BATCH_BYTES {
+            if batch.filled == batch.slots.len() {
+                batch.slots.push(Mutex::default());
+            }
+            let slot = lock(&mut batch.slots[batch.filled]);
+            if let Err(stop) = self.read_step(slot) {
+                self.damage = slot.damage.take();
+                return Some(stop);
+            }
+            bytes += 8 * slot.end.polynomials.coefficients.len() + self.shape.layout.state_bytes();
+            batch.filled += 1;
+        }
+        None
+    }
+
+    fn read_step(&mut self, slot: &mut Slot) -> Result<(), Stop> {
+        slot.step = self.steps_read + 1;
+        slot.damage = None;
+        slot.error = None;
+        copy_state(&mut slot.before, &self.state);
+        let mut damage = None;
+        let mut read = Ok(());
+        if self.shape.layout.polynomials {
+            // The mid record's lists are never compared; the end record's buffer serves for reading them.
+            read = self.read_frame(&mut slot.end, slot.step, &mut damage);
+            if read.is_ok() {
+                copy_state(&mut slot.mid, &slot.end.state);
+            }
+        }
+        if read.is_ok() {
+            read = self.read_frame(&mut slot.end, slot.step, &mut damage);
+        }
+        slot.damage = damage;
+        read?;
+        copy_state(&mut self.state, &slot.end.state);
+        self.steps_read += 1;
+        Ok(())
+    }
+
+    /// Hands the batch's results on in the order of the steps. Whether judging is over.
+    fn deliver(&mut self, batch: &mut Batch, progress: &mut dyn Progress, stop_at_first: bool) -> bool {
+        for slot in &mut batch.slots[..batch.filled] {
+            let slot = lock(slot);
+            progress.step_begins(slot.step);
+            let outcome = &mut self.outcome;
+            if outcome.damage.is_none() {
+                outcome.damage = slot.damage.take();
+            }
+            if let Some(error) = slot.error {
+                outcome.stop = Some(Stop::Step(error));
+                return true;
+            }
+            tally::accumulate(&mut outcome.residuals, &slot.result.residuals);
+            outcome.counts += slot.result.counts;
+            for first in &slot.result.firsts {
+                keep_first(outcome, first);
+            }
+            outcome.steps_judged += 1;
+            progress.step_judged(slot.step, &slot.result.remarks);
+            if slot.result.counts.total() > 0 {
+                outcome.wrong_steps += 1;
+                if stop_at_first {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    fn conclude(mut self) -> Outcome {
+        let outcome = &mut self.outcome;
+        outcome.examples.sort_by_key(Finding::kind);
+        if outcome.stop.is_none() {
+            let passed = outcome.counts.collisions() == 0;
+            outcome.collisions_passed = Some(passed);
+            // Strict, and NaN fails.
+            let residuals_pass = outcome.residuals.with_bounds().iter().all(|(residual, bound)| residual < bound);
+            let complete = outcome.steps_judged == outcome.steps;
+            outcome.overall = if passed && residuals_pass && complete { Overall::Passed } else { Overall::Failed };
+        }
+        self.outcome
+    }
+}
+
+/// Judges the steps of a batch, each by the next free worker.
+fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: Shape) {
+    let slots = &batch.slots[..batch.filled];
+    let next = AtomicUsize::new(0);
+    let run = |worker: &mut Worker| {
+        while let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) {
+            // Every index is handed out once, so the lock is always free.
+            let mut slot = slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            judge_step(&mut slot, worker, shape);
+        }
+    };
+    match workers {
+        [worker] => run(worker),
+        workers => rayon::scope(|scope| {
+            let run = &run;
+            for worker in workers {
+                scope.spawn(move |_| run(worker));
+            }
+        }),
+    }
+}
+
+fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: Shape) {
+    let Slot { step, before, mid, end, result, error, .. } = slot;
+    let Worker { simulation, buffers } = worker;
+    copy_state(simulation.state_mut(), before);
+    simulation.set_steps_done(*step - 1);
+    let layout = shape.layout;
+    let frame = u64::from(*step) * u64::from(layout.records_per_step());
+    let mid = layout.polynomials.then_some(&*mid);
+    let mut tally = Tally::new((*step, frame), end, mid, shape.logs_impulses, buffers, result);
+    match simulation.step(&mut tally) {
+        Ok(()) => tally.finish(simulation.state(), layout.impulses, layout.polynomials),
+        Err(cause) => *error = Some(cause),
+    }
+}
+
+fn sum_of_searches(workers: &[Worker]) -> SearchCounts {
+    let mut sum = SearchCounts::default();
+    for counts in workers.iter().map(|worker| worker.simulation.search_counts()) {
+        sum.calls += counts.calls;
+        sum.searched += counts.searched;
+        sum.excluded += counts.excluded;
+        sum.disagreements += counts.disagreements;
+    }
+    sum
+}
+
+fn keep_first(outcome: &mut Outcome, first: &Finding) {
+    if outcome.first_divergence.is_none() {
+        outcome.first_divergence = Some(*first);
+    }
+    if !outcome.examples.iter().any(|example| example.kind() == first.kind()) {
+        outcome.examples.push(*first);
+    }
+}
+
+fn copy_state(target: &mut State, source: &State) {
+    target.positions.clone_from(&source.positions);
+    target.velocities.clone_from(&source.velocities);
+}
+
+fn lock(slot: &mut Mutex<Slot>) -> &mut Slot {
+    slot.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner)
+}

@@ -1,0 +1,110 @@
+//! The grade: what one submission got, scene by scene.
+use super::{config::Visibility, verdict::Verdict};
+use std::time::Duration;
+
+/// The grade of one submission on one suite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grade {
+    /// The submission's name: its file or folder name.
+    pub submission: String,
+    /// The suite's name.
+    pub suite: String,
+    /// The rule book that gave the verdicts.
+    pub rules: &'static str,
+    /// The worst verdict of all scenes.
+    pub verdict: Verdict,
+    /// Points reached; `None` when the grader failed, which is nobody's zero.
+    pub points: Option<f64>,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// Groups in the suite's order.
+    pub groups: Vec<GroupGrade>,
+    /// How the build ended, when the suite builds.
+    pub build: Option<Build>,
+    /// What weakened the sandbox, in words; empty when every required layer held.
+    pub warnings: Vec<String>,
+    /// Layers of the sandbox that were active.
+    pub layers: Vec<String>,
+    /// Wall time of the whole grading.
+    pub wall: Duration,
+}
+
+impl Grade {
+    /// All scenes in order.
+    pub fn scenes(&self) -> impl Iterator<Item = &SceneGrade> {
+        self.groups.iter().flat_map(|group| &group.scenes)
+    }
+
+    /// Whether the grader failed somewhere, so that the grade must not reach a student.
+    #[must_use]
+    pub fn is_our_fault(&self) -> bool {
+        self.verdict == Verdict::JudgeError
+    }
+
+    /// How many scenes have this verdict.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.scenes().filter(|scene| scene.verdict == verdict).count()
+    }
+}
+
+/// The build step's end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Build {
+    /// Whether it succeeded.
+    pub succeeded: bool,
+    /// How it ended, in words.
+    pub end: String,
+    /// The compiler's output, capped; raw text that a report has to escape.
+    pub output: String,
+}
+
+/// One group of scenes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupGrade {
+    /// Its name.
+    pub name: String,
+    /// Who sees it.
+    pub visibility: Visibility,
+    /// Points reached.
+    pub points: f64,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// The worst verdict of its scenes.
+    pub verdict: Verdict,
+    /// Its scenes.
+    pub scenes: Vec<SceneGrade>,
+}
+
+/// One scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneGrade {
+    /// The scene's name, `Group/name`.
+    pub scene: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// One sentence that says what happened.
+    pub summary: String,
+    /// More lines of explanation: the first divergence, counts, hints. Plain text.
+    pub details: Vec<String>,
+    /// Points reached.
+    pub points: f64,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// Steps without a finding, of all steps.
+    pub right_steps: u32,
+    /// Steps of the scene.
+    pub steps: u32,
+    /// Processor time of the program.
+    pub cpu: Duration,
+    /// Wall time of the run.
+    pub wall: Duration,
+    /// Peak memory of the program in bytes, when known.
+    pub memory: Option<u64>,
+    /// What the program wrote to its standard output, capped; raw text that a report has to escape.
+    pub stdout: String,
+    /// What the program wrote to its standard error, capped; raw text that a report has to escape.
+    pub stderr: String,
+    /// Whether the result was taken from an earlier run.
+    pub cached: bool,
+}

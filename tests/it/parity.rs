@@ -1,0 +1,93 @@
+//! The judge against the original's own verdicts.
+use crate::corpus;
+use fosssim_oracle::{
+    judge::{
+        Kind, Outcome, Overall,
+        parity::{self, Options, Progress, Remark},
+    },
+    scene,
+    sim::RootSearch,
+};
+
+/// Writes down what a judge reports, step by step.
+#[derive(Debug, Default, PartialEq)]
+struct Heard(Vec<(u32, Vec<Remark>)>);
+
+impl Progress for Heard {
+    fn step_begins(&mut self, step: u32) {
+        self.0.push((step, Vec::new()));
+    }
+
+    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
+        let last = self.0.last_mut().expect("a step begins before it is judged");
+        assert_eq!(last.0, step);
+        last.1.extend_from_slice(remarks);
+    }
+}
+
+fn judge(
+    scene: &fosssim_oracle::scene::Scene,
+    trace: &[u8],
+    threads: usize,
+    root_search: RootSearch,
+) -> (Outcome, String) {
+    let mut heard = Heard::default();
+    let options = Options { threads, root_search, stop_at_first: false };
+    let outcome = parity::judge(scene, trace, &options, &mut heard);
+    // NaN is not equal to itself, so what was heard is compared as text.
+    (outcome, format!("{heard:?}"))
+}
+
+fn told(outcome: &Outcome) -> String {
+    let Outcome { searches: _, ref stop, .. } = *outcome;
+    format!(
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {} {}",
+        outcome.overall,
+        outcome.residuals,
+        outcome.counts,
+        outcome.examples,
+        outcome.first_divergence,
+        stop,
+        outcome.damage,
+        outcome.wrong_steps,
+        outcome.trailing_bytes,
+    )
+}
+
+#[test]
+fn verdicts_and_counts_are_those_of_the_original_on_any_number_of_threads() {
+    let Some(folder) = corpus::folder() else { return };
+    let rows = std::fs::read_to_string(folder.join("verdicts.jsonl")).expect("verdicts");
+    let mut cases = 0;
+    for row in rows.lines() {
+        let row: serde_json::Value = serde_json::from_str(row).expect("a row");
+        let Some(file) = row["trace_file"].as_str() else { continue };
+        let name = format!("{} {}", row["submission"], row["scene"]);
+        let xml = std::fs::read(folder.join("scenes").join(format!("{}.xml", row["scene"].as_str().expect("scene"))));
+        let scene = scene::original::read(&xml.expect("a scene")).expect("a scene").scene;
+        let trace = corpus::unpack(&folder.join(file));
+        let (outcome, heard) = judge(&scene, &trace, 1, RootSearch::WhereNeeded);
+        let expected = match row["overall"].as_str().expect("overall") {
+            "passed" => Overall::Passed,
+            "failed" => Overall::Failed,
+            _ => Overall::None,
+        };
+        assert_eq!(outcome.overall, expected, "{name}");
+        if row["oracle_end"] == "exit 0" {
+            for kind in Kind::ALL {
+                let Some(message) = kind.original_message() else { continue };
+                let count = row["messages"][message].as_u64().unwrap_or(0);
+                assert_eq!(outcome.counts.get(kind), count, "{name}: {message}");
+            }
+            assert_eq!(outcome.collisions_passed, Some(row["collisions_passed"] == "Yes"), "{name}");
+        }
+        for (threads, root_search) in [(4, RootSearch::WhereNeeded), (2, RootSearch::Audit)] {
+            let (other, other_heard) = judge(&scene, &trace, threads, root_search);
+            assert_eq!(told(&outcome), told(&other), "{name}: {threads} threads");
+            assert_eq!(heard, other_heard, "{name}: {threads} threads");
+            assert_eq!(other.searches.disagreements, 0, "{name}");
+        }
+        cases += 1;
+    }
+    corpus::ran("parity", cases);
+}
