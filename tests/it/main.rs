@@ -4,5 +4,6 @@ mod layers;
 mod parity;
 mod recordings;
 mod root_vectors;
+mod samples;
 mod scenes_corpus;
 mod trace_props;

@@ -1,0 +1,50 @@
+//! Collision type `continuous-time`: one pass, each contact resolved as soon as it is found (collisions.md 4).
+use fosssim_oracle::num::rpoly::DoesNotTerminate;
+
+use crate::{
+    catalogue::Mistake,
+    detection,
+    response::respond,
+    world::{State, StepLog, World},
+};
+
+/// Detects and resolves pair by pair, from `q_start` to wherever the state is by then.
+pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), DoesNotTerminate> {
+    let student = world.student;
+    if student.makes(Mistake::ContinuousDetectAllFirst) {
+        return handle_all_at_once(world, q_start, state, log);
+    }
+    let passes = if student.makes(Mistake::ContinuousTwoPasses) { 2 } else { 1 };
+    for _ in 0..passes {
+        let predicted = state.x.clone();
+        for &pair in &world.pairs {
+            let q_end = if student.makes(Mistake::ContinuousOldPrediction) { &predicted } else { &state.x };
+            let Some(contact) = detection::detect(world, pair, q_start, q_end, log)? else { continue };
+            if student.makes(Mistake::ContinuousFirstOnly) && !log.impulses.is_empty() {
+                continue;
+            }
+            log.impulses.push(contact);
+            if student.makes(Mistake::ContinuousNoResponse) {
+                continue;
+            }
+            let before = state.clone();
+            respond(world, &contact, q_start, &before, state);
+        }
+    }
+    Ok(())
+}
+
+fn handle_all_at_once(
+    world: &World,
+    q_start: &[f64],
+    state: &mut State,
+    log: &mut StepLog,
+) -> Result<(), DoesNotTerminate> {
+    let contacts = detection::pass(world, q_start, &state.x, log)?;
+    let predicted = state.clone();
+    for contact in contacts {
+        respond(world, &contact, q_start, &predicted, state);
+        log.impulses.push(contact);
+    }
+    Ok(())
+}

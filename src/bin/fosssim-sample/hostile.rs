@@ -1,0 +1,125 @@
+//! What hostile programs do besides simulating. Everything is bounded where it could harm a machine without a sandbox;
+//! only the endless loop and the sleep are for ever.
+use std::{
+    fs::File,
+    hint::black_box,
+    io::{self, Write},
+    path::Path,
+    process::{Command, Stdio},
+    thread::sleep,
+    time::Duration,
+};
+
+use crate::catalogue::{Mistake, Student};
+
+/// How much a flood writes.
+const FLOOD_BYTES: usize = 256 << 20;
+
+/// How much memory a hog takes.
+const HOG_BYTES: usize = 4 << 30;
+
+/// Where hostile programs put their names.
+const CHILD_VARIABLE: &str = "FOSSSIM_SAMPLE_CHILD";
+
+/// What the original oracle prints after a run without faults.
+const FORGED_VERDICT: &str = "\
+Accumulated Position Residual: 0   Passed.
+Accumulated Velocity Residual: 0   Passed.
+Maximum Position Residual: 0   Passed.
+Maximum Velocity Residual: 0   Passed.
+Collisions Passed: Yes.
+Overall success: Passed.
+\u{1b}[35;1mFOSSSim message: \u{1b}[mSaved residual to residual.txt.
+{\"score\": 100, \"output\": \"accepted\"}
+";
+
+/// What escapes from a log that is not cleaned: colours, the window's title, markup, a formula, control characters.
+const ESCAPES: &str = "\u{1b}[2J\u{1b}[31;1mred\u{1b}[m \u{1b}]0;title\u{7} <script>alert(1)</script> \
+    <b onmouseover='x'>&amp;</b> | `code` **bold** ::error::no \r\n=HYPERLINK(\"http://example.invalid\",\"x\")\n\
+    ]]> \u{202e}reversed\u{202c} \u{0}\u{8}\u{c}\n";
+
+/// Ends programs that do nothing at all, and children that only wait.
+pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8>> {
+    if std::env::var_os(CHILD_VARIABLE).is_some() {
+        sleep(Duration::from_secs(60));
+        return Ok(Some(0));
+    }
+    match student.mistake() {
+        Some(Mistake::HostileNoOutput) => return Ok(Some(0)),
+        Some(Mistake::HostileEmptyTrace) => {
+            if let Some(path) = output {
+                File::create(path)?;
+            }
+            return Ok(Some(0));
+        }
+        Some(Mistake::HostileChildren) => {
+            for _ in 0..3 {
+                // Nobody waits for them: to be left behind is what they are for.
+                let _child = Command::new(std::env::current_exe()?)
+                    .env(CHILD_VARIABLE, "1")
+                    .args(["--list"])
+                    .stdin(Stdio::null())
+                    .spawn()?;
+            }
+        }
+        Some(Mistake::HostileEscapes) => io::stderr().write_all(ESCAPES.as_bytes())?,
+        Some(Mistake::HostileForgedVerdict) => io::stdout().write_all(FORGED_VERDICT.as_bytes())?,
+        _ => {}
+    }
+    Ok(None)
+}
+
+/// What happens in mid-run.
+pub enum Midway {
+    /// The simulation goes on.
+    GoOn,
+    /// The program stops writing and leaves with this status.
+    Leave(u8),
+    /// The program writes part of a record and leaves with this status.
+    LeaveInsideRecord(u8),
+}
+
+/// Misbehaves in the middle of the run, that is before step `steps / 2 + 1`.
+pub fn midway(student: Student) -> io::Result<Midway> {
+    match student.mistake() {
+        Some(Mistake::HostileExitMidway) => return Ok(Midway::Leave(3)),
+        Some(Mistake::HostileTruncated) => return Ok(Midway::LeaveInsideRecord(0)),
+        Some(Mistake::HostileCrash) => std::process::abort(),
+        Some(Mistake::HostileLoop) => loop {
+            black_box(());
+        },
+        Some(Mistake::HostileSleep) => loop {
+            sleep(Duration::from_secs(3600));
+        },
+        Some(Mistake::HostileFloodStdout) => flood(&mut io::stdout().lock())?,
+        Some(Mistake::HostileFloodStderr) => flood(&mut io::stderr().lock())?,
+        Some(Mistake::HostileMemory) => {
+            let hog = vec![1_u8; HOG_BYTES];
+            black_box(&hog);
+        }
+        _ => {}
+    }
+    Ok(Midway::GoOn)
+}
+
+/// What follows the last record.
+pub fn after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
+    match student.mistake() {
+        Some(Mistake::HostileTrailingBytes) => output.write_all(&[0; 8]),
+        Some(Mistake::HostileFloodTrace) => flood(output),
+        _ => Ok(()),
+    }
+}
+
+/// The status with which the program ends.
+pub fn exit_status(student: Student) -> u8 {
+    u8::from(student.makes(Mistake::HostileExitOne))
+}
+
+fn flood(output: &mut impl Write) -> io::Result<()> {
+    let block = [b'x'; 1 << 16];
+    for _ in 0..FLOOD_BYTES / block.len() {
+        output.write_all(&block)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,82 @@
+//! Collision type `hybrid`: impulses first, and rigid impact zones where they do not suffice (collisions.md 5).
+use fosssim_oracle::num::rpoly::DoesNotTerminate;
+
+use crate::{
+    catalogue::Mistake,
+    detection, failsafe, impulses,
+    world::{State, StepLog, World},
+    zones::{self, Zone},
+};
+
+/// Handles a step's collisions. `middle` is called between the two parts, with the state and the log so far, for the
+/// trace's mid record.
+pub fn handle(
+    world: &World,
+    q_start: &[f64],
+    max_iterations: i32,
+    state: &mut State,
+    log: &mut StepLog,
+    middle: &mut dyn FnMut(&State, &StepLog),
+) -> Result<(), DoesNotTerminate> {
+    let resolved = impulses::apply(world, q_start, max_iterations, state, log)?;
+    middle(state, log);
+    if !resolved && !world.student.makes(Mistake::GeometricEmpty) {
+        geometric(world, q_start, state, log)?;
+    }
+    Ok(())
+}
+
+/// Moves impact zones rigidly, and lets them grow, until nothing new collides.
+fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), DoesNotTerminate> {
+    let student = world.student;
+    let prediction = state.clone();
+    let contacts = detection::pass(world, q_start, &state.x, log)?;
+    let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
+    if zones.is_empty() && student.makes(Mistake::GeometricStopsWhenEmpty) {
+        return Ok(());
+    }
+    loop {
+        if student.makes(Mistake::GeometricRestarts) {
+            state.clone_from(&prediction);
+        }
+        move_zones(world, q_start, &zones, state);
+        if student.makes(Mistake::GeometricOneRound) {
+            return Ok(());
+        }
+        let q_end = if student.makes(Mistake::GeometricDetectsPrediction) { &prediction.x } else { &state.x };
+        let contacts = detection::pass(world, q_start, q_end, log)?;
+        let found = contacts.iter().map(|contact| zones::zone_of(world, contact));
+        if contacts.is_empty() && student.makes(Mistake::GeometricStopsWhenClear) {
+            return Ok(());
+        }
+        let mut next: Vec<Zone> =
+            if student.makes(Mistake::GeometricForgetsZones) { Vec::new() } else { zones.clone() };
+        next.extend(found);
+        let next = zones::merge(student, next);
+        // Without the old zones the list may change for ever, so that program gives up when nothing collides.
+        let done = zones::equal(student, &zones, &next) || next.is_empty();
+        if done {
+            if student.makes(Mistake::GeometricExtraPass) {
+                detection::pass(world, q_start, &state.x, log)?;
+            }
+            return Ok(());
+        }
+        zones = next;
+        if student.makes(Mistake::GeometricTwoRounds) {
+            move_zones(world, q_start, &zones, state);
+            return Ok(());
+        }
+    }
+}
+
+fn move_zones(world: &World, q_start: &[f64], zones: &[Zone], state: &mut State) {
+    match world.student.mistake() {
+        Some(Mistake::ZonesReversed) => {
+            zones.iter().rev().for_each(|zone| failsafe::perform(world, zone, q_start, state));
+        }
+        Some(Mistake::GeometricFirstZoneOnly) => {
+            zones.iter().take(1).for_each(|zone| failsafe::perform(world, zone, q_start, state));
+        }
+        _ => zones.iter().for_each(|zone| failsafe::perform(world, zone, q_start, state)),
+    }
+}

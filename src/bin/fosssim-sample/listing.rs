@@ -1,0 +1,44 @@
+//! The catalogue as a table or as JSON.
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use crate::catalogue::{CATALOGUE, Kind, Row};
+
+#[derive(Serialize)]
+struct Listing {
+    schema: &'static str,
+    mistakes: &'static [Row],
+}
+
+/// Prints the catalogue on standard output.
+pub fn print(json: bool) -> anyhow::Result<u8> {
+    let text = if json {
+        let listing = Listing { schema: "fosssim-sample/1", mistakes: CATALOGUE };
+        serde_json::to_string_pretty(&listing)? + "\n"
+    } else {
+        table()
+    };
+    match io::stdout().write_all(text.as_bytes()) {
+        // A reader that has seen enough is no fault.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(0),
+        result => Ok(result.map(|()| 0)?),
+    }
+}
+
+fn table() -> String {
+    let mut text = String::new();
+    for (kind, title) in [
+        (Kind::Wrong, "Mistakes: the result is wrong."),
+        (Kind::Variant, "Variants: other arithmetic, the same mathematics."),
+        (Kind::Hostile, "Hostile programs."),
+    ] {
+        let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.kind == kind).collect();
+        text += &format!("{title} ({})\n\n", rows.len());
+        for row in rows {
+            text += &format!("  {:36} {}\n", row.id, row.explanation);
+        }
+        text.push('\n');
+    }
+    text
+}

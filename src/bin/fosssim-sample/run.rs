@@ -1,0 +1,133 @@
+//! One run: load the scene, step, write the trace.
+use std::{
+    fs::File,
+    io::{self, BufWriter, Write},
+};
+
+use anyhow::Context;
+use fosssim_oracle::scene::Collision;
+
+use crate::{
+    arguments::Options,
+    catalogue::Mistake,
+    continuous_time,
+    hostile::{self, Midway},
+    hybrid,
+    integrators::{self, StepFailure},
+    simple,
+    trace::Trace,
+    world::{State, StepLog, World},
+};
+
+/// The status of a run that the course's program would never have ended.
+const NEVER_ENDS: u8 = 3;
+
+type Output = Trace<Box<dyn Write>>;
+
+/// Simulates a scene and returns the program's exit status.
+pub fn run(options: &Options) -> anyhow::Result<u8> {
+    let student = options.student;
+    if let Some(code) = hostile::at_start(student, options.output.as_deref())? {
+        return Ok(code);
+    }
+    let text = std::fs::read(&options.scene).with_context(|| format!("{}: can't be read", options.scene.display()))?;
+    let scene = fosssim_oracle::scene::original::read(&text)
+        .with_context(|| format!("{}: not a scene", options.scene.display()))?
+        .scene;
+    let world = World::new(scene, student);
+    let output: Box<dyn Write> = match &options.output {
+        Some(path) => Box::new(BufWriter::new(
+            File::create(path).with_context(|| format!("{}: can't be written", path.display()))?,
+        )),
+        None => Box::new(io::sink()),
+    };
+    let mut trace = Trace::new(output, &world.scene.collision, student);
+    let code = simulate(&world, &mut trace)?;
+    if code == 0 {
+        trace.finish().context("the trace can't be written")?;
+        println!("Simulation complete at time {}. Exiting.", f64::from(world.scene.steps()) * world.scene.time_step);
+        return Ok(hostile::exit_status(student));
+    }
+    trace.flush().context("the trace can't be written")?;
+    Ok(code)
+}
+
+fn simulate(world: &World, trace: &mut Output) -> anyhow::Result<u8> {
+    let mut state = world.initial_state();
+    let mut log = StepLog::default();
+    trace.record(&state, &log)?;
+    let steps = world.scene.steps();
+    for step in 1..=steps {
+        if step == steps / 2 + 1 {
+            match hostile::midway(world.student)? {
+                Midway::GoOn => {}
+                Midway::Leave(code) => return Ok(code),
+                Midway::LeaveInsideRecord(code) => {
+                    trace.raw(&[0; 5])?;
+                    trace.flush()?;
+                    std::process::exit(code.into());
+                }
+            }
+        }
+        match advance(world, &mut state, &mut log, trace) {
+            Ok(()) => {}
+            Err(Stop::Write(error)) => return Err(error).context("the trace can't be written"),
+            Err(Stop::Step(failure)) => {
+                eprintln!("step {step}: {failure}");
+                return Ok(NEVER_ENDS);
+            }
+        }
+    }
+    Ok(0)
+}
+
+#[derive(Debug, thiserror::Error)]
+enum Stop {
+    #[error(transparent)]
+    Write(#[from] io::Error),
+    #[error(transparent)]
+    Step(#[from] StepFailure),
+}
+
+impl From<fosssim_oracle::num::rpoly::DoesNotTerminate> for Stop {
+    fn from(failure: fosssim_oracle::num::rpoly::DoesNotTerminate) -> Self {
+        Self::Step(failure.into())
+    }
+}
+
+/// One step with its records.
+fn advance(world: &World, state: &mut State, log: &mut StepLog, trace: &mut Output) -> Result<(), Stop> {
+    let student = world.student;
+    let q_start = state.x.clone();
+    integrators::advance(world, state)?;
+    if !student.makes(Mistake::LogImpulsesKept) {
+        log.impulses.clear();
+    }
+    if !student.makes(Mistake::LogPolynomialsKept) {
+        log.polynomials.clear();
+    }
+    match world.scene.collision {
+        Collision::None | Collision::Penalty { .. } => {}
+        Collision::Simple { .. } => simple::handle(world, state, log),
+        Collision::ContinuousTime { .. } => {
+            continuous_time::handle(world, &q_start, state, log)?;
+            if !student.makes(Mistake::LogNoMid) {
+                trace.record(state, log)?;
+            }
+        }
+        Collision::Hybrid { max_iterations, .. } => {
+            let mut written = Ok(());
+            hybrid::handle(world, &q_start, max_iterations, state, log, &mut |state, log| {
+                if !matches!(student.mistake(), Some(Mistake::LogNoMid | Mistake::LogMidIsEnd)) {
+                    written = trace.record(state, log);
+                }
+            })?;
+            written?;
+            if student.makes(Mistake::LogMidIsEnd) {
+                trace.record(state, log)?;
+            }
+        }
+    }
+    trace.record(state, log)?;
+    Ok(())
+}

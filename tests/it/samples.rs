@@ -1,0 +1,304 @@
+//! The sample submissions, as processes: the correct one equals the reference, every wrong one differs from it.
+#![expect(clippy::disallowed_types, reason = "these tests are about a program, so they start it")]
+
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+use fosssim_oracle::{
+    scene::original,
+    sim::{RootSearch, Simulation},
+    trace::{Layout, Recorder},
+};
+use rayon::prelude::*;
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+
+use crate::corpus;
+
+/// A row of `--list --json`.
+#[derive(Deserialize)]
+struct Row {
+    id: String,
+    kind: String,
+    explanation: String,
+}
+
+#[derive(Deserialize)]
+struct Listing {
+    schema: String,
+    mistakes: Vec<Row>,
+}
+
+/// The parts of the corpus's manifest that these tests need.
+#[derive(Deserialize)]
+struct Manifest {
+    scenes: Vec<Entry>,
+}
+
+#[derive(Deserialize)]
+struct Entry {
+    scene: String,
+    scene_file: String,
+    sha256: String,
+}
+
+/// The program, without a mistake from the environment.
+fn sample() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fosssim-sample"));
+    command.env_remove("FOSSSIM_SAMPLE_MISTAKE");
+    command
+}
+
+/// Runs a scene. The trace comes through a pipe, so nothing but strictly sequential writing would do.
+fn run(scene: &Path, mistake: Option<&str>) -> Output {
+    let mut command = sample();
+    command.arg("-s").arg(scene).args(["-d", "0", "-o", "/dev/stderr"]);
+    if let Some(mistake) = mistake {
+        command.args(["--mistake", mistake]);
+    }
+    command.output().expect("the sample starts")
+}
+
+fn trace(scene: &Path, mistake: Option<&str>) -> Vec<u8> {
+    run(scene, mistake).stderr
+}
+
+fn catalogue() -> Vec<Row> {
+    let output = sample().args(["--list", "--json"]).output().expect("the sample starts");
+    assert!(output.status.success());
+    let listing: Listing = serde_json::from_slice(&output.stdout).expect("valid JSON");
+    assert_eq!(listing.schema, "fosssim-sample/1");
+    listing.mistakes
+}
+
+/// All built-in scenes, in order.
+fn assets() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    let mut scenes = Vec::new();
+    for group in std::fs::read_dir(folder).expect("assets") {
+        let group = group.expect("a folder").path();
+        if group.is_dir() {
+            for file in std::fs::read_dir(group).expect("a group") {
+                scenes.push(file.expect("a file").path());
+            }
+        }
+    }
+    scenes.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
+    scenes.sort();
+    assert!(scenes.len() >= 20, "only {} scenes", scenes.len());
+    scenes
+}
+
+fn asset(name: &str) -> PathBuf {
+    assets().into_iter().find(|path| path.ends_with(name)).unwrap_or_else(|| panic!("no scene {name}"))
+}
+
+/// What the library's simulator records.
+fn reference(path: &Path) -> Vec<u8> {
+    let bytes = std::fs::read(path).expect("a readable scene");
+    let scene = original::read(&bytes).unwrap_or_else(|refusal| panic!("{}: {refusal}", path.display())).scene;
+    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut recorder).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    }
+    recorder.finish().expect("writing to memory").0
+}
+
+#[test]
+fn the_correct_sample_equals_the_simulator_on_every_built_in_scene() {
+    let different: Vec<PathBuf> =
+        assets().into_par_iter().filter(|scene| trace(scene, None) != reference(scene)).collect();
+    assert!(different.is_empty(), "{different:?}");
+}
+
+#[test]
+fn the_correct_sample_equals_the_original_on_every_scene_of_the_corpus() {
+    let Some(folder) = corpus::folder() else { return };
+    let mut entries = Vec::new();
+    for name in ["manifest.json", "manifest-earlier-milestones.json"] {
+        let text = std::fs::read_to_string(folder.join(name)).expect("a readable manifest");
+        entries.extend(serde_json::from_str::<Manifest>(&text).expect("a manifest").scenes);
+    }
+    let different: Vec<&str> = entries
+        .par_iter()
+        .filter(|entry| {
+            let digest = Sha256::digest(trace(&folder.join(&entry.scene_file), None));
+            let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+            digest != entry.sha256
+        })
+        .map(|entry| entry.scene.as_str())
+        .collect();
+    assert!(different.is_empty(), "{different:?}");
+    corpus::ran("the_correct_sample_equals_the_original_on_every_scene_of_the_corpus", entries.len());
+}
+
+#[test]
+fn the_catalogue_is_large_and_every_id_is_accepted() {
+    let rows = catalogue();
+    let count = |kind: &str| rows.iter().filter(|row| row.kind == kind).count();
+    assert!(count("wrong") >= 95 && count("variant") >= 14 && count("hostile") >= 12);
+    assert_eq!(rows.len(), count("wrong") + count("variant") + count("hostile"));
+    let ids: BTreeSet<&str> = rows.iter().map(|row| row.id.as_str()).collect();
+    assert_eq!(ids.len(), rows.len(), "an id stands for two rows");
+    let table = sample().arg("--list").output().expect("the sample starts").stdout;
+    let table = String::from_utf8(table).expect("text");
+    for row in &rows {
+        assert!(table.contains(&row.id) && table.contains(&row.explanation), "{}", row.id);
+    }
+    // A scene that does not exist is only noticed after the mistake was understood.
+    let refused: Vec<&str> = rows
+        .par_iter()
+        .filter(|row| !matches!(row.id.as_str(), "no-output" | "empty-trace" | "leaves-children"))
+        .filter(|row| {
+            let output = run(Path::new("no-such-scene.xml"), Some(&row.id));
+            output.status.code() != Some(1)
+        })
+        .map(|row| row.id.as_str())
+        .collect();
+    assert!(refused.is_empty(), "{refused:?}");
+}
+
+/// Scale and arithmetic change the logged bits, never what happens.
+#[test]
+fn every_variant_moves_everything_as_the_correct_sample_does() {
+    // The factor 1e-6 pushes real coefficients below the bound at which the course's root finder drops them.
+    let rows: Vec<Row> =
+        catalogue().into_iter().filter(|row| row.kind == "variant" && row.id != "scale-1e-6").collect();
+    let wrong: Vec<String> = assets()
+        .into_par_iter()
+        .flat_map_iter(|scene| {
+            let correct = states(&scene, None);
+            let rows = &rows;
+            rows.iter().filter_map(move |row| {
+                let variant = states(&scene, Some(&row.id));
+                let close = variant.len() == correct.len()
+                    && variant.iter().zip(&correct).all(|(ours, right)| (ours - right).abs() < 1e-9);
+                (!close).then(|| format!("{} in {}", row.id, scene.display()))
+            })
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// All positions and velocities of a trace, with everything else left out.
+fn states(path: &Path, mistake: Option<&str>) -> Vec<f64> {
+    let bytes = std::fs::read(path).expect("a readable scene");
+    let layout = Layout::of(&original::read(&bytes).expect("a scene").scene);
+    let trace = trace(path, mistake);
+    let mut rest = &trace[..];
+    let mut states = Vec::new();
+    while !rest.is_empty() {
+        let (state, lists) = rest.split_at(layout.state_bytes());
+        states.extend(state.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight bytes"))));
+        rest = lists;
+        if layout.impulses {
+            rest = &rest[4 + 36 * integer(rest)..];
+        }
+        if layout.polynomials {
+            let count = integer(rest);
+            rest = &rest[4..];
+            for _ in 0..count {
+                rest = &rest[4 + 8 * integer(rest)..];
+            }
+        }
+    }
+    states
+}
+
+fn integer(bytes: &[u8]) -> usize {
+    let value = i32::from_le_bytes(bytes[..4].try_into().expect("four bytes"));
+    usize::try_from(value).expect("a count")
+}
+
+#[test]
+fn the_mistake_may_come_from_the_environment_or_the_program_s_name() {
+    let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
+    let expected = trace(&scene, Some("pp-no-two"));
+    assert_ne!(expected, trace(&scene, None));
+
+    let mut by_variable = sample();
+    by_variable.arg("-s").arg(&scene).args(["-d", "0", "-o", "/dev/stderr"]);
+    by_variable.env("FOSSSIM_SAMPLE_MISTAKE", "pp-no-two");
+    assert_eq!(by_variable.output().expect("the sample starts").stderr, expected);
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let link = folder.path().join("fosssim-sample.pp-no-two");
+    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_fosssim-sample"), &link).expect("a link");
+    let mut by_name = Command::new(link);
+    by_name.arg("-s").arg(&scene).args(["-d", "0", "-o", "/dev/stderr"]).env("FOSSSIM_SAMPLE_MISTAKE", "scale-2");
+    assert_eq!(by_name.output().expect("the sample starts").stderr, expected, "the name wins over the variable");
+}
+
+#[test]
+fn faults_of_use_are_explained_and_end_with_status_2() {
+    let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
+    let scene = scene.to_str().expect("a path in UTF-8");
+    for (arguments, word) in [
+        (&["-d", "0"][..], "--scene"),
+        (&["-s", scene, "-d", "1"], "--display"),
+        (&["-s", scene, "-d", "0", "--mistake", "no-two"], "pp-no-two"),
+        (&["-s", scene, "-d", "0", "--mistake", "zzz"], "--list"),
+        (&["--json"], "--list"),
+        (&["-s", scene, "-d", "0", "--frobnicate"], "--frobnicate"),
+    ] {
+        let output = sample().args(arguments).output().expect("the sample starts");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(word), "{arguments:?}: {message}");
+    }
+    let output = sample().args(["-s", "no-such-scene.xml", "-d", "0"]).output().expect("the sample starts");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no-such-scene.xml"));
+}
+
+#[test]
+fn hostile_programs_end_as_the_catalogue_says() {
+    use std::os::unix::process::ExitStatusExt;
+    let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
+    let correct = trace(&scene, None);
+
+    let exit_one = run(&scene, Some("exit-one"));
+    assert_eq!((exit_one.status.code(), &exit_one.stderr), (Some(1), &correct));
+
+    let midway = run(&scene, Some("exit-midway"));
+    assert_eq!(midway.status.code(), Some(3));
+    assert!(midway.stderr.len() < correct.len() && correct.starts_with(&midway.stderr));
+
+    let crash = run(&scene, Some("crash-midway"));
+    assert_eq!(crash.status.signal(), Some(6), "an abort");
+
+    let trailing = run(&scene, Some("trailing-bytes"));
+    assert_eq!(trailing.stderr, [&correct[..], &[0; 8]].concat());
+
+    let truncated = run(&scene, Some("truncated-trace"));
+    assert!(truncated.status.success() && !truncated.stderr.is_empty() && truncated.stderr.len() < correct.len());
+
+    let nothing = run(&scene, Some("no-output"));
+    assert!(nothing.status.success() && nothing.stderr.is_empty());
+
+    let forged = run(&scene, Some("forged-verdict"));
+    assert!(String::from_utf8_lossy(&forged.stdout).contains("Overall success: Passed."));
+    assert_ne!(forged.stderr, correct, "its physics is wrong");
+}
+
+/// NaN positions would send the course's root finder round for ever; the sample says so and stops.
+#[test]
+fn a_run_that_would_never_end_stops_with_status_3() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("massless.xml");
+    // Without a mass its acceleration is 0 / 0.
+    let text = "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\
+        <collision type=\"continuous-time\"/><simplegravity fx=\"0\" fy=\"-1\"/>\
+        <particle m=\"0\" px=\"0\" py=\"5\" vx=\"1\" vy=\"0\" fixed=\"0\" radius=\"0.5\"/>\
+        <particle m=\"1\" px=\"-9\" py=\"0\" vx=\"0\" vy=\"0\" fixed=\"1\"/>\
+        <particle m=\"1\" px=\"9\" py=\"0\" vx=\"0\" vy=\"0\" fixed=\"1\"/><edge i=\"1\" j=\"2\"/></scene>";
+    std::fs::write(&scene, text).expect("a scene");
+    let output = sample().arg("-s").arg(&scene).args(["-d", "0"]).output().expect("the sample starts");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(message.contains("for ever"), "{message}");
+}
