@@ -4,10 +4,13 @@
 pub const MAX_COEFFICIENTS: usize = 6;
 
 /// A real polynomial, **highest power first**, after removal of the small leading coefficients.
+///
+/// The coefficients stand at the end of the storage, behind zeros: dropping a leading one moves nothing, and making a
+/// polynomial from an array copies a fixed number of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Polynomial {
     length: u8,
-    coefficients: [f64; MAX_COEFFICIENTS],
+    storage: [f64; MAX_COEFFICIENTS],
 }
 
 impl Polynomial {
@@ -19,7 +22,12 @@ impl Polynomial {
     #[inline]
     #[must_use]
     pub fn trimmed(coefficients: &[f64]) -> Self {
-        Self::untrimmed(trim(coefficients))
+        let mut polynomial = Self::untrimmed(coefficients);
+        let start = MAX_COEFFICIENTS - coefficients.len();
+        if start < MAX_COEFFICIENTS && is_small(polynomial.storage[start]) {
+            polynomial.drop_small();
+        }
+        polynomial
     }
 
     /// Takes the list as it is (the non-dropping build of later milestones).
@@ -30,16 +38,29 @@ impl Polynomial {
     #[must_use]
     pub fn untrimmed(coefficients: &[f64]) -> Self {
         let mut storage = [0.0; MAX_COEFFICIENTS];
-        storage[..coefficients.len()].copy_from_slice(coefficients);
+        storage[MAX_COEFFICIENTS - coefficients.len()..].copy_from_slice(coefficients);
         #[expect(clippy::cast_possible_truncation, reason = "at most six, else the copy above has panicked")]
-        Self { length: coefficients.len() as u8, coefficients: storage }
+        Self { length: coefficients.len() as u8, storage }
     }
 
     /// The coefficients, highest power first; empty when all were too small.
     #[inline]
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {
-        &self.coefficients[..usize::from(self.length)]
+        &self.storage[MAX_COEFFICIENTS - usize::from(self.length)..]
+    }
+
+    /// Kept apart from [`Polynomial::trimmed`], since it is rarely needed there.
+    #[cold]
+    fn drop_small(&mut self) {
+        while self.length > 0 {
+            let leading = &mut self.storage[MAX_COEFFICIENTS - usize::from(self.length)];
+            if !is_small(*leading) {
+                break;
+            }
+            *leading = 0.0;
+            self.length -= 1;
+        }
     }
 
     /// The value at `t`, see [`evaluate`].
@@ -57,11 +78,16 @@ impl Polynomial {
 pub fn trim(coefficients: &[f64]) -> &[f64] {
     let mut rest = coefficients;
     while let [first, others @ ..] = rest
-        && first.abs() < super::tolerances::LEADING_COEFFICIENT
+        && is_small(*first)
     {
         rest = others;
     }
     rest
+}
+
+#[inline]
+fn is_small(leading: f64) -> bool {
+    leading.abs() < super::tolerances::LEADING_COEFFICIENT
 }
 
 /// The value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, hence not positive).

@@ -13,9 +13,11 @@ pub(super) fn polynomials(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, radii: f64) ->
     let d = d2 - d1;
     let x = x2 - x1;
     let e = d1 - d2;
+    // `e` is `-d`, so `dot(e, e)` is `dot(d, d)` bit for bit; of `dot(e, x)` a zero's sign may differ.
+    let squared = d.dot(&d);
     [
-        Polynomial::trimmed(&[-d.dot(&d), -2.0 * x.dot(&d), radii * radii - x.dot(&x)]),
-        Polynomial::trimmed(&[-e.dot(&e), e.dot(&x)]),
+        Polynomial::trimmed(&[-squared, -2.0 * x.dot(&d), radii * radii - x.dot(&x)]),
+        Polynomial::trimmed(&[-squared, e.dot(&x)]),
     ]
 }
 
