@@ -1,1 +1,36 @@
-//! (follows)
+//! Runs one program under limits and says how it ended.
+//!
+//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and an [`Outcome`] says what the kernel
+//! saw. [`Job`] is what to run, [`Backend`] is how, [`Running`] is a program at work.
+//!
+//! How it works: the grader starts its own binary again with a hidden first argument ([`supervisor_main`]). That
+//! fresh, single-threaded process is the *supervisor*: it makes itself the reaper of everything below it, forks, shuts
+//! the child in (own session, other user when it is root, resource limits, no new privileges, Landlock, seccomp) and
+//! executes the program. It watches clocks, memory, output and the working folder, kills the whole tree, and reports
+//! only when every process is dead. The child dies with the supervisor, and the supervisor's tree dies with the
+//! grader, whatever kills them.
+//!
+//! What it never does: trust a path the program could change, read a result while the program lives, or go on
+//! silently when a required layer is missing ([`Backend::best`] refuses).
+
+mod backend;
+pub mod collect;
+mod decide;
+mod fake;
+mod job;
+mod layers;
+mod outcome;
+mod program;
+mod running;
+pub mod selftest;
+mod supervisor;
+mod sys;
+mod wire;
+
+pub use backend::{Backend, SandboxError, Supervisor};
+pub use fake::FakeRun;
+pub use job::{Job, Limits, Policy};
+pub use layers::{Layer, LayerReport, doctor};
+pub use outcome::{Captured, Ended, Outcome, StartProblem, Stream};
+pub use running::{Canceller, Running, TraceReader, TraceTooLong};
+pub use supervisor::supervisor_main;

@@ -5,5 +5,6 @@ mod parity;
 mod recordings;
 mod root_vectors;
 mod samples;
+mod sandbox;
 mod scenes_corpus;
 mod trace_props;

@@ -1,0 +1,139 @@
+//! What to run and within which limits.
+//!
+//! A [`Job`] is a description; nothing here touches the file system or a process.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What a program may do, beyond computing and writing into its working folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Policy {
+    /// A student's program: threads, but no other process and no second program.
+    Submission,
+    /// Compilers and build tools: they may start processes and the system's programs, within the same limits.
+    Tools,
+}
+
+/// The limits of one run. Every limit is always enforced; there is no "unlimited".
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Limits {
+    /// Processor time of all the program's threads and processes together.
+    pub cpu: Duration,
+    /// Time on the clock, from the start to the end.
+    pub wall: Duration,
+    /// Resident memory in bytes, of all processes together.
+    pub memory: u64,
+    /// Bytes of standard output, and separately of standard error.
+    pub output_bytes: u64,
+    /// Bytes through the trace pipe.
+    pub trace_bytes: u64,
+    /// Bytes on disk in the working folder (blocks in use, so that holes do not count), what was there at the start
+    /// included.
+    pub folder_bytes: u64,
+    /// Files and folders in the working folder, what was there at the start included.
+    pub folder_files: u64,
+    /// Threads and processes at one time.
+    pub processes: u32,
+    /// Descriptors that one process may hold.
+    pub open_files: u32,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        const MIB: u64 = 1 << 20;
+        Self {
+            cpu: Duration::from_secs(10),
+            wall: Duration::from_secs(30),
+            memory: 512 * MIB,
+            output_bytes: MIB,
+            trace_bytes: 256 * MIB,
+            folder_bytes: 256 * MIB,
+            folder_files: 2000,
+            processes: 64,
+            open_files: 64,
+        }
+    }
+}
+
+/// One program to run once.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Job {
+    pub(crate) program: PathBuf,
+    pub(crate) folder: PathBuf,
+    pub(crate) arguments: Vec<OsString>,
+    pub(crate) readable: Vec<PathBuf>,
+    pub(crate) trace_pipe: Option<String>,
+    pub(crate) policy: Policy,
+    pub(crate) environment: Vec<(OsString, OsString)>,
+    pub(crate) limits: Limits,
+}
+
+impl Job {
+    /// A job that runs `program` in the existing working folder `folder`, which the program may change at will.
+    ///
+    /// Standard input is empty. A relative `program` is looked up from the grader's current folder, never on `PATH`.
+    #[must_use]
+    pub fn new(program: impl Into<PathBuf>, folder: impl Into<PathBuf>) -> Self {
+        Self {
+            program: program.into(),
+            folder: folder.into(),
+            arguments: Vec::new(),
+            readable: Vec::new(),
+            trace_pipe: None,
+            policy: Policy::Submission,
+            environment: Vec::new(),
+            limits: Limits::default(),
+        }
+    }
+
+    /// The program's arguments, without its own name.
+    #[must_use]
+    pub fn arguments<A: Into<OsString>>(mut self, arguments: impl IntoIterator<Item = A>) -> Self {
+        self.arguments = arguments.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// Files and folders outside the working folder that the program may read (not change, not execute).
+    ///
+    /// When the grader is root the program runs as another user, so that these paths must be reachable by everybody.
+    #[must_use]
+    pub fn readable<P: Into<PathBuf>>(mut self, paths: impl IntoIterator<Item = P>) -> Self {
+        self.readable = paths.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// Makes `name` in the working folder a pipe to the grader: what the program writes there arrives at
+    /// [`Running::trace`](crate::sandbox::Running::trace) and never on disk. A program that removes or replaces the
+    /// pipe has written nothing. Without this, the program writes an ordinary file, for [`collect`](super::collect).
+    #[must_use]
+    pub fn trace_pipe(mut self, name: impl Into<String>) -> Self {
+        self.trace_pipe = Some(name.into());
+        self
+    }
+
+    /// What the program may do.
+    #[must_use]
+    pub fn policy(mut self, policy: Policy) -> Self {
+        self.policy = policy;
+        self
+    }
+
+    /// Environment variables, on top of the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`). The
+    /// grader's own environment never reaches the program.
+    #[must_use]
+    pub fn environment<N: Into<OsString>, V: Into<OsString>>(
+        mut self,
+        variables: impl IntoIterator<Item = (N, V)>,
+    ) -> Self {
+        self.environment = variables.into_iter().map(|(name, value)| (name.into(), value.into())).collect();
+        self
+    }
+
+    /// The limits.
+    #[must_use]
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.limits = limits;
+        self
+    }
+}

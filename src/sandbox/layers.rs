@@ -1,0 +1,253 @@
+//! The walls of the sandbox, and which of them hold on this host.
+//!
+//! Pure data: `doctor` and reports print it. A wall counts as active only when a probe process has put it up here.
+
+use std::sync::Arc;
+
+use super::backend::Supervisor;
+use super::wire::{Probe, Walls};
+
+/// One wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Layer {
+    /// Executing a program never gains privileges.
+    NoNewPrivileges,
+    /// Resource limits, clocks and counters.
+    Limits,
+    /// The supervisor adopts orphans, so that nothing outlives a run.
+    Reaper,
+    /// The list of allowed system calls (seccomp).
+    CallFilter,
+    /// Forbidden calls are named in the outcome.
+    NamedCalls,
+    /// Landlock's rules for files.
+    FileRules,
+    /// Landlock's rules for signals and abstract sockets.
+    Scopes,
+    /// Another user for every running program; only root can do this.
+    OwnUser,
+}
+
+impl Layer {
+    /// All of them, in the order of a report.
+    pub const ALL: [Self; 8] = [
+        Self::NoNewPrivileges,
+        Self::Limits,
+        Self::Reaper,
+        Self::CallFilter,
+        Self::NamedCalls,
+        Self::FileRules,
+        Self::Scopes,
+        Self::OwnUser,
+    ];
+
+    /// The name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NoNewPrivileges => "no new privileges",
+            Self::Limits => "resource limits",
+            Self::Reaper => "reaper of orphans",
+            Self::CallFilter => "system call filter",
+            Self::NamedCalls => "named violations",
+            Self::FileRules => "file rules (Landlock)",
+            Self::Scopes => "signal scope (Landlock)",
+            Self::OwnUser => "a user per program",
+        }
+    }
+}
+
+/// Whether one wall holds on this host.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LayerReport {
+    /// Which wall.
+    pub layer: Layer,
+    /// Whether it holds.
+    pub active: bool,
+    /// Whether this host may not grade without it.
+    pub required: bool,
+    /// What holds, or why it does not.
+    pub detail: String,
+    /// What to install or enable, when it does not hold and something can be done.
+    pub remedy: Option<&'static str>,
+}
+
+/// Which walls hold on this host, tried once by starting this very program as a supervisor.
+///
+/// The program must call [`supervisor_main`](super::supervisor_main) first of all. When not even the supervisor
+/// starts, every wall is reported as missing with that reason.
+#[must_use]
+pub fn doctor() -> Vec<LayerReport> {
+    match Supervisor::this_program().probe() {
+        Ok(probe) => reports(&probe),
+        Err(error) => Layer::ALL
+            .into_iter()
+            .map(|layer| LayerReport { layer, active: false, required: true, detail: error.to_string(), remedy: None })
+            .collect(),
+    }
+}
+
+/// The reports of a probe.
+pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
+    let landlock = probe.landlock.is_none();
+    let user = probe.root && probe.own_user.is_none();
+    let report = |layer, problem: Option<String>, held: &str, required, remedy| LayerReport {
+        layer,
+        active: problem.is_none(),
+        required,
+        remedy: problem.is_some().then_some(remedy),
+        detail: problem.unwrap_or_else(|| held.to_string()),
+    };
+    let scopes = match (landlock, probe.landlock_abi) {
+        (true, 6..) => None,
+        (true, abi) => Some(format!("Landlock here is version {abi}; signals are confined from version 6 on")),
+        (false, _) => Some("there is no Landlock".into()),
+    };
+    let own_user = if probe.root { probe.own_user.clone() } else { Some("the grader is not root".into()) };
+    vec![
+        report(
+            Layer::NoNewPrivileges,
+            probe.no_new_privileges.clone(),
+            "executing a program gains nothing",
+            true,
+            "use Linux 3.5 or newer",
+        ),
+        report(
+            Layer::Limits,
+            probe.limits.clone(),
+            "processor and clock time, memory, output, folder, processes",
+            true,
+            "allow setrlimit in the container's profile",
+        ),
+        report(
+            Layer::Reaper,
+            probe.reaper.clone(),
+            "nothing outlives a run",
+            true,
+            "allow prctl in the container's profile",
+        ),
+        report(
+            Layer::CallFilter,
+            probe.seccomp.clone(),
+            "an allow list; all other calls are refused",
+            true,
+            "use a kernel with CONFIG_SECCOMP_FILTER on x86_64 or aarch64, and allow seccomp in the container's profile",
+        ),
+        report(
+            Layer::NamedCalls,
+            probe.notify.clone(),
+            "a violation is reported with the call's name",
+            false,
+            "use Linux 5.5 or newer; until then a violation is reported without its name, and a program may execute \
+             itself again",
+        ),
+        report(
+            Layer::FileRules,
+            probe.landlock.clone(),
+            &format!("version {}", probe.landlock_abi),
+            !user,
+            if user {
+                "use Linux 5.13 or newer with landlock among the kernel's lsm=; until then programs can read what every \
+                 user can read: keep references at mode 0700"
+            } else {
+                "use Linux 5.13 or newer with landlock among the kernel's lsm=, or grade as root"
+            },
+        ),
+        report(
+            Layer::Scopes,
+            scopes,
+            "programs signal nobody but themselves",
+            false,
+            "use Linux 6.12 or newer; until then the system call filter alone confines signals",
+        ),
+        LayerReport {
+            layer: Layer::OwnUser,
+            active: user,
+            required: probe.root,
+            detail: own_user.clone().unwrap_or_else(|| "every running program has a user of its own".into()),
+            remedy: match (probe.root, own_user) {
+                (true, Some(_)) => {
+                    Some("grade as an ordinary user, or let root change its user (CAP_SETUID, CAP_SETGID, CAP_CHOWN)")
+                }
+                _ => None,
+            },
+        },
+    ]
+}
+
+/// The walls that the supervisor puts up, given the reports; `None` without the required set, with what is missing.
+pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
+    let missing: Vec<String> = reports
+        .iter()
+        .filter(|report| report.required && !report.active)
+        .map(|report| {
+            let remedy = report.remedy.map(|remedy| format!("; {remedy}")).unwrap_or_default();
+            format!("{}: {}{remedy}", report.layer.name(), report.detail)
+        })
+        .collect();
+    if !missing.is_empty() {
+        return Err(missing.join("\n"));
+    }
+    let active = |layer| reports.iter().any(|report| report.layer == layer && report.active);
+    Ok(Walls {
+        landlock: active(Layer::FileRules),
+        scopes: active(Layer::Scopes),
+        seccomp: active(Layer::CallFilter),
+        notify: active(Layer::NamedCalls),
+        own_user: active(Layer::OwnUser),
+    })
+}
+
+/// What a report says of a run without walls.
+pub(super) fn none() -> Arc<[LayerReport]> {
+    let off = |layer| LayerReport {
+        layer,
+        active: matches!(layer, Layer::Limits | Layer::Reaper),
+        required: false,
+        detail: match layer {
+            Layer::Limits => "processor and clock time, memory, output and folder only".into(),
+            Layer::Reaper => "nothing outlives a run".into(),
+            _ => "switched off on request".to_string(),
+        },
+        remedy: None,
+    };
+    Layer::ALL.map(off).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn healthy(root: bool) -> Probe {
+        Probe { root, landlock_abi: 7, ..Probe::default() }
+    }
+
+    #[test]
+    fn a_healthy_host_has_every_wall_that_it_can_have() {
+        let all = Walls { landlock: true, scopes: true, seccomp: true, notify: true, own_user: true };
+        assert_eq!(walls(&reports(&healthy(true))), Ok(all));
+        assert_eq!(walls(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
+        assert_eq!(reports(&healthy(true)).iter().map(|report| report.layer).collect::<Vec<_>>(), Layer::ALL);
+    }
+
+    #[test]
+    fn without_landlock_only_root_may_grade() {
+        let lacking = |root| Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(root) };
+        assert!(!walls(&reports(&lacking(true))).unwrap().landlock);
+        let missing = walls(&reports(&lacking(false))).unwrap_err();
+        assert!(missing.contains("file rules") && missing.contains("5.13"), "{missing}");
+    }
+
+    #[test]
+    fn root_that_cannot_change_its_user_is_refused() {
+        let bound = Probe { own_user: Some("invalid argument".into()), ..healthy(true) };
+        assert!(walls(&reports(&bound)).unwrap_err().contains("ordinary user"));
+    }
+
+    #[test]
+    fn an_old_landlock_confines_files_and_not_signals() {
+        let old = Probe { landlock_abi: 2, ..healthy(false) };
+        let walls = walls(&reports(&old)).unwrap();
+        assert!(walls.landlock && !walls.scopes);
+    }
+}

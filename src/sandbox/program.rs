@@ -1,0 +1,284 @@
+//! What kind of program a file is, read from its first bytes before anything is executed.
+//!
+//! The kernel's own answers are poor ("no such file or directory" for a missing loader, "exec format error" for a
+//! foreign processor), so the headers are read here: ELF class, machine, type, interpreter and the names in the
+//! dynamic string table. Every offset in a file is distrusted.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+use super::outcome::StartProblem;
+
+const ELF_MAGIC: &[u8] = b"\x7fELF";
+const PT_LOAD: u32 = 1;
+const PT_DYNAMIC: u32 = 2;
+const PT_INTERP: u32 = 3;
+const DT_STRTAB: u64 = 5;
+const DT_STRSZ: u64 = 10;
+/// Names that the runtimes of the address, thread and memory sanitisers define.
+const SANITISER_NAMES: [&[u8]; 4] = [b"__asan_init", b"__tsan_init", b"__msan_init", b"libasan.so"];
+/// No header, path or table of a sane program is longer than these.
+const LONGEST_PATH: u64 = 4096;
+const LONGEST_TABLE: u64 = 16 << 20;
+
+/// What the sandbox must know of a program before it starts it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Program {
+    /// Loaders and interpreters that the kernel executes on the way to it.
+    pub(super) executable: Vec<PathBuf>,
+    /// Whether it is a script.
+    pub(super) script: bool,
+    /// Whether it carries a sanitiser, which reserves terabytes of address space.
+    pub(super) sanitised: bool,
+}
+
+/// Looks at the file at `path`, following symbolic links.
+///
+/// # Errors
+///
+/// The reason why it cannot be started on this machine.
+pub(super) fn examine(path: &Path) -> Result<Program, StartProblem> {
+    let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::PermissionDenied => StartProblem::NotPermitted,
+        _ => StartProblem::NotFound,
+    })?;
+    if metadata.is_dir() {
+        return Err(StartProblem::IsFolder);
+    }
+    if !metadata.is_file() {
+        return Err(StartProblem::NotAFile);
+    }
+    if metadata.permissions().mode() & 0o111 == 0 {
+        return Err(StartProblem::NotExecutable);
+    }
+    let mut file = match File::open(path) {
+        Ok(file) => file,
+        // A program may be executable and not readable; then the kernel has to judge it.
+        Err(_) => return Ok(Program::default()),
+    };
+    let start = read_at(&mut file, 0, 256).unwrap_or_default();
+    if start.starts_with(ELF_MAGIC) {
+        elf(&mut file, &start)
+    } else if let Some(line) = start.strip_prefix(b"#!") {
+        script(line)
+    } else {
+        Err(StartProblem::NotAProgram)
+    }
+}
+
+/// The system's paths of a script's interpreter; for `#!/usr/bin/env NAME` also that of NAME.
+fn script(line: &[u8]) -> Result<Program, StartProblem> {
+    let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
+    let hint = if line.ends_with('\r') {
+        " (its lines end in CR LF: convert them with dos2unix)"
+    } else {
+        "; install it, or name another one"
+    };
+    let mut words = line.trim_end_matches('\r').split_whitespace();
+    let interpreter = words.next().ok_or(StartProblem::NoInterpreter)?;
+    let missing =
+        |name: &str| StartProblem::MissingInterpreter { interpreter: name.escape_default().to_string(), hint };
+    let mut executable = vec![existing(Path::new(interpreter)).ok_or_else(|| missing(interpreter))?];
+    if interpreter.ends_with("/env") {
+        let name = words.find(|word| !word.starts_with('-')).ok_or(StartProblem::NoInterpreter)?;
+        let found = ["/usr/bin", "/bin"].iter().find_map(|folder| existing(&Path::new(folder).join(name)));
+        executable.push(found.ok_or_else(|| missing(name))?);
+    }
+    for index in 0..executable.len() {
+        let mut file = File::open(&executable[index]).map_err(|_| StartProblem::NotPermitted)?;
+        let start = read_at(&mut file, 0, 256).unwrap_or_default();
+        if start.starts_with(ELF_MAGIC) {
+            executable.extend(elf(&mut file, &start)?.executable);
+        }
+    }
+    Ok(Program { executable, script: true, sanitised: false })
+}
+
+fn existing(path: &Path) -> Option<PathBuf> {
+    path.is_file().then(|| path.to_path_buf())
+}
+
+/// The facts of an ELF file whose first bytes are `start`.
+fn elf(file: &mut File, start: &[u8]) -> Result<Program, StartProblem> {
+    if start.get(4) == Some(&1) {
+        return Err(StartProblem::ThirtyTwoBit);
+    }
+    let half =
+        |offset: usize| start.get(offset..offset + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+    let (machine, here) = (half(18), this_machine());
+    if start.get(5) != Some(&1) || machine != here {
+        return Err(StartProblem::WrongMachine { machine: machine_name(machine), here: std::env::consts::ARCH });
+    }
+    match half(16) {
+        2 | 3 => {}
+        1 => return Err(StartProblem::NotLinked { what: "an object file" }),
+        4 => return Err(StartProblem::NotLinked { what: "a core dump" }),
+        _ => return Err(StartProblem::NotAProgram),
+    }
+    let mut program = Program::default();
+    let segments = segments(file, start);
+    if let Some(interpreter) = segments.iter().find(|segment| segment.kind == PT_INTERP) {
+        let bytes = read_at(file, interpreter.offset, interpreter.size.min(LONGEST_PATH)).unwrap_or_default();
+        let text = String::from_utf8_lossy(bytes.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned();
+        let loader = PathBuf::from(&text);
+        if !loader.is_file() {
+            return Err(StartProblem::MissingLoader { loader: text.escape_default().to_string() });
+        }
+        program.executable.push(loader);
+    }
+    program.sanitised =
+        dynamic_names(file, &segments).is_some_and(|table| SANITISER_NAMES.iter().any(|name| contains(&table, name)));
+    Ok(program)
+}
+
+/// A segment of the program header table.
+struct Segment {
+    kind: u32,
+    offset: u64,
+    address: u64,
+    size: u64,
+}
+
+fn segments(file: &mut File, start: &[u8]) -> Vec<Segment> {
+    let Some(offset) = word(start, 32) else { return Vec::new() };
+    let count = start.get(56..58).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+    let table = read_at(file, offset, u64::from(count.min(256)) * 56).unwrap_or_default();
+    let segment = |entry: &[u8]| {
+        let kind = u32::from_le_bytes(entry.get(..4)?.try_into().ok()?);
+        Some(Segment { kind, offset: word(entry, 8)?, address: word(entry, 16)?, size: word(entry, 32)? })
+    };
+    table.chunks_exact(56).filter_map(segment).collect()
+}
+
+/// The string table of the dynamic section: names of libraries and of symbols that are looked up at run time.
+fn dynamic_names(file: &mut File, segments: &[Segment]) -> Option<Vec<u8>> {
+    let dynamic = segments.iter().find(|segment| segment.kind == PT_DYNAMIC)?;
+    let entries = read_at(file, dynamic.offset, dynamic.size.min(LONGEST_TABLE))?;
+    let value = |tag: u64| entries.chunks_exact(16).find(|entry| word(entry, 0) == Some(tag)).and_then(|e| word(e, 8));
+    let (address, size) = (value(DT_STRTAB)?, value(DT_STRSZ)?);
+    let holds = |segment: &&Segment| {
+        segment.kind == PT_LOAD && address >= segment.address && address - segment.address < segment.size
+    };
+    let load = segments.iter().find(holds)?;
+    read_at(file, load.offset.checked_add(address - load.address)?, size.min(LONGEST_TABLE))
+}
+
+fn word(bytes: &[u8], offset: usize) -> Option<u64> {
+    Some(u64::from_le_bytes(bytes.get(offset..offset + 8)?.try_into().ok()?))
+}
+
+/// Up to `length` bytes at `offset`; fewer at the end of the file.
+fn read_at(file: &mut File, offset: u64, length: u64) -> Option<Vec<u8>> {
+    file.seek(SeekFrom::Start(offset)).ok()?;
+    let mut bytes = Vec::new();
+    file.take(length).read_to_end(&mut bytes).ok()?;
+    Some(bytes)
+}
+
+fn contains(table: &[u8], name: &[u8]) -> bool {
+    table.windows(name.len()).any(|window| window == name)
+}
+
+fn this_machine() -> u16 {
+    match std::env::consts::ARCH {
+        "aarch64" => 183,
+        "riscv64" => 243,
+        _ => 62,
+    }
+}
+
+fn machine_name(machine: u16) -> String {
+    match machine {
+        3 => "x86 (32 bits)".into(),
+        8 => "MIPS".into(),
+        21 => "PowerPC".into(),
+        22 => "S/390".into(),
+        40 => "ARM (32 bits)".into(),
+        62 => "x86_64".into(),
+        183 => "aarch64 (64-bit ARM)".into(),
+        243 => "RISC-V".into(),
+        other => format!("another processor (ELF machine {other})"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(name: &str, bytes: &[u8], mode: u32) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
+        (folder, path)
+    }
+
+    fn header(class: u8, kind: u8, machine: u8) -> Vec<u8> {
+        let mut bytes = b"\x7fELF\x02\x01\x01".to_vec();
+        bytes.resize(64, 0);
+        (bytes[4], bytes[16], bytes[18]) = (class, kind, machine);
+        bytes
+    }
+
+    #[test]
+    fn what_is_not_a_program_is_said_to_be_what_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(examine(folder.path()), Err(StartProblem::IsFolder));
+        assert_eq!(examine(&folder.path().join("none")), Err(StartProblem::NotFound));
+        assert_eq!(examine(Path::new("/dev/null")), Err(StartProblem::NotAFile));
+        let (_kept, path) = written("a", b"#!/bin/sh\n", 0o644);
+        assert_eq!(examine(&path), Err(StartProblem::NotExecutable));
+        let (_kept, path) = written("a", b"hello", 0o755);
+        assert_eq!(examine(&path), Err(StartProblem::NotAProgram));
+        let (_kept, path) = written("a", b"", 0o755);
+        assert_eq!(examine(&path), Err(StartProblem::NotAProgram));
+    }
+
+    #[test]
+    fn foreign_and_unlinked_files_are_named() {
+        let here = this_machine() as u8;
+        let (_kept, path) = written("a", &header(1, 2, 3), 0o755);
+        assert_eq!(examine(&path), Err(StartProblem::ThirtyTwoBit));
+        let (_kept, path) = written("a", &header(2, 2, 21), 0o755);
+        assert!(matches!(examine(&path), Err(StartProblem::WrongMachine { machine, .. }) if machine == "PowerPC"));
+        let (_kept, path) = written("a", &header(2, 1, here), 0o755);
+        assert_eq!(examine(&path), Err(StartProblem::NotLinked { what: "an object file" }));
+        let (_kept, path) = written("a", &header(2, 2, here), 0o755);
+        assert_eq!(examine(&path), Ok(Program::default()), "a static program without segments is the kernel's matter");
+    }
+
+    #[test]
+    fn offsets_out_of_the_file_are_harmless() {
+        let mut bytes = header(2, 3, this_machine() as u8);
+        bytes[32..40].copy_from_slice(&u64::MAX.to_le_bytes());
+        bytes[56..58].copy_from_slice(&u16::MAX.to_le_bytes());
+        let (_kept, path) = written("a", &bytes, 0o755);
+        assert_eq!(examine(&path), Ok(Program::default()));
+    }
+
+    #[test]
+    fn scripts_name_their_interpreter() {
+        let (_kept, path) = written("a", b"#!\n", 0o755);
+        assert_eq!(examine(&path), Err(StartProblem::NoInterpreter));
+        let (_kept, path) = written("a", b"#!/no/such/shell -e\n", 0o755);
+        assert!(
+            matches!(examine(&path), Err(StartProblem::MissingInterpreter { interpreter, .. }) if interpreter == "/no/such/shell")
+        );
+        let (_kept, path) = written("a", b"#!/no/such/shell\r\n", 0o755);
+        assert!(
+            matches!(examine(&path), Err(StartProblem::MissingInterpreter { hint, .. }) if hint.contains("dos2unix"))
+        );
+        let (_kept, path) = written("a", b"#! /bin/sh -e\n", 0o755);
+        let program = examine(&path).unwrap();
+        assert!(program.script && program.executable[0] == Path::new("/bin/sh"));
+    }
+
+    #[test]
+    fn a_dynamic_program_brings_its_loader() {
+        let program = examine(Path::new("/proc/self/exe")).unwrap();
+        assert!(!program.script && !program.sanitised);
+        assert!(program.executable.iter().all(|loader| loader.is_file()));
+    }
+}

@@ -1,0 +1,1 @@
+//! Runs the attack suite on the user's machine (follows).

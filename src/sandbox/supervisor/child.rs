@@ -1,0 +1,199 @@
+//! The child's way from the fork to the program: every wall goes up, in the order in which it still can.
+//!
+//! Nothing here returns to the supervisor's code. A step that fails is told to the supervisor through the status
+//! socket, which closes by itself when the program has started.
+
+use std::ffi::CString;
+use std::io::{self, Write};
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+
+use landlock::RulesetCreated;
+
+use super::{filter, walls};
+use crate::sandbox::sys;
+use crate::sandbox::wire::{self, Failure, Order, Raw};
+
+/// The stage whose failure is the program's and not ours.
+pub(super) const EXECUTE: &str = "execute the program";
+/// Announces that a seccomp listener comes along.
+pub(super) const LISTENER: u8 = b'L';
+
+/// All that the child needs, prepared by the supervisor.
+pub(super) struct Plan {
+    pub(super) order: Order,
+    pub(super) supervisor: u32,
+    pub(super) folder: OwnedFd,
+    /// The program, opened while we could still reach it, for a user who cannot.
+    pub(super) opened: Option<OwnedFd>,
+    pub(super) rules: Option<RulesetCreated>,
+    pub(super) user: Option<u32>,
+    pub(super) input: OwnedFd,
+    pub(super) output: OwnedFd,
+    pub(super) error: OwnedFd,
+    pub(super) status: UnixStream,
+}
+
+/// Becomes the program.
+pub(super) fn become_program(mut plan: Plan) -> ! {
+    // Written as a file, because the filter knows no socket calls.
+    let mut status = match plan.status.as_fd().try_clone_to_owned() {
+        Ok(status) => std::fs::File::from(status),
+        Err(_) => sys::exit_now(125),
+    };
+    let failure = match prepare(&mut plan) {
+        Err(failure) => failure,
+        Ok((arguments, environment)) => Failure::new(EXECUTE, &execute(&plan, &arguments, &environment)),
+    };
+    // The supervisor waits for this message or for the end of the program; without readers there is nobody to tell.
+    let _ = serde_json::to_writer(&mut status, &failure).map(|()| status.flush());
+    sys::exit_now(125)
+}
+
+type Strings = Vec<CString>;
+
+/// Puts up every wall; the answer is the program's arguments and environment.
+fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
+    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+    sys::new_session().map_err(stage("start a session"))?;
+    for (number, fd) in [(0, &plan.input), (1, &plan.output), (2, &plan.error)] {
+        sys::duplicate_to(fd.as_raw_fd(), number).map_err(stage("connect the standard streams"))?;
+    }
+    sys::default_signals();
+    sys::file_mask(0o022);
+    sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
+    sys::first_to_go();
+    limits(&plan.order, plan.user.is_some()).map_err(stage("set the resource limits"))?;
+    if let Some(user) = plan.user {
+        sys::switch_user(user).map_err(stage("become the sandbox's user"))?;
+    }
+    // Changing the user forgets the wish to die, so that it comes after; a parent that died before it is noticed here.
+    sys::die_with_parent().map_err(stage("bind the program's life to the supervisor's"))?;
+    if std::os::unix::process::parent_id() != plan.supervisor {
+        sys::exit_now(125);
+    }
+    let strings = (arguments(&plan.order), environment(&plan.order));
+    let strings = match strings {
+        (Ok(arguments), Ok(environment)) => (arguments, environment),
+        _ => return Err(Failure { stage: "pass text with a NUL byte".into(), errno: libc::EINVAL }),
+    };
+    for raw in &plan.order.readable {
+        if !c_string(raw).is_ok_and(|path| sys::accessible(&path, libc::R_OK)) {
+            let stage = format!("let the program read {}", wire::path(raw).display());
+            return Err(Failure { stage, errno: libc::EACCES });
+        }
+    }
+    sys::no_new_privileges().map_err(stage("give up privileges"))?;
+    if let Some(rules) = plan.rules.take() {
+        let rules = walls::add_own_entry(rules).map_err(stage("prepare Landlock"))?;
+        walls::enforce(rules).map_err(stage("enforce Landlock"))?;
+    }
+    sys::close_on_execute().map_err(stage("close descriptors"))?;
+    if plan.order.walls.seccomp {
+        filter_calls(plan).map_err(stage("install the system call filter"))?;
+    }
+    Ok(strings)
+}
+
+/// The resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
+fn limits(order: &Order, own_user: bool) -> io::Result<()> {
+    const SPARE_MEMORY: u64 = 512 << 20;
+    const SPARE_SECONDS: u64 = 2;
+    const SPARE_PROCESSES: u64 = 16;
+    sys::limit(libc::RLIMIT_CORE, 0)?;
+    sys::limit(libc::RLIMIT_FSIZE, order.folder_bytes)?;
+    sys::limit(libc::RLIMIT_NOFILE, u64::from(order.open_files))?;
+    sys::limit(libc::RLIMIT_CPU, order.cpu_micros.div_ceil(1_000_000) + SPARE_SECONDS)?;
+    sys::limit(libc::RLIMIT_MEMLOCK, 64 << 10)?;
+    sys::limit(libc::RLIMIT_MSGQUEUE, 0)?;
+    if !order.sanitised {
+        // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
+        sys::limit(libc::RLIMIT_AS, order.memory.saturating_mul(2).saturating_add(SPARE_MEMORY))?;
+    }
+    if own_user {
+        // The count is per user, so that it means something only for a user of the program's own.
+        sys::limit(libc::RLIMIT_NPROC, u64::from(order.processes) + SPARE_PROCESSES)?;
+    }
+    Ok(())
+}
+
+/// Installs the filters and hands the listener to the supervisor.
+fn filter_calls(plan: &Plan) -> io::Result<()> {
+    let walls = plan.order.walls;
+    let purpose = filter::Purpose {
+        tools: plan.order.tools,
+        announce: walls.notify,
+        // Tools signal their own children, which Landlock's scope or the own user tell from others.
+        own_process: (!plan.order.tools || !(walls.scopes || walls.own_user)).then(|| std::process::id() as i32),
+    };
+    for (index, program) in filter::filters(purpose)?.iter().enumerate() {
+        let listener = sys::install_filter(program, walls.notify && index == 0)?;
+        if let Some(listener) = listener {
+            sys::send_descriptor(&plan.status, LISTENER, listener.as_fd())?;
+        }
+    }
+    Ok(())
+}
+
+/// Executes the program by its path, or by the open file when the path is closed to the sandbox's user. Returns only
+/// the error.
+fn execute(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
+    let Ok(path) = c_string(&plan.order.program) else { return io::Error::from_raw_os_error(libc::EINVAL) };
+    let error = sys::execute(&path, arguments, environment);
+    match &plan.opened {
+        Some(file) if error.raw_os_error() == Some(libc::EACCES) => {
+            sys::execute_open(file.as_fd(), arguments, environment)
+        }
+        _ => error,
+    }
+}
+
+fn arguments(order: &Order) -> io::Result<Strings> {
+    [&order.program].into_iter().chain(&order.arguments).map(c_string).collect()
+}
+
+/// The few variables that every program gets, then those of the job.
+fn environment(order: &Order) -> io::Result<Strings> {
+    let folder = c_string(&order.folder)?;
+    // A folder whose parents are closed to the sandbox's user is reached from within, as the current one.
+    let home = if sys::accessible(&folder, libc::W_OK | libc::X_OK) { order.folder.clone() } else { b".".to_vec() };
+    let mut variables: Vec<(Raw, Raw)> = vec![
+        (b"PATH".to_vec(), b"/usr/local/bin:/usr/bin:/bin".to_vec()),
+        (b"LC_ALL".to_vec(), b"C".to_vec()),
+        (b"HOME".to_vec(), home.clone()),
+        (b"TMPDIR".to_vec(), home),
+    ];
+    if order.sanitised {
+        // The leak check starts a process that traces its parent, which no filter allows.
+        variables.push((b"ASAN_OPTIONS".to_vec(), b"detect_leaks=0".to_vec()));
+    }
+    for (name, value) in &order.environment {
+        variables.retain(|(known, _)| known != name);
+        variables.push((name.clone(), value.clone()));
+    }
+    variables.into_iter().map(|(name, value)| c_string(&[name, value].join(&b'='))).collect()
+}
+
+fn c_string(raw: &Raw) -> io::Result<CString> {
+    CString::new(raw.as_slice()).map_err(io::Error::other)
+}
+
+/// A copy of the program that any user may execute: the open file itself, or one in memory when its permission bits
+/// are for the owner only.
+pub(super) fn executable_copy(program: std::fs::File) -> io::Result<OwnedFd> {
+    use std::os::unix::fs::PermissionsExt;
+    if program.metadata()?.permissions().mode() & 0o001 != 0 {
+        return Ok(program.into());
+    }
+    let memory = sys::memory_file()?;
+    let mut copy = std::fs::File::from(memory);
+    io::copy(&mut io::BufReader::new(program), &mut copy)?;
+    copy.set_permissions(std::fs::Permissions::from_mode(0o555))?;
+    // A file that is open for writing cannot be executed: open it again for reading only.
+    let again = std::fs::File::open(self_descriptor(copy.as_fd()))?;
+    Ok(again.into())
+}
+
+fn self_descriptor(fd: BorrowedFd<'_>) -> String {
+    format!("/proc/self/fd/{}", fd.as_raw_fd())
+}

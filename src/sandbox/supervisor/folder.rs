@@ -1,0 +1,140 @@
+//! The working folder as the supervisor sees it: how much is in it, and whose it is.
+//!
+//! The program changes the folder while we look. Folders are therefore opened by descriptor, without following links,
+//! and nothing here fails because an entry has gone meanwhile.
+
+use std::ffi::CString;
+use std::fs::Metadata;
+use std::io;
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::{FileTypeExt, MetadataExt};
+use std::path::Path;
+
+use crate::sandbox::sys;
+
+/// Nobody nests folders deeper than this by accident.
+const DEEPEST: u32 = 32;
+/// Blocks that `stat` counts in.
+const BLOCK: u64 = 512;
+
+/// What a folder holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Contents {
+    /// Bytes on disk.
+    pub(super) bytes: u64,
+    /// Files and folders.
+    pub(super) files: u64,
+    /// Whether part of it could not be counted: too deep, closed to us, or beyond the limits.
+    pub(super) over: bool,
+}
+
+/// Counts the folder's contents and stops as soon as a limit is passed. Pipes are not counted.
+pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> Contents {
+    let mut contents = Contents::default();
+    let whole = walk(folder, 0, &mut |_, metadata| {
+        if !metadata.file_type().is_fifo() {
+            contents.bytes += metadata.blocks() * BLOCK;
+            contents.files += 1;
+        }
+        contents.bytes <= most_bytes && contents.files <= most_files
+    });
+    contents.over = !whole;
+    contents
+}
+
+/// Bytes of files that the process holds open and that have no name any more.
+pub(super) fn nameless_bytes(pid: i32) -> u64 {
+    let entries = std::fs::read_dir(format!("/proc/{pid}/fd")).into_iter().flatten().flatten();
+    let open = entries.filter_map(|entry| std::fs::metadata(entry.path()).ok());
+    open.filter(|metadata| metadata.is_file() && metadata.nlink() == 0).map(|metadata| metadata.blocks() * BLOCK).sum()
+}
+
+/// Gives the folder and all in it to a user and group: folders, pipes, and files that have no second name (which
+/// might lie elsewhere). Only called while no process of the program is alive.
+pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
+    walk(folder, 0, &mut |path, metadata| {
+        let kind = metadata.file_type();
+        if kind.is_dir() || kind.is_fifo() || (kind.is_file() && metadata.nlink() == 1) {
+            let name = path.file_name().and_then(|name| CString::new(name.as_bytes()).ok());
+            let parent = path.parent().and_then(|parent| std::fs::File::open(parent).ok());
+            if let (Some(name), Some(parent)) = (name, parent)
+                && let Ok(opened) = sys::open_beneath(parent.as_fd(), &name, libc::O_PATH)
+            {
+                // An entry that cannot be given stays as it is; the program then cannot change it.
+                let _ = sys::change_owner(opened.as_fd(), user, group);
+            }
+        }
+        true
+    });
+    sys::change_owner(folder, user, group)
+}
+
+/// Visits everything beneath the folder until the visitor says stop. The answer is whether everything was visited.
+/// Paths lead through `/proc/self/fd` and stay valid as long as the visit.
+fn walk(folder: BorrowedFd<'_>, depth: u32, visit: &mut dyn FnMut(&Path, &Metadata) -> bool) -> bool {
+    let Ok(entries) = std::fs::read_dir(format!("/proc/self/fd/{}", folder.as_raw_fd())) else { return false };
+    for entry in entries {
+        let Ok(entry) = entry else { return false };
+        let path = entry.path();
+        let Ok(metadata) = path.symlink_metadata() else { continue };
+        if !visit(&path, &metadata) {
+            return false;
+        }
+        if !metadata.is_dir() {
+            continue;
+        }
+        let Ok(name) = CString::new(entry.file_name().as_bytes()) else { return false };
+        let inner = match sys::open_beneath(folder, &name, libc::O_RDONLY | libc::O_DIRECTORY) {
+            Ok(inner) => inner,
+            Err(error) if matches!(error.raw_os_error(), Some(libc::ENOENT | libc::ENOTDIR | libc::ELOOP)) => continue,
+            Err(_) => return false,
+        };
+        if depth == DEEPEST || !walk(inner.as_fd(), depth + 1, visit) {
+            return false;
+        }
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn opened(folder: &tempfile::TempDir) -> std::fs::File {
+        std::fs::File::open(folder.path()).unwrap()
+    }
+
+    #[test]
+    fn bytes_on_disk_and_entries_are_counted_at_every_depth() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(folder.path().join("a/b")).unwrap();
+        std::fs::write(folder.path().join("a/b/file"), vec![1; 100_000]).unwrap();
+        std::os::unix::fs::symlink("/usr", folder.path().join("link")).unwrap();
+        let contents = measure(opened(&folder).as_fd(), 1 << 30, 100);
+        assert_eq!(contents.files, 4, "two folders, a file, a link that is not followed");
+        assert!(!contents.over);
+        let contents = measure(opened(&folder).as_fd(), 1 << 30, 3);
+        assert!(contents.over && contents.files == 4);
+    }
+
+    #[test]
+    fn holes_do_not_count_and_depth_has_an_end() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::File::create(folder.path().join("sparse")).unwrap().set_len(1 << 40).unwrap();
+        assert!(!measure(opened(&folder).as_fd(), 1 << 20, 100).over);
+        std::fs::create_dir_all(folder.path().join("x/".repeat(40))).unwrap();
+        assert!(measure(opened(&folder).as_fd(), 1 << 20, 100).over);
+    }
+
+    #[test]
+    fn a_removed_file_that_is_still_open_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("gone");
+        let mut file = std::fs::File::create(&path).unwrap();
+        io::Write::write_all(&mut file, &vec![1; 1 << 20]).unwrap();
+        file.sync_all().unwrap();
+        std::fs::remove_file(&path).unwrap();
+        assert!(nameless_bytes(std::process::id() as i32) >= 1 << 20);
+    }
+}

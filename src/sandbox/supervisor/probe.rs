@@ -1,0 +1,84 @@
+//! Tries every wall once, in a child that then ends, and reports what the kernel said.
+
+use std::io;
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+use std::process::ExitCode;
+
+use super::{filter, slot, walls};
+use crate::sandbox::sys::{self, Fork};
+use crate::sandbox::wire::{self, Probe};
+
+/// The first kernel interface whose rules also confine signals and abstract sockets.
+const SCOPES_SINCE: i32 = 6;
+
+/// Writes a [`Probe`] to standard output.
+pub(super) fn main() -> ExitCode {
+    match probe().and_then(|probe| wire::send(io::stdout(), &probe)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(_) => ExitCode::from(1),
+    }
+}
+
+fn probe() -> io::Result<Probe> {
+    let root = sys::user() == 0;
+    let mut probe = Probe { root, landlock_abi: sys::landlock_version(), ..Probe::default() };
+    probe.reaper = why(sys::become_reaper());
+    let slot = if root { slot::take().map(Some) } else { Ok(None) };
+    let user = slot.as_ref().ok().and_then(|slot| slot.as_ref()).map(|slot| slot.user);
+    if let Err(error) = &slot {
+        probe.own_user = Some(error.to_string());
+    }
+    let (parent, child) = UnixStream::pair()?;
+    match sys::fork()? {
+        Fork::Child => {
+            drop(parent);
+            let tried = try_walls(probe, user);
+            // Written as a file, because the filter knows no socket calls. A parent that is gone needs no answer.
+            let _ = wire::send(std::fs::File::from(OwnedFd::from(child)), &tried);
+            sys::exit_now(0)
+        }
+        Fork::Parent(_) => {
+            drop(child);
+            let answer = wire::receive(&parent);
+            while !matches!(sys::reap(), Err(_) | Ok(Some(_))) {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+            answer
+        }
+    }
+}
+
+/// Puts up one wall after the other.
+fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
+    probe.limits = why(sys::limit(libc::RLIMIT_CORE, 0).and_then(|()| sys::limit(libc::RLIMIT_FSIZE, 1 << 30)));
+    if let Some(user) = user {
+        probe.own_user = why(sys::switch_user(user));
+    }
+    probe.no_new_privileges = why(sys::no_new_privileges());
+    probe.landlock = match probe.landlock_abi {
+        0 => Some("the kernel has no Landlock, or it is switched off".into()),
+        version => why(walls::nothing(version >= SCOPES_SINCE).and_then(walls::enforce)),
+    };
+    let filters = |announce| {
+        filter::filters(filter::Purpose { tools: false, announce, own_process: Some(std::process::id() as i32) })
+    };
+    let install = || -> io::Result<()> {
+        // The announcing filter goes first, as in a real run; the next probe below only adds to it.
+        for program in filters(false)? {
+            sys::install_filter(&program, false)?;
+        }
+        Ok(())
+    };
+    let announce = || -> io::Result<()> {
+        let listener = sys::install_filter(&filters(true)?[0], true)?;
+        listener.map(|listener| listener.as_fd().try_clone_to_owned()).transpose().map(drop)
+    };
+    probe.notify = why(announce());
+    probe.seccomp = why(install());
+    probe
+}
+
+fn why(result: io::Result<()>) -> Option<String> {
+    result.err().map(|error| error.to_string())
+}

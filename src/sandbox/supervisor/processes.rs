@@ -1,0 +1,171 @@
+//! What `/proc` says about the processes below us, and how they are ended.
+
+use std::time::{Duration, Instant};
+
+use crate::sandbox::sys;
+
+/// One line of `/proc/PID/stat`, as far as it matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Stat {
+    pid: i32,
+    state: u8,
+    parent: i32,
+    session: i32,
+    /// Processor time of the process and of its reaped children, in ticks of 10 ms.
+    ticks: u64,
+    threads: u64,
+    resident_pages: u64,
+}
+
+/// What a group of processes uses together.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Usage {
+    /// Processor time of those that live, and of their reaped children.
+    pub(super) cpu: Duration,
+    /// Resident memory in bytes.
+    pub(super) memory: u64,
+    /// Threads.
+    pub(super) threads: u64,
+}
+
+/// What the process `pid` uses; with `tree`, it and all other descendants of this process. `/proc` counts time in
+/// hundredths of a second on every Linux.
+pub(super) fn usage(pid: i32, tree: bool) -> Usage {
+    let mut usage = Usage::default();
+    let page = sys::page_size();
+    let mut add = |stat: &Stat| {
+        usage.cpu += Duration::from_millis(10 * stat.ticks);
+        usage.memory += stat.resident_pages * page;
+        usage.threads += stat.threads;
+    };
+    if tree {
+        descendants().iter().for_each(&mut add);
+    } else if let Some(stat) = read(pid) {
+        add(&stat);
+    }
+    usage
+}
+
+/// The processes of a user, by the ids that `/proc` entries belong to.
+pub(super) fn of_user(user: u32) -> Vec<i32> {
+    use std::os::unix::fs::MetadataExt;
+    let owned = |pid: &i32| std::fs::metadata(format!("/proc/{pid}")).is_ok_and(|metadata| metadata.uid() == user);
+    all().filter(owned).collect()
+}
+
+/// Ends every descendant and everything that runs as `user`, reaping as it goes. The answer is how many would not go.
+///
+/// `reaped` is told of every process that was reaped.
+pub(super) fn end_all(user: Option<u32>, mut reaped: impl FnMut(sys::Reaped)) -> u32 {
+    const PATIENCE: Duration = Duration::from_secs(10);
+    let start = Instant::now();
+    loop {
+        let mut victims: Vec<i32> = descendants().iter().map(|stat| stat.pid).collect();
+        victims.extend(user.into_iter().flat_map(of_user));
+        for &pid in &victims {
+            // It may have gone by itself meanwhile; the next round sees.
+            let _ = sys::kill(pid, libc::SIGKILL);
+        }
+        loop {
+            match sys::reap() {
+                Ok(Some(process)) => reaped(process),
+                // No child is left: whoever is alive by name only is gone, too.
+                Err(_) if user.is_none_or(|user| of_user(user).is_empty()) => return 0,
+                _ => break,
+            }
+        }
+        if start.elapsed() > PATIENCE {
+            return u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1);
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Ends what a lost supervisor may have left: the processes of its child's session and those of the child's own user.
+pub(in crate::sandbox) fn end_orphans(session: i32, user: Option<u32>) {
+    const ROUNDS: u32 = 1000;
+    for _ in 0..ROUNDS {
+        let mut victims: Vec<i32> = all()
+            .filter_map(read)
+            .filter(|stat| stat.session == session && stat.state != b'Z')
+            .map(|stat| stat.pid)
+            .collect();
+        victims.extend(user.into_iter().flat_map(of_user));
+        if victims.is_empty() {
+            return;
+        }
+        for pid in victims {
+            // It may have gone by itself meanwhile; the next round sees.
+            let _ = sys::kill(pid, libc::SIGKILL);
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// All living descendants of this process. As their reaper it is an ancestor even of those whose parents have died.
+fn descendants() -> Vec<Stat> {
+    let mut stats: Vec<Stat> = all().filter_map(read).collect();
+    let mut family = vec![std::process::id() as i32];
+    let mut found = Vec::new();
+    // Parents need not have smaller numbers than their children: repeat until nobody is added.
+    loop {
+        let (mut mine, rest): (Vec<Stat>, Vec<Stat>) = stats.iter().partition(|stat| family.contains(&stat.parent));
+        if mine.is_empty() {
+            break;
+        }
+        family = mine.iter().map(|stat| stat.pid).collect();
+        mine.retain(|stat| stat.state != b'Z');
+        found.extend(mine);
+        stats = rest;
+    }
+    found
+}
+
+/// All process ids.
+fn all() -> impl Iterator<Item = i32> {
+    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+}
+
+fn read(pid: i32) -> Option<Stat> {
+    parse(&std::fs::read(format!("/proc/{pid}/stat")).ok()?)
+}
+
+/// Reads the line. The name in parentheses may hold anything, parentheses and newlines included, so that the fields
+/// count from the last closing one.
+fn parse(line: &[u8]) -> Option<Stat> {
+    let end = line.iter().rposition(|&byte| byte == b')')?;
+    let pid = std::str::from_utf8(line.split(|&byte| byte == b' ').next()?).ok()?.parse().ok()?;
+    let fields: Vec<&str> = std::str::from_utf8(&line[end + 1..]).ok()?.split_ascii_whitespace().collect();
+    let number = |index: usize| fields.get(index).and_then(|field| field.parse::<u64>().ok());
+    Some(Stat {
+        pid,
+        state: *fields.first()?.as_bytes().first()?,
+        parent: fields.get(1)?.parse().ok()?,
+        session: fields.get(3)?.parse().ok()?,
+        ticks: number(11)? + number(12)? + number(13)? + number(14)?,
+        threads: number(17)?,
+        resident_pages: number(21)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_cannot_forge_the_fields() {
+        let line = b"42 (a) Z 1 (x\n) S 7 42 43 0 -1 4194304 90 0 0 0 3 4 5 6 20 0 2 0 100 8192000 512 184 rest";
+        let stat = parse(line).unwrap();
+        assert_eq!(
+            stat,
+            Stat { pid: 42, state: b'S', parent: 7, session: 43, ticks: 18, threads: 2, resident_pages: 512 }
+        );
+    }
+
+    #[test]
+    fn this_process_is_seen_to_use_memory() {
+        let usage = usage(std::process::id() as i32, false);
+        assert!(usage.memory > 100_000 && usage.threads >= 1);
+    }
+}

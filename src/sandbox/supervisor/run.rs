@@ -1,0 +1,361 @@
+//! One supervised run: start, watch, kill, report.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::fs::MetadataExt;
+use std::os::unix::net::UnixStream;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use super::child::{self, Plan};
+use super::folder::{self, Contents};
+use super::streams::Capture;
+use super::{calls, processes, slot, walls};
+use crate::sandbox::sys::{self, Fork};
+use crate::sandbox::wire::{self, Cause, Event, Failure, Order, Report};
+
+/// How often clocks and counters are looked at. A look costs some ten microseconds.
+const TICK: Duration = Duration::from_millis(10);
+/// Looking at the folder may cost this part of the time at most.
+const FOLDER_SHARE: u32 = 20;
+/// An interpreter looks for its program in this many places.
+const SCRIPT_EXECUTIONS: u32 = 8;
+
+/// Runs the order that comes on standard input and answers on standard output.
+pub(super) fn main() -> ExitCode {
+    let streams = || -> io::Result<(File, File)> {
+        Ok((io::stdin().as_fd().try_clone_to_owned()?.into(), io::stdout().as_fd().try_clone_to_owned()?.into()))
+    };
+    let Ok((mut control, mut answers)) = streams() else { return ExitCode::from(2) };
+    let result = wire::receive::<Order>(&mut control)
+        .map_err(|error| Failure::new("read the order", &error))
+        .and_then(|order| Run::start(order, control))
+        .and_then(|run| run.finish(&mut answers));
+    let sent = match result {
+        Ok(Some((report, stdout, stderr))) => wire::send(&mut answers, &Event::Done(report))
+            .and_then(|()| answers.write_all(&stdout))
+            .and_then(|()| answers.write_all(&stderr)),
+        Ok(None) => return ExitCode::from(1),
+        Err(failure) => wire::send(&mut answers, &Event::Failed(failure)),
+    };
+    if sent.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(1) }
+}
+
+/// The report, standard output and standard error.
+type Finished = (Report, Vec<u8>, Vec<u8>);
+
+/// A program at work, seen from its supervisor.
+struct Run {
+    order: Order,
+    control: File,
+    folder: OwnedFd,
+    /// Keeps the trace pipe open until every process is dead, so that its reader sees the end then and not before.
+    _pipe: Option<OwnedFd>,
+    /// The user that the program runs as, if it is its own, and who owned the folder before.
+    slot: Option<(slot::Slot, (u32, u32))>,
+    child: i32,
+    process: Option<OwnedFd>,
+    status: Option<UnixStream>,
+    told: Vec<u8>,
+    listener: Option<OwnedFd>,
+    executions_left: u32,
+    stdout: Capture,
+    stderr: Capture,
+    began: Instant,
+    folder_before: Contents,
+    main_status: Option<i32>,
+    cause: Option<Cause>,
+    peak_memory: u64,
+    orphaned: bool,
+}
+
+impl Run {
+    /// Prepares everything and forks.
+    fn start(order: Order, control: File) -> Result<Self, Failure> {
+        let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+        // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
+        sys::new_session().map_err(stage("start the supervisor's session"))?;
+        sys::become_reaper().map_err(stage("become the reaper"))?;
+        let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
+        let folder_before = folder::measure(folder.as_fd(), u64::MAX, u64::MAX);
+        let slot = if order.walls.own_user {
+            let owner = File::from(folder.try_clone().map_err(stage("open the working folder"))?)
+                .metadata()
+                .map_err(stage("look at the working folder"))?;
+            let slot =
+                slot::take().map_err(|error| Failure::new(format!("take a user of its own ({error})"), &error))?;
+            folder::give(folder.as_fd(), slot.user, slot.user).map_err(stage("give the working folder away"))?;
+            Some((slot, (owner.uid(), owner.gid())))
+        } else {
+            None
+        };
+        let pipe = match &order.pipe {
+            Some(name) => {
+                let name = std::ffi::CString::new(name.as_slice())
+                    .map_err(|error| Failure::new("open the trace pipe", &io::Error::other(error)))?;
+                let flags = libc::O_WRONLY | libc::O_NONBLOCK;
+                Some(sys::open_beneath(folder.as_fd(), &name, flags).map_err(stage("open the trace pipe"))?)
+            }
+            None => None,
+        };
+        let (stdout, output) = io::pipe().map_err(stage("make a pipe"))?;
+        let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
+        let (status, child_status) = UnixStream::pair().map_err(stage("make a socket"))?;
+        status.set_nonblocking(true).map_err(stage("make a socket"))?;
+        let opened = match &slot {
+            Some(_) if !order.script => {
+                let copy = File::open(wire::path(&order.program)).and_then(child::executable_copy);
+                Some(copy.map_err(stage("open the program"))?)
+            }
+            _ => None,
+        };
+        let rules = match order.walls.landlock {
+            true => Some(walls::rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?),
+            false => None,
+        };
+        let plan = Plan {
+            supervisor: std::process::id(),
+            folder: folder.try_clone().map_err(stage("open the working folder"))?,
+            opened,
+            rules,
+            user: slot.as_ref().map(|(slot, _)| slot.user),
+            input: File::open("/dev/null").map_err(stage("open /dev/null"))?.into(),
+            output: output.into(),
+            error: error.into(),
+            status: child_status,
+            order: order.clone(),
+        };
+        let began = Instant::now();
+        let child = match sys::fork().map_err(stage("fork"))? {
+            Fork::Child => child::become_program(plan),
+            Fork::Parent(pid) => pid,
+        };
+        // What was prepared for the child is closed here, so that the ends of pipes and sockets can be seen.
+        drop(plan);
+        Ok(Self {
+            stdout: Capture::new(stdout, order.output_bytes).map_err(stage("read standard output"))?,
+            stderr: Capture::new(stderr, order.output_bytes).map_err(stage("read standard error"))?,
+            executions_left: if order.script { SCRIPT_EXECUTIONS } else { 0 },
+            order,
+            control,
+            folder,
+            _pipe: pipe,
+            slot,
+            child,
+            process: sys::process_descriptor(child),
+            status: Some(status),
+            told: Vec::new(),
+            listener: None,
+            began,
+            folder_before,
+            main_status: None,
+            cause: None,
+            peak_memory: 0,
+            orphaned: false,
+        })
+    }
+
+    /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader is gone.
+    fn finish(mut self, answers: &mut File) -> Result<Option<Finished>, Failure> {
+        let user = self.slot.as_ref().map(|(slot, _)| slot.user);
+        // A grader that is gone shows as the end of the control pipe, too.
+        let _ = wire::send(answers, &Event::Ready { pid: self.child, user });
+        let watched = self.watch();
+        let wall = self.began.elapsed();
+        let (child, mut main_status) = (self.child, self.main_status);
+        let survivors = processes::end_all(user, |process| {
+            if process.pid == child {
+                main_status = Some(process.status);
+            }
+        });
+        self.stdout.take_rest();
+        self.stderr.take_rest();
+        self.hear();
+        let after = folder::measure(self.folder.as_fd(), u64::MAX, u64::MAX);
+        if let Some((_, (owner, group))) = &self.slot {
+            folder::give(self.folder.as_fd(), *owner, *group)
+                .map_err(|error| Failure::new("take the working folder back", &error))?;
+        }
+        watched.map_err(|error| Failure::new("watch the program", &error))?;
+        if self.orphaned {
+            return Ok(None);
+        }
+        let failure: Option<Failure> = serde_json::from_slice(&self.told).ok();
+        let exec_errno = match failure {
+            Some(failure) if failure.stage == child::EXECUTE => Some(failure.errno),
+            Some(failure) => return Err(failure),
+            None => None,
+        };
+        let (cpu, largest) = sys::children_usage().map_err(|error| Failure::new("ask for the usage", &error))?;
+        let report = Report {
+            cause: self.cause.take(),
+            status: main_status.unwrap_or(0),
+            exec_errno,
+            cpu_micros: micros(cpu),
+            wall_micros: micros(wall),
+            peak_memory: largest.max(self.peak_memory),
+            folder_growth: after.bytes.saturating_sub(self.folder_before.bytes),
+            folder_over: self.over(&after),
+            stdout_bytes: self.stdout.bytes.len() as u64,
+            stderr_bytes: self.stderr.bytes.len() as u64,
+            stdout_truncated: self.stdout.truncated,
+            stderr_truncated: self.stderr.truncated,
+            survivors,
+        };
+        Ok(Some((report, self.stdout.bytes, self.stderr.bytes)))
+    }
+
+    /// Until the main process has ended or there is a cause to end it.
+    fn watch(&mut self) -> io::Result<()> {
+        let (mut next_look, mut next_folder) = (Instant::now(), Instant::now());
+        while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
+            let ready = sys::poll(
+                [
+                    Some(self.control.as_fd()),
+                    self.stdout.descriptor(),
+                    self.stderr.descriptor(),
+                    self.status.as_ref().map(AsFd::as_fd),
+                    self.listener.as_ref().map(AsFd::as_fd),
+                    self.process.as_ref().map(AsFd::as_fd),
+                ],
+                next_look.saturating_duration_since(Instant::now()),
+            )?;
+            if ready[0] {
+                self.obey();
+            }
+            if ready[1] {
+                self.stdout.take();
+            }
+            if ready[2] {
+                self.stderr.take();
+            }
+            if ready[3] {
+                self.hear();
+            }
+            if ready[4] {
+                self.decide_announcement()?;
+            }
+            self.blame_if(self.stdout.truncated, Cause::Stdout);
+            self.blame_if(self.stderr.truncated, Cause::Stderr);
+            let now = Instant::now();
+            if now >= next_look || ready[5] {
+                self.reap();
+                self.look();
+                next_look = Instant::now() + TICK;
+            }
+            if now >= next_folder {
+                self.look_at_folder();
+                next_folder = Instant::now() + TICK.max(now.elapsed() * FOLDER_SHARE);
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes the first cause.
+    fn blame_if(&mut self, condition: bool, cause: Cause) {
+        if condition && self.cause.is_none() {
+            self.cause = Some(cause);
+        }
+    }
+
+    /// Commands of the grader; the end of its pipe is the end of the grader.
+    fn obey(&mut self) {
+        let mut command = [0];
+        match self.control.read(&mut command) {
+            Ok(1) if command[0] == wire::COMMAND_TRACE_LIMIT => self.blame_if(true, Cause::Trace),
+            Ok(1) => self.blame_if(true, Cause::Cancelled),
+            _ => self.orphaned = true,
+        }
+    }
+
+    /// What the child says on its way; the end of the socket means that the program has started.
+    fn hear(&mut self) {
+        let mut buffer = [0; 4096];
+        while let Some(status) = &self.status {
+            match sys::receive_descriptor(status, &mut buffer) {
+                Ok((0, _)) => self.status = None,
+                Ok((_, Some(listener))) => self.listener = Some(listener),
+                Ok((length, None)) => self.told.extend_from_slice(&buffer[..length]),
+                Err(_) => return,
+            }
+        }
+    }
+
+    /// A forbidden call waits: either it is the one that starts the program, or the program ends.
+    fn decide_announcement(&mut self) -> io::Result<()> {
+        let Some(listener) = self.listener.as_ref().map(|listener| listener.try_clone()).transpose()? else {
+            return Ok(());
+        };
+        let announced = match sys::next_announcement(listener.as_fd()) {
+            Ok(Some(announced)) => announced,
+            Ok(None) => return Ok(()),
+            Err(_) => {
+                // Nobody is left under the filter.
+                self.listener = None;
+                return Ok(());
+            }
+        };
+        // The socket closes when the program starts, before its first instruction.
+        self.hear();
+        let executes = announced.call == libc::SYS_execve || announced.call == libc::SYS_execveat;
+        let starting = self.status.is_some();
+        if executes && (starting || self.executions_left > 0) {
+            if !starting {
+                self.executions_left -= 1;
+            }
+            // The caller may have been killed meanwhile; then nobody waits for this answer.
+            let _ = sys::let_through(listener.as_fd(), announced.id);
+            return Ok(());
+        }
+        let mut call = calls::name(announced.call);
+        if announced.call == libc::SYS_clone {
+            let process = announced.first & libc::CLONE_THREAD as u64 == 0;
+            call.push_str(if process { " (it started another process)" } else { " (it made a namespace)" });
+        } else if call.ends_with("fork") {
+            call.push_str(" (it started another process)");
+        } else if executes {
+            call.push_str(" (it started another program)");
+        }
+        self.blame_if(true, Cause::Call(call));
+        Ok(())
+    }
+
+    /// Reaps whoever has ended.
+    fn reap(&mut self) {
+        while let Ok(Some(process)) = sys::reap() {
+            if process.pid == self.child {
+                self.main_status = Some(process.status);
+            }
+        }
+    }
+
+    /// Looks at clocks and counters.
+    fn look(&mut self) {
+        if self.main_status.is_some() {
+            return;
+        }
+        let usage = processes::usage(self.child, self.order.tools);
+        let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
+        self.peak_memory = self.peak_memory.max(usage.memory);
+        self.blame_if(usage.memory > self.order.memory, Cause::Memory);
+        self.blame_if(usage.threads > u64::from(self.order.processes), Cause::Processes);
+        self.blame_if(micros(usage.cpu + reaped) > self.order.cpu_micros, Cause::Cpu);
+        self.blame_if(micros(self.began.elapsed()) > self.order.wall_micros, Cause::Wall);
+    }
+
+    /// Looks at the working folder and at removed files that are still being written.
+    fn look_at_folder(&mut self) {
+        let mut contents = folder::measure(self.folder.as_fd(), self.order.folder_bytes, self.order.folder_files);
+        contents.bytes += folder::nameless_bytes(self.child);
+        self.blame_if(self.over(&contents), Cause::Folder);
+    }
+
+    fn over(&self, contents: &Contents) -> bool {
+        contents.over || contents.bytes > self.order.folder_bytes || contents.files > self.order.folder_files
+    }
+}
+
+fn micros(time: Duration) -> u64 {
+    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
+}

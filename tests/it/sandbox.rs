@@ -1,0 +1,288 @@
+//! The sandbox as a grader uses it: ordinary programs of the system, started, limited, stopped and explained.
+//!
+//! The hostile programs are in `attacks.rs`.
+
+use std::ffi::OsString;
+use std::io::Read;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use fosssim_oracle::sandbox::{
+    Backend, Ended, Job, Layer, Limits, Outcome, Policy, StartProblem, Stream, Supervisor, TraceTooLong, collect,
+};
+
+/// The sandbox under the real binary; tests without the required walls are skipped with a line.
+pub fn backend() -> Option<&'static Backend> {
+    static BACKEND: OnceLock<Option<Backend>> = OnceLock::new();
+    let make = || match Backend::best(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle"))) {
+        Ok(backend) => Some(backend),
+        Err(error) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+    };
+    BACKEND.get_or_init(make).as_ref()
+}
+
+/// Limits that a small program keeps and that a hostile one meets soon.
+pub fn small() -> Limits {
+    Limits {
+        cpu: Duration::from_millis(500),
+        wall: Duration::from_secs(20),
+        memory: 64 << 20,
+        output_bytes: 10_000,
+        trace_bytes: 1 << 20,
+        folder_bytes: 4 << 20,
+        folder_files: 100,
+        processes: 16,
+        open_files: 32,
+    }
+}
+
+struct Bench {
+    backend: &'static Backend,
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new() -> Option<Self> {
+        Some(Self { backend: backend()?, folder: tempfile::tempdir().unwrap() })
+    }
+
+    fn job(&self, program: impl Into<PathBuf>, arguments: &[&str]) -> Job {
+        Job::new(program, self.folder.path()).arguments(arguments.iter().map(OsString::from)).limits(small())
+    }
+
+    fn run(&self, program: impl Into<PathBuf>, arguments: &[&str]) -> Outcome {
+        self.finish(&self.job(program, arguments))
+    }
+
+    fn finish(&self, job: &Job) -> Outcome {
+        self.backend.start(job).unwrap().wait().unwrap()
+    }
+
+    fn script(&self, text: &str) -> PathBuf {
+        let path = self.folder.path().join("program");
+        std::fs::write(&path, text).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+        path
+    }
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+#[test]
+fn an_ordinary_program_runs_and_its_words_are_kept() {
+    let Some(bench) = Bench::new() else { return };
+    let outcome = bench.run("/bin/echo", &["hello", "two  words"]);
+    assert_eq!(outcome.ended, Ended::Exited(0));
+    assert_eq!(text(&outcome.stdout.bytes), "hello two  words\n");
+    assert!(outcome.wall > Duration::ZERO && outcome.peak_memory > 100_000);
+    assert_eq!(outcome.bytes_written, 17);
+    let active = |layer| outcome.layers.iter().any(|report| report.layer == layer && report.active);
+    assert!(active(Layer::CallFilter) && active(Layer::NoNewPrivileges));
+}
+
+#[test]
+fn exit_codes_and_own_signals_are_told_apart() {
+    let Some(bench) = Bench::new() else { return };
+    let program = bench.script("#!/bin/sh\nexit 3\n");
+    assert_eq!(bench.run(&program, &[]).ended, Ended::Exited(3));
+    let program = bench.script("#!/bin/sh\nkill -SEGV $$\n");
+    assert_eq!(bench.run(&program, &[]).ended, Ended::Signalled(11));
+}
+
+#[test]
+fn the_graders_environment_stays_with_the_grader() {
+    let Some(bench) = Bench::new() else { return };
+    let outcome = bench.finish(&bench.job("/usr/bin/env", &[]).environment([("SCENE", "a b"), ("LC_ALL", "C.UTF-8")]));
+    let mut names: Vec<&str> = text(&outcome.stdout.bytes).lines().filter_map(|line| line.split('=').next()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["HOME", "LC_ALL", "PATH", "SCENE", "TMPDIR"]);
+    assert!(text(&outcome.stdout.bytes).contains("SCENE=a b\n"));
+}
+
+#[test]
+fn sleepers_and_spinners_meet_their_limits() {
+    let Some(bench) = Bench::new() else { return };
+    let limits = Limits { wall: Duration::from_millis(200), ..small() };
+    let outcome = bench.finish(&bench.job("/bin/sleep", &["1000"]).limits(limits));
+    assert_eq!(outcome.ended, Ended::WallLimit);
+    assert!(outcome.cpu < Duration::from_millis(200));
+    let program = bench.script("#!/bin/sh\nwhile :; do :; done\n");
+    let outcome = bench.run(&program, &[]);
+    assert_eq!(outcome.ended, Ended::CpuLimit);
+    assert!(outcome.cpu >= Duration::from_millis(490));
+}
+
+#[test]
+fn a_flood_is_cut_to_the_byte() {
+    let Some(bench) = Bench::new() else { return };
+    let outcome = bench.run("/usr/bin/yes", &[]);
+    assert_eq!(outcome.ended, Ended::OutputLimit(Stream::Stdout));
+    assert!(outcome.stdout.truncated && outcome.stdout.bytes.len() == 10_000);
+}
+
+#[test]
+fn a_trace_arrives_while_the_program_writes_it() {
+    let Some(bench) = Bench::new() else { return };
+    let program = bench.script("#!/bin/sh\nexec > trace.bin\necho one\nread line < go\necho two\n");
+    // The program can only go on when its first line has been read here.
+    let go = bench.folder.path().join("go");
+    let made = std::process::Command::new("mkfifo").arg("-m").arg("666").arg(&go).status().unwrap();
+    assert!(made.success());
+    let mut running = bench.backend.start(&bench.job(&program, &[]).trace_pipe("trace.bin")).unwrap();
+    let mut trace = running.trace().unwrap();
+    let mut first = [0; 4];
+    trace.read_exact(&mut first).unwrap();
+    assert_eq!(&first, b"one\n");
+    std::fs::write(&go, "go\n").unwrap();
+    let mut rest = String::new();
+    trace.read_to_string(&mut rest).unwrap();
+    assert_eq!(rest, "two\n");
+    let outcome = running.wait().unwrap();
+    assert_eq!(outcome.ended, Ended::Exited(0));
+    assert_eq!(outcome.bytes_written, 8);
+}
+
+#[test]
+fn a_trace_without_end_is_stopped_at_its_limit() {
+    let Some(bench) = Bench::new() else { return };
+    let program = bench.script("#!/bin/sh\nexec yes > trace.bin\n");
+    let job = bench.job(&program, &[]).trace_pipe("trace.bin").policy(Policy::Tools);
+    let mut running = bench.backend.start(&job).unwrap();
+    let mut bytes = Vec::new();
+    let error = running.trace().unwrap().read_to_end(&mut bytes).unwrap_err();
+    assert_eq!(error.get_ref().unwrap().downcast_ref(), Some(&TraceTooLong { limit: 1 << 20 }));
+    assert_eq!(bytes.len(), 1 << 20);
+    assert_eq!(running.wait().unwrap().ended, Ended::OutputLimit(Stream::Trace));
+    assert_eq!(bench.finish(&job).ended, Ended::OutputLimit(Stream::Trace), "a trace that nobody asked for counts too");
+}
+
+#[test]
+fn a_program_that_never_opens_its_trace_has_written_nothing() {
+    let Some(bench) = Bench::new() else { return };
+    let program = bench.script("#!/bin/sh\nrm trace.bin\necho forged > trace.bin\n");
+    let job = bench.job(&program, &[]).trace_pipe("trace.bin").policy(Policy::Tools);
+    let mut running = bench.backend.start(&job).unwrap();
+    let mut bytes = Vec::new();
+    running.trace().unwrap().read_to_end(&mut bytes).unwrap();
+    assert!(bytes.is_empty());
+    assert_eq!(running.wait().unwrap().ended, Ended::Exited(0));
+}
+
+#[test]
+fn a_run_can_be_cancelled_and_dropped() {
+    let Some(bench) = Bench::new() else { return };
+    let job = bench.job("/bin/sleep", &["1000"]).trace_pipe("trace.bin");
+    let running = bench.backend.start(&job).unwrap();
+    running.canceller().cancel();
+    assert_eq!(running.wait().unwrap().ended, Ended::Cancelled);
+    // The drop ends the sleeper: it would otherwise wait for a thousand seconds.
+    drop(bench.backend.start(&job).unwrap());
+}
+
+#[test]
+fn a_submission_starts_no_process_and_no_second_program() {
+    let Some(bench) = Bench::new() else { return };
+    let program = bench.script("#!/bin/sh\n/bin/ls | /bin/cat\n");
+    let Ended::Violation { call } = bench.run(&program, &[]).ended else { panic!("it may not fork") };
+    assert!(call.contains("process"), "{call}");
+    let outcome = bench.finish(&bench.job(&program, &[]).policy(Policy::Tools));
+    assert_eq!(outcome.ended, Ended::Exited(0), "{}", text(&outcome.stderr.bytes));
+    assert_eq!(text(&outcome.stdout.bytes), "program\n");
+}
+
+#[test]
+fn readable_paths_are_readable_and_others_are_not() {
+    let Some(bench) = Bench::new() else { return };
+    let outside = tempfile::tempdir().unwrap();
+    std::fs::set_permissions(outside.path(), std::fs::Permissions::from_mode(0o755)).unwrap();
+    let scene = outside.path().join("scene.xml");
+    std::fs::write(&scene, "<scene/>").unwrap();
+    let scene = scene.to_str().unwrap();
+    let refused = bench.run("/bin/cat", &[scene]);
+    assert_eq!(refused.ended, Ended::Exited(1));
+    assert!(text(&refused.stderr.bytes).contains("ermission denied"));
+    let outcome = bench.finish(&bench.job("/bin/cat", &[scene]).readable([outside.path()]));
+    assert_eq!(text(&outcome.stdout.bytes), "<scene/>");
+    let missing = bench.backend.start(&bench.job("/bin/cat", &[]).readable(["/no/such/scene.xml"]));
+    assert!(missing.unwrap_err().to_string().contains("/no/such/scene.xml"));
+}
+
+#[test]
+fn the_folders_size_and_files_are_bounded() {
+    let Some(bench) = Bench::new() else { return };
+    let program = bench.script("#!/bin/sh\nexec yes > big\n");
+    let tools = |program: &Path| bench.job(program, &[]).policy(Policy::Tools);
+    assert_eq!(bench.finish(&tools(&program)).ended, Ended::FolderLimit);
+    let program = bench.script("#!/bin/sh\nrm -f big\ni=0; while :; do i=$((i+1)); : > f$i; done\n");
+    assert_eq!(bench.finish(&tools(&program)).ended, Ended::FolderLimit);
+}
+
+#[test]
+fn programs_that_cannot_start_are_explained() {
+    let Some(bench) = Bench::new() else { return };
+    let problem = |program: &Path| match bench.run(program, &[]).ended {
+        Ended::CouldNotStart(problem) => problem,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(problem(Path::new("/no/such/program")), StartProblem::NotFound);
+    assert_eq!(problem(bench.folder.path()), StartProblem::IsFolder);
+    let program = bench.script("#!/no/such/interpreter\n");
+    assert!(matches!(problem(&program), StartProblem::MissingInterpreter { .. }));
+    let copy = bench.folder.path().join("busy");
+    std::fs::copy("/bin/true", &copy).unwrap();
+    let open = std::fs::OpenOptions::new().append(true).open(&copy).unwrap();
+    assert_eq!(problem(&copy), StartProblem::Busy);
+    drop(open);
+    assert_eq!(bench.run(&copy, &[]).ended, Ended::Exited(0));
+    let program = bench.script("#!/bin/sh\necho \"freeglut: failed to open display ''\" >&2; exit 1\n");
+    assert_eq!(problem(&program), StartProblem::NeedsDisplay);
+}
+
+#[test]
+fn a_program_that_only_its_owner_may_execute_runs_all_the_same() {
+    let Some(bench) = Bench::new() else { return };
+    let private = tempfile::tempdir().unwrap();
+    let program = private.path().join("program");
+    std::fs::copy("/bin/echo", &program).unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o700)).unwrap();
+    let outcome = bench.run(&program, &["here"]);
+    assert_eq!(outcome.ended, Ended::Exited(0), "{}", text(&outcome.stderr.bytes));
+    assert_eq!(text(&outcome.stdout.bytes), "here\n");
+}
+
+#[test]
+fn the_folder_is_the_graders_again_when_the_run_is_over() {
+    let Some(bench) = Bench::new() else { return };
+    use std::os::unix::fs::MetadataExt;
+    let program = bench.script("#!/bin/sh\necho result > out.txt\n");
+    let owner = bench.folder.path().metadata().unwrap().uid();
+    assert_eq!(bench.run(&program, &[]).ended, Ended::Exited(0));
+    assert_eq!(collect::regular_file(bench.folder.path(), "out.txt", 100).unwrap(), b"result\n");
+    assert_eq!(bench.folder.path().join("out.txt").metadata().unwrap().uid(), owner);
+    assert_eq!(bench.folder.path().metadata().unwrap().uid(), owner);
+}
+
+#[test]
+fn without_walls_the_limits_still_hold() {
+    let bench_folder = tempfile::tempdir().unwrap();
+    let backend = Backend::unsandboxed(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle")));
+    let limits = Limits { wall: Duration::from_millis(200), ..small() };
+    let job = Job::new("/bin/sleep", bench_folder.path()).arguments(["1000"]).limits(limits);
+    let outcome = backend.start(&job).unwrap().wait().unwrap();
+    assert_eq!(outcome.ended, Ended::WallLimit);
+    assert!(outcome.layers.iter().any(|report| report.layer == Layer::CallFilter && !report.active));
+}
+
+#[test]
+fn a_supervisor_that_is_none_is_our_fault_and_not_a_verdict() {
+    let error = Backend::best(Supervisor::at("/bin/true")).unwrap_err();
+    assert!(error.to_string().contains("supervisor"), "{error}");
+    assert!(Backend::best(Supervisor::at("/no/such/program")).is_err());
+}
