@@ -3,6 +3,7 @@ use crate::{
     num::vector::Vec2,
     sim::{Impulse, State},
 };
+use std::fmt;
 
 /// A frame: one saved state with its logs. Buffers are reused from record to record.
 #[derive(Debug, Clone, Default)]
@@ -35,6 +36,19 @@ impl From<Impulse> for LoggedImpulse {
         #[expect(clippy::cast_possible_wrap, reason = "the format has 32 signed bits for an index")]
         let (first, second) = (impulse.pair.first as i32, impulse.pair.second as i32);
         Self { kind: impulse.pair.kind.code(), first, second, normal: impulse.normal, time: impulse.time }
+    }
+}
+
+impl fmt::Display for LoggedImpulse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, first, second, normal, time } = self;
+        match kind {
+            0 => write!(f, "particle {first} - particle {second}")?,
+            1 => write!(f, "particle {first} - edge {second}")?,
+            2 => write!(f, "particle {first} - half-plane {second}")?,
+            kind => write!(f, "unknown type {kind} {first} {second}")?,
+        }
+        write!(f, ", normal ({:?}, {:?}), time {time:?}", normal.x, normal.y)
     }
 }
 

@@ -4,23 +4,33 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod counts;
 mod decode;
+mod diff;
+mod digest;
 mod encode;
 mod error;
 mod frame;
+mod histogram;
 mod index;
 mod layout;
 mod lenient;
 mod reader;
 mod recorder;
 mod source;
+mod summary;
 mod writer;
 
+pub use counts::Counts;
+pub use diff::{Block, Comparison, Difference, compare, difference};
+pub use digest::{Digests, Sha, Short};
 pub use error::{List, Malformation, TraceError};
 pub use frame::{Frame, LoggedImpulse, PolynomialLog};
+pub use histogram::Histogram;
 pub use index::Indexed;
 pub use layout::Layout;
 pub use lenient::{Cause, Lenient, LenientFrame, Stop};
 pub use reader::{FRAME_LIMIT, Reader};
 pub use recorder::Recorder;
+pub use summary::{StepView, Summary};
 pub use writer::{Writer, Written};

@@ -2,9 +2,11 @@
 use crate::corpus;
 use fosssim_oracle::{
     num::vector::Vec2,
-    sim::State,
+    scene::original,
+    sim::{RootSearch, Simulation, State},
     trace::{
-        Cause, Frame, Layout, Lenient, LenientFrame, List, LoggedImpulse, Malformation, Reader, TraceError, Writer,
+        Cause, Counts, Frame, Layout, Lenient, LenientFrame, List, LoggedImpulse, Malformation, Reader, Recorder,
+        Summary, TraceError, Writer,
     },
 };
 use proptest::{collection::vec, prelude::*};
@@ -232,6 +234,85 @@ fn a_frame_beyond_the_limit_is_refused_before_it_is_in_memory() {
     let error = reader.next(&mut Frame::default()).unwrap_err();
     assert_eq!(error.what, Malformation::FrameTooLarge { limit: 1 << 20 });
     assert!(reader.offset() < 1 << 21);
+}
+
+/// The example of trace-format.md 3 with one of the collision types.
+fn example(collision: &str) -> Vec<u8> {
+    let xml = format!(
+        r#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/><collision type="{collision}" COR="1"
+            maxiters="5" k="0" thickness="0"/><particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/>
+            <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#
+    );
+    let scene = original::read(xml.as_bytes()).expect("a scene").scene;
+    let mut simulation = Simulation::new(&scene, RootSearch::default());
+    let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut recorder).unwrap();
+    }
+    recorder.finish().unwrap().0
+}
+
+#[test]
+fn the_annotated_example_is_recorded_byte_for_byte() {
+    let numbers = |numbers: &[f64]| numbers.iter().flat_map(|n| n.to_le_bytes()).collect::<Vec<u8>>();
+    let integers = |integers: &[i32]| integers.iter().flat_map(|n| n.to_le_bytes()).collect::<Vec<u8>>();
+    let initial = [numbers(&[0.0, 0.5, 0.0, -1.0]), integers(&[0, 0])].concat();
+    let later = [
+        numbers(&[0.0, 1.0, 0.0, 1.0]),
+        integers(&[1, 2, 0, 0]),
+        numbers(&[-0.0, -0.25, 0.5]),
+        integers(&[2, 3]),
+        numbers(&[-0.25, 0.5, -0.1875]),
+        integers(&[2]),
+        numbers(&[-0.25, 0.25]),
+    ]
+    .concat();
+    assert_eq!(example("continuous-time"), [initial, later.clone(), later].concat());
+
+    // At the end of the step the particle is exactly on the plane: no impulse.
+    let simple = example("simple");
+    assert_eq!(simple.len(), 72);
+    assert_eq!(simple[36..], [numbers(&[0.0, 0.0, 0.0, -1.0]), integers(&[0])].concat());
+    assert_eq!((example("none").len(), example("penalty").len()), (64, 64));
+    let hybrid = example("hybrid");
+    assert_eq!(hybrid.len(), 312);
+    assert_eq!(hybrid[40 + 32..40 + 40], integers(&[0, 4]));
+    assert_eq!(hybrid[40..176], hybrid[176..], "no geometric part, so the records of the step are equal");
+}
+
+/// A summary keeps what a snapshot needs, also of a damaged trace.
+#[test]
+fn a_summary_says_what_happened_and_where_reading_ended() {
+    let xml = br#"<scene><duration time="3"/><integrator type="explicit-euler" dt="0.1"/>
+        <collision type="continuous-time" COR="1"/>
+        <particle m="1" px="0" py="0" vx="1" vy="0" fixed="0" radius="0.5"/>
+        <particle m="1" px="2" py="0.1" vx="0" vy="0" fixed="0" radius="0.5"/>
+        <particle m="1" px="2" py="3" vx="0" vy="0" fixed="0" radius="0.5"/>
+        <edge i="1" j="2" radius="0.5"/></scene>"#;
+    let scene = original::read(xml).expect("a scene").scene;
+    let mut simulation = Simulation::new(&scene, RootSearch::default());
+    let recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+    let mut both = (recorder, Counts::default());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut both).unwrap();
+    }
+    let (recorder, counts) = both;
+    let trace = recorder.finish().unwrap().0;
+    let summary = Summary::of(&scene, &trace[..]);
+    assert_eq!(summary.polynomials_per_pass, 10);
+    assert_eq!((summary.polynomials.total(), summary.impulses.total()), (counts.polynomials, counts.impulses));
+    assert_eq!((counts.passes(), counts.calls), (30, [90, 30, 0]));
+    assert!(counts.hits_of_all_kinds() > 0);
+    assert_eq!(summary.collisions.len() as u64, counts.impulses);
+    let text = summary.to_string();
+    assert!(text.contains("polynomial 2, pass 0, particle 0 - particle 2: ["), "{text}");
+    assert!(text.contains("polynomial 7, pass 0, particle 0 - edge 0: ["), "{text}");
+    assert!(text.contains("polynomial 9, pass 0, particle 1 - particle 2: ["), "{text}");
+    assert!(text.contains("  steps 1-2    "), "{text}");
+
+    let damaged = Summary::of(&scene, &trace[..trace.len() - 1]);
+    assert_eq!(damaged.digests[..15], summary.digests[..15]);
+    assert!(damaged.to_string().contains("damage         byte "), "{damaged}");
 }
 
 /// The corpus's traces, read as the original reads them: whether and why reading stopped is known from what the

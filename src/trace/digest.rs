@@ -1,0 +1,191 @@
+//! Digests of traces and of their steps, as text that diffs well.
+//!
+//! The digest of a step is the beginning of the SHA-256 of its records' bytes, so a listing shows at which step two
+//! traces part. The digest of the trace is the SHA-256 of all its bytes, trailing ones included: what `sha256sum` says.
+use super::{error::TraceError, frame::Frame, layout::Layout, reader::Reader};
+use sha2::{Digest, Sha256};
+use std::{
+    fmt,
+    io::{self, Read},
+};
+
+/// SHA-256 of some bytes; prints as 64 hexadecimal digits.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Sha(pub [u8; 32]);
+
+impl fmt::Display for Sha {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+impl fmt::Debug for Sha {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// The first eight bytes of a SHA-256; prints as 16 hexadecimal digits.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Short(pub u64);
+
+impl Short {
+    /// The shortened digest.
+    pub(super) fn of(digest: Sha256) -> Self {
+        let [a, b, c, d, e, f, g, h, ..] = finish(digest).0;
+        Self(u64::from_be_bytes([a, b, c, d, e, f, g, h]))
+    }
+}
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}
+
+impl fmt::Debug for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+fn finish(digest: Sha256) -> Sha {
+    Sha(digest.finalize().into())
+}
+
+/// The digests of one trace.
+///
+/// Its text has one line per step, the initial record as step 0, and the whole trace last:
+///
+/// ```text
+/// 0 8d1c1f7d7f1f6c5b
+/// 1 0b5ed3c9a2f7b1aa
+/// 288 bytes, 3 records, sha256 ...
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Digests {
+    /// Digest of each step's records, the initial record as step 0. An incomplete step has none.
+    pub steps: Vec<Short>,
+    /// SHA-256 of all bytes.
+    pub sha256: Sha,
+    /// Number of all bytes.
+    pub bytes: u64,
+    /// Number of records that could be read.
+    pub records: u64,
+    /// Bytes behind the last of them.
+    pub trailing: u64,
+    /// What ended the reading before the scene's last record.
+    pub stopped: Option<TraceError>,
+}
+
+impl Digests {
+    /// Reads a whole trace, in the memory of one record and eight bytes per step. A malformed trace has digests, too:
+    /// those of its sound steps and that of all its bytes.
+    pub fn of(stream: impl Read, layout: Layout) -> Self {
+        let mut steps = Vec::new();
+        let walked = walk(stream, layout, |_, _, _| {}, |_, digest| steps.push(digest));
+        let Walked { sha256, bytes, records, trailing, stopped } = walked;
+        Self { steps, sha256, bytes, records, trailing, stopped }
+    }
+}
+
+impl fmt::Display for Digests {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (step, digest) in self.steps.iter().enumerate() {
+            writeln!(f, "{step} {digest}")?;
+        }
+        if let Some(error) = &self.stopped {
+            writeln!(f, "{error}")?;
+        }
+        writeln!(f, "{} bytes, {} records, sha256 {}", self.bytes, self.records, self.sha256)
+    }
+}
+
+/// What a walk over a whole trace tells at its end.
+pub(crate) struct Walked {
+    pub(crate) sha256: Sha,
+    pub(crate) bytes: u64,
+    pub(crate) records: u64,
+    pub(crate) trailing: u64,
+    pub(crate) stopped: Option<TraceError>,
+}
+
+/// Reads a trace to its end; `frame` sees every record (its number, content and notes), `step` every complete step's
+/// digest.
+pub(crate) fn walk(
+    stream: impl Read,
+    layout: Layout,
+    mut frame: impl FnMut(u64, &Frame, &[TraceError]),
+    mut step: impl FnMut(u32, Short),
+) -> Walked {
+    let mut all = Hashing { stream, digest: Sha256::new(), bytes: 0 };
+    let mut reader = Reader::new(&mut all, layout).keeping_raw();
+    let mut current = Frame::default();
+    let mut digest = Sha256::new();
+    let stopped = loop {
+        match reader.next(&mut current) {
+            Ok(true) => {}
+            Ok(false) => break None,
+            Err(error) => break Some(error),
+        }
+        let record = reader.records() - 1;
+        frame(record, &current, reader.notes());
+        digest.update(reader.raw());
+        if !layout.is_mid(record) {
+            step(layout.step_of(record), Short::of(std::mem::take(&mut digest)));
+        }
+    };
+    let begin = if stopped.is_some() { reader.record_offset() } else { reader.offset() };
+    let records = reader.records();
+    let failed = reader.trailing().err();
+    let Hashing { digest, bytes, .. } = all;
+    Walked { sha256: finish(digest), bytes, records, trailing: bytes - begin, stopped: stopped.or(failed) }
+}
+
+/// A stream whose bytes are digested as they are read.
+struct Hashing<R> {
+    stream: R,
+    digest: Sha256,
+    bytes: u64,
+}
+
+impl<R: Read> Read for Hashing<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        let count = self.stream.read(out)?;
+        self.digest.update(&out[..count]);
+        self.bytes += count as u64;
+        Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAYOUT: Layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 2 };
+
+    #[test]
+    fn a_changed_step_changes_its_digest_only() {
+        let mut bytes = [0; 96];
+        let sound = Digests::of(&bytes[..], LAYOUT);
+        assert_eq!((sound.steps.len(), sound.bytes, sound.records, sound.trailing), (3, 96, 3, 0));
+        assert_eq!(sound.steps[0], sound.steps[1]);
+        bytes[70] = 1;
+        let changed = Digests::of(&bytes[..], LAYOUT);
+        assert_eq!(sound.steps[..2], changed.steps[..2]);
+        assert_ne!(sound.steps[2], changed.steps[2]);
+        assert_ne!(sound.sha256, changed.sha256);
+    }
+
+    #[test]
+    fn the_whole_digest_is_that_of_the_file() {
+        let digests = Digests::of(&[0; 100][..], LAYOUT);
+        assert_eq!(digests.trailing, 4);
+        // What `head -c 100 /dev/zero | sha256sum` says.
+        let expected = "cd00e292c5970d3c5e2f0ffa5171e555bc46bfc4faddfb4a418b6840b86e79a3";
+        assert_eq!(digests.sha256.to_string(), expected);
+        let cut = Digests::of(&[0; 50][..], LAYOUT);
+        assert_eq!((cut.steps.len(), cut.records, cut.trailing, cut.bytes), (1, 1, 18, 50));
+        assert!(cut.to_string().contains("byte 32, record 1 (step 1): positions and velocities need 32 bytes"));
+    }
+}
