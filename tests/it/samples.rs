@@ -162,6 +162,22 @@ fn the_catalogue_is_large_and_every_id_is_accepted() {
     assert!(refused.is_empty(), "{refused:?}");
 }
 
+/// A mistake that no built-in scene brings to light would pass unnoticed whatever the rules are.
+#[test]
+fn every_wrong_sample_leaves_another_trace_of_some_built_in_scene() {
+    let mut scenes: Vec<(PathBuf, Vec<u8>)> =
+        assets().into_par_iter().map(|scene| (scene.clone(), trace(&scene, None))).collect();
+    // The small ones first: most mistakes show at once.
+    scenes.sort_by_key(|(_, correct)| correct.len());
+    let unnoticed: Vec<String> = catalogue()
+        .into_par_iter()
+        .filter(|row| row.kind == "wrong")
+        .filter(|row| scenes.iter().all(|(scene, correct)| trace(scene, Some(&row.id)) == *correct))
+        .map(|row| row.id)
+        .collect();
+    assert!(unnoticed.is_empty(), "{unnoticed:?}");
+}
+
 /// Scale and arithmetic change the logged bits, never what happens.
 #[test]
 fn every_variant_moves_everything_as_the_correct_sample_does() {

@@ -338,7 +338,6 @@ catalogue! {
         GeometricRestarts "geometric-restarts": "Every round starts again from the predicted positions.";
         GeometricDetectsPrediction "geometric-detects-prediction": "Later passes look at the predicted positions, not at the modified ones.";
         GeometricForgetsZones "geometric-forgets-zones": "New zones replace the old ones instead of joining them.";
-        GeometricStopsWhenClear "geometric-stops-when-clear": "The loop also ends when a pass finds nothing, before the zones are compared.";
         GeometricStopsWhenEmpty "geometric-stops-when-empty": "Without zones the second pass is left out.";
         GeometricExtraPass "geometric-extra-pass": "One more detection pass is made after the zones have settled.";
         GeometricFirstZoneOnly "geometric-first-zone-only": "Only the first zone is moved.";
@@ -447,6 +446,7 @@ catalogue! {
         ContactOtherFormula "contact-other-formula": "The contact vectors come from other, equivalent formulas.";
     }
     Variant ImpactZones {
+        GeometricStopsWhenClear "stops-when-clear": "The geometric loop also ends when a pass finds nothing; the zones would be equal anyway.";
         ZonesReversed "zones-reversed": "Zones are moved in the opposite order, which changes nothing.";
     }
     Variant Failsafe {
