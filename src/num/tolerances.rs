@@ -28,3 +28,37 @@ pub const NEWTON_UPDATE: f64 = 1e-9;
 /// Newton's method of implicit-euler is given up after this many iterations. The original has no limit and hangs
 /// (simulation.md 4); convergence takes fewer than ten. Lowering it far could refuse a scene that the original records.
 pub const NEWTON_ITERATIONS: u32 = 10_000;
+
+/// Certificate: a line's zero is near when its modulus is at most this (fraction of the step). Larger values let rounding
+/// decide the root finder's sample one step beyond the zero (certificate, closed forms).
+pub const LINE_NEAR: f64 = (1_u64 << 40) as f64;
+
+/// Certificate: a parabola's zeros are near when the coefficient of degree 2 - i is at most the leading one times the
+/// i-th power of this. Larger values let rounding decide the samples.
+pub const PARABOLA_NEAR: f64 = (1_u64 << 22) as f64;
+
+/// Certificate: a parabola is negative when its Bernstein coefficients are below this share of the sum of moduli.
+/// Smaller values no longer cover the rounding of its zeros (some 2^-50).
+pub const PARABOLA_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// Certificate: a parabola has no real zero when b^2 is below 4ac times this.
+pub const PARABOLA_COMPLEX: f64 = 1.0 - 1.0 / (1_u64 << 20) as f64;
+
+/// Certificate: the least product of complex zeros (fraction of the step, squared) whose imaginary parts are surely above
+/// [`IMAGINARY_PART`]: with [`PARABOLA_COMPLEX`] they exceed 2^-10 times the root of this.
+pub const PARABOLA_ROOM: f64 = 1.0 / (1_u64 << 30) as f64;
+
+/// Certificate: as [`PARABOLA_NEAR`], for degrees three to five. With five zeros of this modulus in one place, rounding
+/// just does not decide a sample.
+pub const BERNSTEIN_NEAR: f64 = (1_u64 << 12) as f64;
+
+/// Certificate: as [`PARABOLA_MARGIN`], for degrees three to five. It has to cover what deflation does to the zeros, which
+/// is measured, not proved.
+pub const BERNSTEIN_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
+
+/// Certificate: searches among coefficients between this and [`SEARCH_LARGEST_COEFFICIENT`] (or zero) are known to end; among
+/// subnormal numbers some do not (root-finder.md 9.5).
+pub const SEARCH_SMALLEST_COEFFICIENT: f64 = 1e-150;
+
+/// Certificate: see [`SEARCH_SMALLEST_COEFFICIENT`].
+pub const SEARCH_LARGEST_COEFFICIENT: f64 = 1e150;

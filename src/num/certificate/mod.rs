@@ -1,0 +1,142 @@
+//! Proofs that no root search is needed: certainly no impact within the step.
+//!
+//! A detection asks whether [`first_time`](super::first_time::first_time) is at most 1. Nearly always it is not, and
+//! a few multiplications show it. Because a search may be skipped only if its answer is known, the question is not
+//! where the polynomials *are* positive but where the original's root finder *says* so: it samples each gap between
+//! the zeros once, and rounding may decide a sample.
+//!
+//! What suffices: the answer exceeds 1 if no time of `[0, 1]` lies in the computed positive sets of all polynomials,
+//! in particular if one computed set has no interval with `hi > 0` and `lo <= 1`; and if no search hangs.
+//!
+//! What is proved and what is measured:
+//!
+//! * **Constants, `c z^m`, lines: exact.** The root finder's own few operations, or a bound on their rounding.
+//! * **Parabolas: proved.** The closed form's zeros are those of a polynomial whose coefficients differ by a few units
+//!   in the last place of the largest, far less than the margin; the samples' values exceed their rounding because
+//!   the zeros are near (see `closed_form`). The last resort runs the closed form itself and is exact.
+//! * **Degree three and above: measured.** A negative polynomial with margin, zeros near and moderate coefficients
+//!   leave the root finder no known way to be wrong but three: it gives up early (seen only with coefficients near
+//!   5e-324, excluded here); deflation spoils the zeros by more than the margin; or a sample falls exactly on a
+//!   double zero. `examples/audit.rs` compares certificate and search; no disagreement has been found.
+//! * **Termination: measured** for degree three and above, within the range of coefficients that is admitted.
+
+mod bernstein;
+mod closed_form;
+
+use super::{
+    first_time::positive_set,
+    interval::{Interval, Intervals},
+    polynomial::Polynomial,
+    tolerances::{SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT},
+};
+
+/// Which level of the certificate has decided, cheapest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// A polynomial that is nowhere positive by itself: empty, a constant, or `c z^m`.
+    Vanishing,
+    /// A line that is not positive within the step.
+    Line,
+    /// A parabola that is not positive within the step.
+    Parabola,
+    /// A polynomial of degree three or more whose Bernstein coefficients are all negative.
+    Bernstein,
+    /// The positive times of lines and parabolas, by the root finder's closed forms, do not meet within the step.
+    ClosedForms,
+    /// Wherever lines and parabolas are positive, one of the others is negative.
+    Windows,
+}
+
+impl Level {
+    /// All levels, in the order in which they are tried.
+    pub const ALL: [Self; 6] =
+        [Self::Vanishing, Self::Line, Self::Parabola, Self::Bernstein, Self::ClosedForms, Self::Windows];
+}
+
+/// Whether [`first_time`](super::first_time::first_time) of these polynomials is certainly greater than 1 (or
+/// infinite), with a margin that covers the root finder's own errors, and certainly ends. `false` means "not known".
+///
+/// Coefficients that are not finite give `false` unless a polynomial of degree at most two decides and every other
+/// that holds one is of degree at most two, where the search returns normally.
+#[inline]
+#[must_use]
+pub fn excludes_unit_interval(polynomials: &[Polynomial]) -> bool {
+    exclusion(polynomials).is_some()
+}
+
+/// [`excludes_unit_interval`], with the level that has decided.
+#[inline]
+#[must_use]
+pub fn exclusion(polynomials: &[Polynomial]) -> Option<Level> {
+    let mut best = None;
+    let mut searches = false;
+    for polynomial in polynomials {
+        let coefficients = polynomial.coefficients();
+        if coefficients.len() > 3 {
+            searches = true;
+        } else if best.is_none() {
+            best = closed_form::never_positive(coefficients);
+        }
+    }
+    if searches { with_search(polynomials, best) } else { best }
+}
+
+/// The levels for lists with a polynomial that needs a search; `known` is what the others have shown.
+fn with_search(polynomials: &[Polynomial], known: Option<Level>) -> Option<Level> {
+    let mut searched = polynomials.iter().map(Polynomial::coefficients).filter(|list| list.len() > 3);
+    if !searched.clone().all(search_ends) {
+        return None;
+    }
+    if known.is_some() {
+        return known;
+    }
+    if searched.any(|list| nowhere_positive(list) || bernstein::never_positive(list)) {
+        return Some(Level::Bernstein);
+    }
+    let windows = windows_of_closed_forms(polynomials);
+    if windows.as_slice().is_empty() {
+        return Some(Level::ClosedForms);
+    }
+    let excluded = windows.as_slice().iter().all(|&window| bernstein::negative_in_window(polynomials, window));
+    excluded.then_some(Level::Windows)
+}
+
+/// Whether the root finder rejects the polynomial and its only sample, at 0, is not positive: a leading zero (in the
+/// non-dropping build), or `c z^m`.
+#[inline]
+fn nowhere_positive(coefficients: &[f64]) -> bool {
+    coefficients[coefficients.len() - 1] <= 0.0
+        && (coefficients[0] == 0.0 || coefficients[1..].iter().all(|&coefficient| coefficient == 0.0))
+}
+
+/// Whether all coefficients are finite and, unless zero, of a size with which the search is known to end.
+#[inline]
+fn search_ends(coefficients: &[f64]) -> bool {
+    coefficients.iter().all(|coefficient| {
+        let modulus = coefficient.abs();
+        modulus == 0.0 || (SEARCH_SMALLEST_COEFFICIENT..=SEARCH_LARGEST_COEFFICIENT).contains(&modulus)
+    })
+}
+
+/// The times of `[0, 1]` at which all lines and parabolas are positive, exactly as the root finder computes them.
+fn windows_of_closed_forms(polynomials: &[Polynomial]) -> Intervals {
+    let mut windows = Intervals::new();
+    windows.push(Interval { lo: 0.0, hi: 1.0 });
+    for list in polynomials.iter().map(Polynomial::coefficients).filter(|list| list.len() <= 3) {
+        // Closed forms always return.
+        if let Ok(set) = positive_set(list) {
+            windows = windows.intersection(&set);
+        }
+    }
+    // An interval that ends at 0 does not count for the original.
+    let mut counted = Intervals::new();
+    for &window in windows.as_slice() {
+        if window.hi > 0.0 {
+            counted.push(window);
+        }
+    }
+    counted
+}
+
+#[cfg(test)]
+mod tests;
