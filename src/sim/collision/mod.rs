@@ -6,6 +6,7 @@
 mod continuous_time;
 mod failsafe;
 mod hybrid;
+mod lanes;
 mod particle_edge;
 mod particle_half_plane;
 mod particle_particle;

@@ -8,15 +8,15 @@ use crate::num::{
 };
 use crate::sim::bodies::Bodies;
 
-/// The two polynomials of a disc that starts at `x` and moves by `d` in the step: "closer than `radius`" and
+/// The two polynomials, untrimmed, of a disc that starts at `x` and moves by `d` in the step: "closer than `radius`" and
 /// "approaching". `squared` is `dot(normal, normal)`.
 #[inline]
 pub(super) fn polynomials(x: Vec2, d: Vec2, radius: f64, point: Vec2, normal: Vec2, squared: f64) -> [Polynomial; 2] {
     let s = d.dot(&normal);
     let w = (point - x).dot(&normal);
     [
-        Polynomial::trimmed(&[-s * s, 2.0 * w * s, -w * w + (radius * radius) * squared]),
-        Polynomial::trimmed(&[-s * s, w * s]),
+        Polynomial::untrimmed(&[-s * s, 2.0 * w * s, -w * w + (radius * radius) * squared]),
+        Polynomial::untrimmed(&[-s * s, w * s]),
     ]
 }
 

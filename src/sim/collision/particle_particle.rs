@@ -6,7 +6,7 @@ use crate::num::{
 };
 use crate::sim::bodies::Bodies;
 
-/// The two polynomials of discs that start at `x` and move by `d` in the step: "closer than `radii`" and "approaching".
+/// The two polynomials, untrimmed, of discs that start at `x` and move by `d` in the step: "closer than `radii`" and "approaching".
 /// Time is a fraction of the step.
 #[inline]
 pub(super) fn polynomials(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, radii: f64) -> [Polynomial; 2] {
@@ -16,8 +16,8 @@ pub(super) fn polynomials(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, radii: f64) ->
     // `e` is `-d`, so `dot(e, e)` is `dot(d, d)` bit for bit; of `dot(e, x)` a zero's sign may differ.
     let squared = d.dot(&d);
     [
-        Polynomial::trimmed(&[-squared, -2.0 * x.dot(&d), radii * radii - x.dot(&x)]),
-        Polynomial::trimmed(&[-squared, e.dot(&x)]),
+        Polynomial::untrimmed(&[-squared, -2.0 * x.dot(&d), radii * radii - x.dot(&x)]),
+        Polynomial::untrimmed(&[-squared, e.dot(&x)]),
     ]
 }
 

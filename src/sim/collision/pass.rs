@@ -8,7 +8,7 @@ use super::{
         observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Time},
         simulation::{RootSearch, SearchCounts, StepError},
     },
-    particle_edge::{self, EdgeMotion},
+    particle_edge::{self, EdgeMotions},
     particle_half_plane, particle_particle,
 };
 use crate::num::{
@@ -35,7 +35,8 @@ pub(super) struct Detector {
     step: u32,
     passes: u32,
     displacements: Vec<f64>,
-    edges: Vec<EdgeMotion>,
+    /// The motions of the edges, block by block.
+    edges: Vec<EdgeMotions>,
 }
 
 impl Detector {
@@ -79,94 +80,141 @@ impl Detector {
         q_start: &[f64],
         q_end: &mut [f64],
         observer: &mut O,
-        mut react: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+        react: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     ) -> Result<(), StepError> {
         observer.begin_pass(pass);
         self.passes += 1;
         self.prepare(bodies, q_start, q_end);
-        let mut hits = 0;
-        let particles = bodies.particles();
-        for i in 0..particles {
-            let x1 = at(q_start, i);
-            for j in i + 1..particles {
-                let (d1, x2, d2) = (at(&self.displacements, i), at(q_start, j), at(&self.displacements, j));
-                let polynomials = particle_particle::polynomials(x1, d1, x2, d2, bodies.radii[i] + bodies.radii[j]);
-                let pair = pair(PairKind::ParticleParticle, i, j);
-                let decision =
-                    self.decide(pair, &polynomials, |t| Some(particle_particle::normal(x1, d1, x2, d2, t)))?;
-                observer.detection(&Detection { pair, polynomials: &polynomials, decision, q_start, q_end });
-                if let Some(impulse) = hit(pair, decision) {
-                    hits += 1;
-                    if react(observer, &impulse, q_end) == Reaction::Moved {
-                        self.refresh(bodies, pair, q_start, q_end);
-                    }
-                }
-            }
-            for (e, &ends) in bodies.edges.iter().enumerate() {
-                if ends.contains(&i) {
-                    continue;
-                }
-                let d1 = at(&self.displacements, i);
-                let edge = self.edges[e];
-                let polynomials = particle_edge::polynomials(x1, d1, &edge, bodies.radii[i] + bodies.edge_radii[e]);
-                let pair = pair(PairKind::ParticleEdge, i, e);
-                let decision = self.decide(pair, &polynomials, |t| particle_edge::normal(x1, d1, &edge, t))?;
-                observer.detection(&Detection { pair, polynomials: &polynomials, decision, q_start, q_end });
-                if let Some(impulse) = hit(pair, decision) {
-                    hits += 1;
-                    if react(observer, &impulse, q_end) == Reaction::Moved {
-                        self.refresh(bodies, pair, q_start, q_end);
-                    }
-                }
-            }
-            for (h, (&point, &normal)) in bodies.points.iter().zip(&bodies.normals).enumerate() {
-                let d1 = at(&self.displacements, i);
-                let squared = normal.dot(&normal);
-                let polynomials = particle_half_plane::polynomials(x1, d1, bodies.radii[i], point, normal, squared);
-                let pair = pair(PairKind::ParticleHalfPlane, i, h);
-                let decision = self.decide(pair, &polynomials, |t| {
-                    Some(particle_half_plane::normal(x1, d1, point, normal, squared, t))
-                })?;
-                observer.detection(&Detection { pair, polynomials: &polynomials, decision, q_start, q_end });
-                if let Some(impulse) = hit(pair, decision) {
-                    hits += 1;
-                    if react(observer, &impulse, q_end) == Reaction::Moved {
-                        self.refresh(bodies, pair, q_start, q_end);
-                    }
-                }
-            }
+        let mut way = Way { bodies, q_start, q_end, observer, react, hits: 0 };
+        for i in 0..bodies.particles() {
+            self.particles(i, &mut way)?;
+            self.edges(i, &mut way)?;
+            self.half_planes(i, &mut way)?;
         }
+        let hits = way.hits;
         observer.end_pass(pass, hits);
         Ok(())
     }
 
-    /// Decides whether a pair collides; `normal` gives the contact normal at a time, or none when it is zero.
+    /// Looks at particle `i` and all later particles.
     #[inline]
-    fn decide(
+    fn particles<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    where
+        R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    {
+        let Way { bodies, q_start, .. } = *way;
+        let x1 = at(q_start, i);
+        let mut d1 = at(&self.displacements, i);
+        for j in i + 1..bodies.particles() {
+            let (x2, d2) = (at(q_start, j), at(&self.displacements, j));
+            let mut polynomials = particle_particle::polynomials(x1, d1, x2, d2, bodies.radii[i] + bodies.radii[j]);
+            let normal = |t| Some(particle_particle::normal(x1, d1, x2, d2, t));
+            if self.look(pair(PairKind::ParticleParticle, i, j), &mut polynomials, normal, way)? == Reaction::Moved {
+                d1 = at(&self.displacements, i);
+            }
+        }
+        Ok(())
+    }
+
+    /// Looks at particle `i` and all edges that it is no end of.
+    #[inline]
+    fn edges<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    where
+        R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    {
+        let Way { bodies, q_start, .. } = *way;
+        let x1 = at(q_start, i);
+        let mut d1 = at(&self.displacements, i);
+        let mut polynomials = Default::default();
+        for (block, ends) in bodies.edges.chunks(LANES).enumerate() {
+            let radii = both(block, |edge| bodies.radii[i] + bodies.edge_radii[edge], bodies.edges.len());
+            particle_edge::coefficients(x1, d1, &self.edges[block], radii).write(&mut polynomials);
+            for (lane, &ends) in ends.iter().enumerate() {
+                if ends.contains(&i) {
+                    continue;
+                }
+                let pair = pair(PairKind::ParticleEdge, i, LANES * block + lane);
+                let particles = [i, ends[0], ends[1]];
+                let d = particles.map(|particle| at(&self.displacements, particle));
+                let normal = |t| particle_edge::normal(particles.map(|particle| at(q_start, particle)), d, t);
+                if self.look(pair, &mut polynomials[lane], normal, way)? == Reaction::Moved {
+                    d1 = at(&self.displacements, i);
+                    particle_edge::coefficients(x1, d1, &self.edges[block], radii).write(&mut polynomials);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Looks at particle `i` and all half-planes.
+    #[inline]
+    fn half_planes<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    where
+        R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    {
+        let Way { bodies, q_start, .. } = *way;
+        let x = at(q_start, i);
+        let mut d = at(&self.displacements, i);
+        for (h, (&point, &q)) in bodies.points.iter().zip(&bodies.normals).enumerate() {
+            let squared = q.dot(&q);
+            let mut polynomials = particle_half_plane::polynomials(x, d, bodies.radii[i], point, q, squared);
+            let normal = |t| Some(particle_half_plane::normal(x, d, point, q, squared, t));
+            if self.look(pair(PairKind::ParticleHalfPlane, i, h), &mut polynomials, normal, way)? == Reaction::Moved {
+                d = at(&self.displacements, i);
+            }
+        }
+        Ok(())
+    }
+
+    /// Trims a pair's polynomials, decides about it, tells the observer and has a hit answered; `normal` gives the contact normal at a time, or
+    /// none when it is zero.
+    #[inline]
+    fn look<O: Observer, R>(
         &mut self,
         pair: Pair,
-        polynomials: &[Polynomial],
+        polynomials: &mut [Polynomial],
         normal: impl FnOnce(f64) -> Option<Vec2>,
-    ) -> Result<Decision, StepError> {
+        way: &mut Way<'_, O, R>,
+    ) -> Result<Reaction, StepError>
+    where
+        R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    {
+        polynomials.iter_mut().for_each(Polynomial::trim);
+        let decision = match self.time(pair, polynomials)? {
+            Time::Found(time) if time <= 1.0 => match normal(time) {
+                Some(normal) => Decision::Hit { time, normal },
+                None => Decision::Miss { time: Time::Found(time) },
+            },
+            time => Decision::Miss { time },
+        };
+        let Way { bodies, q_start, ref q_end, ref mut observer, .. } = *way;
+        observer.detection(&Detection { pair, polynomials, decision, q_start, q_end });
+        let Decision::Hit { time, normal } = decision else { return Ok(Reaction::Kept) };
+        way.hits += 1;
+        let reaction = (way.react)(way.observer, &Impulse { pair, normal, time }, way.q_end);
+        if reaction == Reaction::Moved {
+            self.refresh(bodies, pair, q_start, way.q_end);
+        }
+        Ok(reaction)
+    }
+
+    /// The time of impact as far as it has to be known.
+    #[inline]
+    fn time(&mut self, pair: Pair, polynomials: &[Polynomial]) -> Result<Time, StepError> {
         self.counts.calls += 1;
         let excluded = self.search != RootSearch::Always && excludes_unit_interval(polynomials);
         if excluded {
             self.counts.excluded += 1;
             if self.search == RootSearch::WhereNeeded {
-                return Ok(Decision::Miss { time: Time::Excluded });
+                return Ok(Time::Excluded);
             }
         }
         self.counts.searched += 1;
         let time = first_time(polynomials).map_err(|_| StepError::RootSearch { step: self.step, pair })?;
-        if time <= 1.0 {
-            if excluded {
-                self.counts.disagreements += 1;
-            }
-            if let Some(normal) = normal(time) {
-                return Ok(Decision::Hit { time, normal });
-            }
+        if excluded && time <= 1.0 {
+            self.counts.disagreements += 1;
         }
-        Ok(Decision::Miss { time: Time::Found(time) })
+        Ok(Time::Found(time))
     }
 
     /// Fills the shared values.
@@ -174,8 +222,9 @@ impl Detector {
         self.displacements.clear();
         self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
         self.edges.clear();
+        let blocks = 0..bodies.edges.len().div_ceil(LANES);
         let displacements = &self.displacements;
-        self.edges.extend(bodies.edges.iter().map(|&ends| motion(ends, q_start, displacements)));
+        self.edges.extend(blocks.map(|block| motions(bodies, block, q_start, displacements)));
     }
 
     /// Fills the shared values of a pair's particles again, and those of all edges at them.
@@ -190,29 +239,43 @@ impl Detector {
         for particle in moved {
             put(&mut self.displacements, particle, at(q_end, particle) - at(q_start, particle));
         }
-        for (edge, &ends) in self.edges.iter_mut().zip(&bodies.edges) {
-            if moved.contains(&ends[0]) || moved.contains(&ends[1]) {
-                *edge = motion(ends, q_start, &self.displacements);
+        for (block, ends) in bodies.edges.chunks(LANES).enumerate() {
+            if ends.as_flattened().iter().any(|end| moved.contains(end)) {
+                self.edges[block] = motions(bodies, block, q_start, &self.displacements);
             }
         }
     }
 }
 
-#[inline]
-fn motion([first, second]: [usize; 2], q_start: &[f64], displacements: &[f64]) -> EdgeMotion {
-    EdgeMotion::new(at(q_start, first), at(displacements, first), at(q_start, second), at(displacements, second))
+/// What a pass is about: the scene, the way of the step, who listens and who answers hits.
+struct Way<'a, O, R> {
+    bodies: &'a Bodies,
+    q_start: &'a [f64],
+    q_end: &'a mut [f64],
+    observer: &'a mut O,
+    react: R,
+    hits: usize,
 }
 
+/// Edges are looked at in blocks of so many.
+const LANES: usize = 2;
+
+/// A value of each edge in a block; a last block of one edge holds it twice.
+#[inline]
+fn both<T>(block: usize, value: impl Fn(usize) -> T, edges: usize) -> [T; LANES] {
+    [value(LANES * block), value((LANES * block + 1).min(edges - 1))]
+}
+
+/// The motions of the edges in a block.
+#[inline]
+fn motions(bodies: &Bodies, block: usize, q_start: &[f64], displacements: &[f64]) -> EdgeMotions {
+    let of = |array: &[f64], end: usize| both(block, |edge| at(array, bodies.edges[edge][end]), bodies.edges.len());
+    EdgeMotions::new(of(q_start, 0), of(displacements, 0), of(q_start, 1), of(displacements, 1))
+}
+
+/// Names a pair.
 #[inline]
 pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
     #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
     Pair { kind, first: first as u32, second: second as u32 }
-}
-
-#[inline]
-fn hit(pair: Pair, decision: Decision) -> Option<Impulse> {
-    match decision {
-        Decision::Hit { time, normal } => Some(Impulse { pair, normal, time }),
-        Decision::Miss { .. } => None,
-    }
 }
