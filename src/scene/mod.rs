@@ -2,10 +2,29 @@
 //!
 //! Knows nothing of the simulator and never touches the file system: it takes and gives text. The grammar is that of
 //! `scene-format.md`.
+//!
+//! [`read`] is for people: it reports everything that is wrong, with places and advice, and refuses what the original
+//! would silently take for something else. [`original::read`] is for compatibility: it accepts exactly what the
+//! original accepts and refuses the rest in the original's words.
 
+mod checks;
+mod document;
+mod fields;
+mod grammar;
 mod model;
+mod numbers;
 pub mod original;
+mod problem;
+mod reader;
+#[cfg(test)]
+mod reader_tests;
+mod write;
+mod xml;
 
+pub use checks::LARGEST_IMPLICIT;
 pub use model::{
     Collision, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport,
 };
+pub use problem::{MOST_PROBLEMS, Problem, Problems, Severity};
+pub use reader::{LARGEST_SCENE, Loaded, read};
+pub use write::write;

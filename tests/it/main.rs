@@ -7,4 +7,5 @@ mod root_vectors;
 mod samples;
 mod sandbox;
 mod scenes_corpus;
+mod scenes_props;
 mod trace_props;

@@ -1,7 +1,7 @@
 //! Every scene of the course, read by both readers.
 use std::path::{Path, PathBuf};
 
-use fosssim_oracle::scene::original;
+use fosssim_oracle::scene::{self, original};
 
 use crate::corpus;
 
@@ -19,16 +19,42 @@ fn scene_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-#[test]
-fn the_original_reader_accepts_every_scene() {
-    let Some(folder) = corpus::folder() else { return };
+/// The corpus's scenes with their names below the corpus folder, when there is a corpus.
+fn scenes() -> Option<Vec<(String, Vec<u8>)>> {
+    let folder = corpus::folder()?;
     let mut files = Vec::new();
     scene_files(&folder.join("scenes"), &mut files);
-    for path in &files {
-        let bytes = std::fs::read(path).expect("a readable scene");
-        if let Err(refusal) = original::read(&bytes) {
-            panic!("{}: {refusal}", path.display());
+    let named = files.into_iter().map(|path| {
+        let bytes = std::fs::read(&path).expect("a readable scene");
+        (path.strip_prefix(&folder).unwrap_or(&path).display().to_string(), bytes)
+    });
+    Some(named.collect())
+}
+
+#[test]
+fn both_readers_read_every_scene_alike() {
+    let Some(scenes) = scenes() else { return };
+    for (name, bytes) in &scenes {
+        let original = original::read(bytes).unwrap_or_else(|refusal| panic!("{name}: {refusal}"));
+        let loaded = scene::read(name, bytes).unwrap_or_else(|problems| panic!("{name}:\n{problems}"));
+        assert_eq!(loaded.scene, original.scene, "{name}");
+        for warning in loaded.warnings {
+            eprintln!("{name}:{warning}");
         }
     }
-    corpus::ran("the_original_reader_accepts_every_scene", files.len());
+    corpus::ran("both_readers_read_every_scene_alike", scenes.len());
+}
+
+#[test]
+fn every_scene_survives_being_written() {
+    let Some(scenes) = scenes() else { return };
+    for (name, bytes) in &scenes {
+        let before = original::read(bytes).unwrap_or_else(|refusal| panic!("{name}: {refusal}")).scene;
+        let written = scene::write(&before);
+        let strict = scene::read(name, written.as_bytes()).unwrap_or_else(|problems| panic!("{name}:\n{problems}"));
+        let lenient = original::read(written.as_bytes()).unwrap_or_else(|refusal| panic!("{name}: {refusal}"));
+        assert_eq!(strict.scene, before, "{name}");
+        assert_eq!(lenient.scene, before, "{name}");
+    }
+    corpus::ran("every_scene_survives_being_written", scenes.len());
 }

@@ -1,0 +1,438 @@
+//! The scene's elements with their places, and everything that is wrong with the XML itself.
+//!
+//! quick-xml cuts the text into tags and attributes; nesting, names and places are judged here. Values are left as
+//! they are written. Nothing is looked at twice, so that the work grows with the length of the text only.
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use quick_xml::errors::{Error, SyntaxError};
+use quick_xml::events::Event;
+use quick_xml::events::attributes::{AttrError, Attributes};
+
+use super::grammar::{self, Rule};
+use super::problem::{Finding, MOST_PROBLEMS, Report, quote};
+
+/// An attribute as written.
+#[derive(Debug)]
+pub(super) struct Attribute<'t> {
+    pub(super) name: &'t str,
+    pub(super) value: &'t str,
+    /// The bytes of the value, without its quotation marks unless it is empty.
+    pub(super) span: Range<usize>,
+}
+
+/// A known child of the scene.
+#[derive(Debug)]
+pub(super) struct Tag<'t> {
+    pub(super) rule: &'static Rule,
+    /// The bytes of `<name`.
+    pub(super) span: Range<usize>,
+    /// Known attributes, each once.
+    pub(super) attributes: Vec<Attribute<'t>>,
+    /// Known attributes that a misspelt one was probably meant to be.
+    pub(super) meant: BTreeSet<&'static str>,
+    /// Whether its attributes could not all be read.
+    pub(super) broken: bool,
+}
+
+/// What the text holds.
+#[derive(Debug, Default)]
+pub(super) struct Document<'t> {
+    /// The bytes of `<scene`, when there is a scene.
+    pub(super) scene: Option<Range<usize>>,
+    /// The known children of the scene in document order.
+    pub(super) tags: Vec<Tag<'t>>,
+    /// Whether the XML is broken, so that elements may be missing through no fault of their own.
+    pub(super) broken: bool,
+    /// Elements that a misspelt one was probably meant to be.
+    pub(super) meant: BTreeSet<&'static str>,
+    /// Whether there are elements of the rigid-body stub; they are not judged.
+    pub(super) rigid_bodies: bool,
+    /// Whether a root element of another name has been complained about.
+    pub(super) other_root: bool,
+}
+
+/// Reads the text, reporting every problem of the XML, of names and of nesting.
+pub(super) fn read<'t>(text: &'t str, report: &mut Report) -> Document<'t> {
+    let reading = Reading {
+        text,
+        report,
+        document: Document::default(),
+        open: Vec::new(),
+        roots: 0,
+        in_scene: false,
+        wrong_ends: 0,
+        stray: false,
+    };
+    reading.all()
+}
+
+/// An element that is open.
+struct Open<'t> {
+    name: &'t str,
+    span: Range<usize>,
+    /// Whether an element inside it has been complained about.
+    complained: bool,
+}
+
+struct Reading<'t, 'r> {
+    text: &'t str,
+    report: &'r mut Report,
+    document: Document<'t>,
+    open: Vec<Open<'t>>,
+    roots: usize,
+    in_scene: bool,
+    wrong_ends: usize,
+    /// Whether the last thing seen was stray text that has been reported.
+    stray: bool,
+}
+
+impl<'t> Reading<'t, '_> {
+    fn all(mut self) -> Document<'t> {
+        // The reader drops a byte order mark without counting it.
+        let skipped = if self.text.starts_with('\u{feff}') { 3 } else { 0 };
+        let mut reader = quick_xml::Reader::from_str(&self.text[skipped..]);
+        let config = reader.config_mut();
+        // Nesting is judged here, where the place of the opening tag is known.
+        config.check_end_names = false;
+        config.allow_unmatched_ends = true;
+        config.allow_dangling_amp = true;
+        loop {
+            let position = |offset: u64| usize::try_from(offset).unwrap_or(usize::MAX) + skipped;
+            let from = position(reader.buffer_position());
+            let event = reader.read_event();
+            let span = from..position(reader.buffer_position());
+            let was_stray = std::mem::take(&mut self.stray);
+            match event {
+                Ok(Event::Eof) => break,
+                Ok(Event::Start(_)) => self.start(span, true),
+                Ok(Event::Empty(_)) => self.start(span, false),
+                // So many say it all, and looking for what was meant is not free.
+                Ok(Event::End(_)) if self.wrong_ends > MOST_PROBLEMS => break,
+                Ok(Event::End(_)) => self.end(span),
+                Ok(Event::Text(_)) if self.text[span.clone()].trim_ascii().is_empty() => self.stray = was_stray,
+                Ok(Event::Text(_) | Event::CData(_) | Event::GeneralRef(_)) => self.stray_text(span, was_stray),
+                Ok(Event::DocType(_)) => self.document_type(span),
+                Ok(Event::Comment(_) | Event::PI(_) | Event::Decl(_)) => {}
+                Err(error) => {
+                    self.document.broken = true;
+                    let at = position(reader.error_position()).min(self.text.len());
+                    self.syntax(at, &error);
+                    if !matches!(error, Error::IllFormed(_)) {
+                        break;
+                    }
+                }
+            }
+        }
+        self.finish();
+        self.document
+    }
+
+    /// Whatever is still open at the end. Only the innermost is reported; the others may follow from it.
+    fn finish(&mut self) {
+        if let Some(open) = self.open.last() {
+            if !self.document.broken {
+                self.report.error(|| {
+                    Finding::new(open.span.clone(), format!("`<{}>` is never closed", quote(open.name)))
+                        .element(open.name)
+                        .help(format!("end it with `/>` or with `</{}>`", quote(open.name)))
+                });
+            }
+            self.document.broken = true;
+        }
+    }
+
+    fn syntax(&mut self, at: usize, error: &Error) {
+        let (message, help) = match error {
+            Error::Syntax(syntax) => syntax_words(*syntax),
+            other => (other.to_string(), None),
+        };
+        let end = self.text[at..].char_indices().nth(1).map_or(self.text.len(), |(offset, _)| at + offset);
+        self.report.error(|| Finding::new(at..end, message).maybe_help(help));
+    }
+
+    fn document_type(&mut self, span: Range<usize>) {
+        let declares = self.text[span.clone()].contains('[');
+        if declares {
+            self.report.error(|| {
+                Finding::new(span, "a document type with declarations, which the original ignores")
+                    .help("remove it and write out what it declares")
+            });
+        }
+    }
+
+    fn stray_text(&mut self, span: Range<usize>, reported: bool) {
+        self.stray = true;
+        if reported {
+            return;
+        }
+        let text = self.text[span.clone()].trim_ascii();
+        let outside = self.open.is_empty();
+        let at = offset(self.text, text);
+        self.report.error(|| {
+            let place = if outside { "outside the scene" } else { "between the elements" };
+            Finding::new(at..at + text.len(), format!("text {place}: `{}`", quote(text)))
+                .help("only elements count here; remove it or make it a comment, `<!-- ... -->`")
+        });
+    }
+
+    fn start(&mut self, span: Range<usize>, opens: bool) {
+        let inner = &self.text[span.start + 1..span.end - if opens { 1 } else { 2 }];
+        let name_length = inner.bytes().position(is_space).unwrap_or(inner.len());
+        let name = &inner[..name_length];
+        if name.is_empty() {
+            self.document.broken = true;
+            self.report.error(|| Finding::new(span.clone(), "no element name after `<`"));
+            return;
+        }
+        let name_span = span.start..span.start + 1 + name_length;
+        self.glued(inner, name, &name_span);
+        match self.open.len() {
+            0 => self.root(name, inner, &name_span),
+            1 if self.in_scene => self.child(name, inner, &name_span),
+            2.. if self.in_scene => self.nested(name, &name_span),
+            _ => {}
+        }
+        // `/ >` is complained about as an attribute; it was meant to be the end of the element.
+        if opens && !inner.trim_ascii_end().ends_with('/') {
+            self.open.push(Open { name, span: name_span, complained: false });
+        } else if self.open.is_empty() {
+            self.in_scene = false;
+        }
+    }
+
+    /// The original joins lines: a name with nothing but a line feed behind it becomes one with what follows.
+    fn glued(&mut self, inner: &str, name: &str, span: &Range<usize>) {
+        let behind = inner[name.len()..].trim_start_matches('\n');
+        let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));
+        if glued && behind != "/" {
+            self.report.error(|| {
+                Finding::new(
+                    span.clone(),
+                    format!("only a line break between `{}` and its first attribute", quote(name)),
+                )
+                .element(name)
+                .help("the original joins the lines and loses the element; put a space before the attribute")
+            });
+        }
+    }
+
+    fn root(&mut self, name: &'t str, inner: &'t str, span: &Range<usize>) {
+        self.roots += 1;
+        let similar = grammar::closest(name, ["scene"].into_iter()).is_some();
+        self.in_scene = self.document.scene.is_none() && (name == "scene" || (similar && self.roots == 1));
+        if self.in_scene {
+            self.document.scene = Some(span.clone());
+        }
+        if name != "scene" {
+            self.document.other_root = true;
+            let (message, help) = match (self.in_scene, self.document.scene.is_some()) {
+                (true, _) => (format!("the root element is `{}`, not `scene`", quote(name)), "did you mean `scene`?"),
+                (_, true) => (format!("a second root element `{}`", quote(name)), "only the first `scene` counts"),
+                (_, false) => (
+                    format!("the root element is `{}`, not `scene`", quote(name)),
+                    "everything stands in one element `scene`",
+                ),
+            };
+            self.report.error(|| Finding::new(span.clone(), message).element(name).help(help));
+        } else if !self.in_scene {
+            self.report.error(|| {
+                Finding::new(span.clone(), "a second `scene`")
+                    .element(name)
+                    .help("only the first one counts; move its elements there or to a file of their own")
+            });
+        }
+        static SCENE: Rule = Rule { name: "scene", attributes: &[] };
+        if self.in_scene {
+            self.attributes(&SCENE, inner, span.clone());
+        }
+    }
+
+    fn nested(&mut self, name: &str, span: &Range<usize>) {
+        let Some(parent) = self.open.get_mut(1) else { return };
+        if std::mem::replace(&mut parent.complained, true) {
+            return;
+        }
+        self.document.broken = true;
+        self.report.error(|| {
+            Finding::new(span.clone(), format!("`{}` inside `{}`", quote(name), quote(parent.name))).element(name).help(
+                format!("only elements directly in `scene` count; is the end of `{}` missing?", quote(parent.name)),
+            )
+        });
+    }
+
+    fn child(&mut self, name: &'t str, inner: &'t str, span: &Range<usize>) {
+        if let Some(rule) = grammar::rule(name) {
+            if rule.name.starts_with("rigidbody") {
+                self.document.rigid_bodies = true;
+                return;
+            }
+            let tag = self.attributes(rule, inner, span.clone());
+            self.document.tags.push(tag);
+            return;
+        }
+        // Looking for what was meant is not free, so only what is shown is looked up.
+        let meant = &mut self.document.meant;
+        self.report.error(|| {
+            let similar = grammar::similar_element(name);
+            meant.extend(similar);
+            Finding::new(span.clone(), format!("unknown element `{}`", quote(name))).element(name).help(
+                similar.map_or_else(
+                    || "the original ignores it silently".to_owned(),
+                    |similar| format!("did you mean `{similar}`?"),
+                ),
+            )
+        });
+    }
+
+    fn attributes(&mut self, rule: &'static Rule, inner: &'t str, span: Range<usize>) -> Tag<'t> {
+        let mut tag = Tag { rule, span: span.clone(), attributes: Vec::new(), meant: BTreeSet::new(), broken: false };
+        let mut found = Attributes::new(inner, span.len() - 1);
+        // Its own check compares each with all others; here there are few names to compare with.
+        found.with_checks(false);
+        for attribute in found {
+            match attribute {
+                Ok(attribute) => {
+                    let name = attribute.key.into_inner();
+                    let std::borrow::Cow::Borrowed(value) = attribute.value else { continue };
+                    self.attribute(&mut tag, name, value);
+                }
+                Err(error) => {
+                    // What stands behind it may belong to another element.
+                    tag.broken = true;
+                    self.broken_attribute(rule, inner, span.start + 1, &error);
+                    break;
+                }
+            }
+        }
+        tag
+    }
+
+    fn attribute(&mut self, tag: &mut Tag<'t>, name: &'t str, value: &'t str) {
+        let at = offset(self.text, name);
+        let name_span = at..at + name.len();
+        let rule = tag.rule;
+        if !rule.attributes.contains(&name) {
+            self.report.error(|| {
+                let similar = grammar::closest(name, rule.attributes.iter().copied());
+                tag.meant.extend(similar);
+                let help = match similar {
+                    Some(similar) => format!("did you mean `{similar}`?"),
+                    None if rule.attributes.is_empty() => format!("`{}` has none", rule.name),
+                    None => format!("`{}` has {}", rule.name, list(rule.attributes)),
+                };
+                Finding::new(name_span, format!("unknown attribute `{}` of `{}`", quote(name), rule.name))
+                    .element(rule.name)
+                    .attribute(name)
+                    .help(help)
+            });
+        } else if tag.attributes.iter().any(|other| other.name == name) {
+            self.report.error(|| {
+                Finding::new(name_span, format!("a second `{name}` of `{}`", rule.name))
+                    .element(rule.name)
+                    .attribute(name)
+                    .help("the original takes the first; remove one")
+            });
+        } else {
+            let at = offset(self.text, value);
+            let span = if value.is_empty() { at - 1..at + 1 } else { at..at + value.len() };
+            tag.attributes.push(Attribute { name, value, span });
+        }
+    }
+
+    fn broken_attribute(&mut self, rule: &Rule, inner: &str, start: usize, error: &AttrError) {
+        let (at, message) = match *error {
+            AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),
+            AttrError::ExpectedValue(at) => (at, "a value is missing after"),
+            AttrError::UnquotedValue(at) => (at, "quotation marks are missing around the value after"),
+            AttrError::ExpectedQuote(at, _) => (at, "the closing quotation mark is missing after"),
+            AttrError::Duplicated(at, _) => (at, "an attribute occurs twice after"),
+        };
+        // The position lies behind the word that matters, white space and all.
+        let before = inner.get(..at).unwrap_or(inner).trim_ascii_end();
+        let word = before.rfind(|c: char| c.is_ascii_whitespace()).map_or(0, |space| space + 1);
+        let (from, message, help) = if let Some(other) = before.rfind('<') {
+            (other, "a `<`".to_owned(), "is the `>` of this element missing?")
+        } else if before[word..].starts_with('/') {
+            (word, "a `/`".to_owned(), "`/` stands directly before `>`")
+        } else {
+            (word, format!("{message} `{}`", quote(&before[word..])), "attributes are written `name=\"value\"`")
+        };
+        self.report.error(|| {
+            Finding::new(start + from..start + before.len(), format!("{message} in `{}`", rule.name))
+                .element(rule.name)
+                .help(help)
+        });
+    }
+
+    fn end(&mut self, span: Range<usize>) {
+        let name = self.text[span.start + 2..span.end - 1].trim_ascii_end();
+        // Not deeper than this, or a file of nothing but wrong closing tags would take for ever.
+        const DEEPEST: usize = 64;
+        let known = self.open.iter().rev().take(DEEPEST).position(|open| open.name == name);
+        match (known, self.open.last()) {
+            (Some(0), _) => {}
+            (Some(above), Some(last)) => {
+                self.document.broken = true;
+                let nested = self.in_scene && self.open.get(1).is_some_and(|open| open.complained);
+                if !nested {
+                    self.report.error(|| {
+                        Finding::new(last.span.clone(), format!("`<{}>` is not closed", quote(last.name)))
+                            .element(last.name)
+                            .help(format!("end it with `/>` or with `</{}>`", quote(last.name)))
+                    });
+                }
+                self.open.truncate(self.open.len() - above);
+            }
+            (None, last) => {
+                self.document.broken = true;
+                self.wrong_ends += 1;
+                let slip = last.is_some_and(|open| grammar::closest(name, [open.name].into_iter()).is_some());
+                self.report.error(|| {
+                    let help = last.map(|open| format!("open is `<{}>`", quote(open.name)));
+                    Finding::new(span, format!("`</{}>` closes nothing", quote(name))).element(name).maybe_help(help)
+                });
+                if !slip {
+                    return;
+                }
+            }
+            (Some(_), None) => return,
+        }
+        self.open.pop();
+        self.in_scene &= !self.open.is_empty();
+    }
+}
+
+fn is_space(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\n' | b'\r' | b'\t')
+}
+
+/// Where a part of the text starts.
+fn offset(text: &str, part: &str) -> usize {
+    (part.as_ptr() as usize).saturating_sub(text.as_ptr() as usize).min(text.len())
+}
+
+/// Names for a message: `a`, `b` and `c`.
+pub(super) fn list(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} and {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+fn syntax_words(error: SyntaxError) -> (String, Option<String>) {
+    let (message, help) = match error {
+        SyntaxError::InvalidBangMarkup => ("`<!` starts neither a comment nor anything else known", "`<!-- ... -->`"),
+        SyntaxError::UnclosedPI | SyntaxError::UnclosedXmlDecl => ("`<?` without `?>`", "end it with `?>`"),
+        SyntaxError::UnclosedComment => ("a comment without end", "end it with `-->`"),
+        SyntaxError::UnclosedDoctype => ("a document type without end", "end it with `>`"),
+        SyntaxError::UnclosedCData => ("a CDATA section without end", "end it with `]]>`"),
+        SyntaxError::UnclosedTag => ("a tag without end", "end it with `>` or `/>`"),
+        SyntaxError::UnclosedSingleQuotedAttributeValue | SyntaxError::UnclosedDoubleQuotedAttributeValue => {
+            ("a quotation mark is missing in this tag or behind it", "close every value")
+        }
+    };
+    (message.to_owned(), Some(help.to_owned()))
+}

@@ -1,0 +1,151 @@
+//! The names that a scene may use, and the one that somebody probably meant (scene-format.md 4, 5).
+
+/// What is known about one element.
+#[derive(Debug)]
+pub(super) struct Rule {
+    pub(super) name: &'static str,
+    pub(super) attributes: &'static [&'static str],
+}
+
+const fn element(name: &'static str, attributes: &'static [&'static str]) -> Rule {
+    Rule { name, attributes }
+}
+
+/// Every element that may stand in a scene.
+static RULES: [Rule; 25] = [
+    element("simtype", &["type"]),
+    element("duration", &["time"]),
+    element("maxsimfreq", &["max"]),
+    element("viewport", &["cx", "cy", "size"]),
+    element("backgroundcolor", &["r", "g", "b"]),
+    element("description", &["text"]),
+    element("scenetag", &["tag"]),
+    element("integrator", &["type", "dt"]),
+    element("collision", &["type", "COR", "maxiters", "k", "thickness"]),
+    element("collisiondetection", &["type"]),
+    element("particle", &["px", "py", "vx", "vy", "m", "fixed", "radius", "tag"]),
+    element("edge", &["i", "j", "radius"]),
+    element("halfplane", &["px", "py", "nx", "ny"]),
+    element("springforce", &["edge", "k", "l0", "b"]),
+    element("simplegravity", &["fx", "fy"]),
+    element("gravitationalforce", &["i", "j", "G"]),
+    element("constantforce", &["fx", "fy"]),
+    element("dragdamping", &["b"]),
+    element("vortexforce", &["i", "j", "kbs", "kvc"]),
+    element("particlecolor", &["i", "r", "g", "b"]),
+    element("edgecolor", &["i", "r", "g", "b"]),
+    element("halfplanecolor", &["i", "r", "g", "b"]),
+    element("particlepath", &["i", "duration", "r", "g", "b"]),
+    // Only so that the stub's elements are refused in words of their own.
+    element("rigidbody", &["p", "r"]),
+    element("rigidbodyvertex", &["x", "y", "m"]),
+];
+
+/// The rule for an element of this name.
+pub(super) fn rule(name: &str) -> Option<&'static Rule> {
+    RULES.iter().find(|rule| rule.name == name)
+}
+
+/// The known element that `name` looks like.
+pub(super) fn similar_element(name: &str) -> Option<&'static str> {
+    closest(name, RULES.iter().map(|rule| rule.name))
+}
+
+/// What many people write for a name of the format.
+const HABITS: [(&str, &str); 8] = [
+    ("mass", "m"),
+    ("x", "px"),
+    ("y", "py"),
+    ("force", "constantforce"),
+    ("gravity", "simplegravity"),
+    ("spring", "springforce"),
+    ("drag", "dragdamping"),
+    ("vortex", "vortexforce"),
+];
+
+/// The candidate that `word` was probably meant to be: the same but for case and punctuation, a customary other
+/// name, the beginning of it, or few slips away (a third of its letters, at most two).
+pub(super) fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
+    const LONGEST: usize = 40;
+    if word.len() > LONGEST {
+        return None;
+    }
+    let plain = plain(word);
+    let habit = HABITS.iter().find(|(habit, _)| *habit == plain).map(|(_, name)| *name);
+    candidates
+        .filter(|candidate| candidate.len() <= LONGEST)
+        .filter_map(|candidate| {
+            let other = self::plain(candidate);
+            // The beginning of a name is as good as one slip.
+            let begins = plain.len() >= 3 && other.starts_with(&plain);
+            let distance = match habit {
+                Some(name) if name == candidate => 0,
+                _ if begins && plain != other => 1,
+                _ => distance(&plain, &other),
+            };
+            let allowed = (plain.len().max(other.len()) / 3).min(2);
+            (distance <= allowed).then_some((distance, candidate))
+        })
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Lowercase letters and digits only.
+fn plain(word: &str) -> String {
+    word.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// Insertions, deletions, replacements and swaps of neighbours that lead from one word to the other.
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let mut before: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut best = replaced.min(last[j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                best = best.min(before[j - 2] + 1);
+            }
+            row.push(best);
+        }
+        before = std::mem::replace(&mut last, row);
+    }
+    last[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_case_and_punctuation_are_seen_through() {
+        for (written, meant) in [
+            ("partcile", Some("particle")),
+            ("Particle", Some("particle")),
+            ("half-plane", Some("halfplane")),
+            ("springForce", Some("springforce")),
+            ("spring", Some("springforce")),
+            ("durration", Some("duration")),
+            ("pxarticle", Some("particle")),
+            ("explicit", None),
+            ("wall", None),
+            ("", None),
+        ] {
+            assert_eq!(similar_element(written), meant, "{written}");
+        }
+    }
+
+    #[test]
+    fn short_names_are_not_guessed_wildly() {
+        let particle = rule("particle").expect("known").attributes;
+        let meant = |word| closest(word, particle.iter().copied());
+        assert_eq!(meant("mass"), Some("m"));
+        assert_eq!(meant("pX"), Some("px"));
+        assert_eq!(meant("fx"), None);
+        assert_eq!(meant("z"), None);
+        assert_eq!(meant("raduis"), Some("radius"));
+        assert_eq!(meant("rad"), Some("radius"));
+    }
+}

@@ -1,0 +1,248 @@
+//! What is wrong with a scene, where, and what would be right.
+use std::fmt;
+use std::ops::Range;
+
+/// At most this many errors, and as many warnings, are kept of one scene; the rest is only counted.
+pub const MOST_PROBLEMS: usize = 200;
+
+/// How bad a problem is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The scene is refused.
+    Error,
+    /// The scene loads, but probably does not mean what its author thinks.
+    Warning,
+}
+
+/// One problem of a scene.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// Error or warning.
+    pub severity: Severity,
+    /// Line of the place, from 1.
+    pub line: usize,
+    /// Column of the place, from 1, in characters.
+    pub column: usize,
+    /// The bytes of the file that it is about; may be empty.
+    pub span: Range<usize>,
+    /// The element that it is about.
+    pub element: Option<String>,
+    /// The attribute that it is about.
+    pub attribute: Option<String>,
+    /// What was found, as a lowercase fragment.
+    pub message: String,
+    /// What is allowed, or what to do.
+    pub help: Option<String>,
+}
+
+impl fmt::Display for Problem {
+    /// `line:column: message (help)`; a warning says so.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: ", self.line, self.column)?;
+        if self.severity == Severity::Warning {
+            f.write_str("warning: ")?;
+        }
+        f.write_str(&self.message)?;
+        self.help.as_ref().map_or(Ok(()), |help| write!(f, " ({help})"))
+    }
+}
+
+/// Why a scene was refused: its errors and warnings in the order of their places.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problems {
+    /// The scene's name, as the caller gave it.
+    pub source: String,
+    /// The problems, at least one of them an error.
+    pub list: Vec<Problem>,
+    /// How many more were found but not kept ([`MOST_PROBLEMS`]).
+    pub omitted: usize,
+}
+
+impl Problems {
+    /// A refusal of the whole text, pointing to its start.
+    pub(super) fn whole(source: &str, message: String, help: &str) -> Self {
+        let problem = Problem {
+            severity: Severity::Error,
+            line: 1,
+            column: 1,
+            span: 0..0,
+            element: None,
+            attribute: None,
+            message,
+            help: Some(help.to_owned()),
+        };
+        Self { source: source.to_owned(), list: vec![problem], omitted: 0 }
+    }
+}
+
+impl fmt::Display for Problems {
+    /// One problem a line, without the source's name and without a newline at the end.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (number, problem) in self.list.iter().enumerate() {
+            let separator = if number == 0 { "" } else { "\n" };
+            write!(f, "{separator}{problem}")?;
+        }
+        match self.omitted {
+            0 => Ok(()),
+            more => write!(f, "\nand {more} more"),
+        }
+    }
+}
+
+impl std::error::Error for Problems {}
+
+/// A problem whose line and column are not known yet.
+#[derive(Debug)]
+pub(super) struct Finding {
+    span: Range<usize>,
+    element: Option<String>,
+    attribute: Option<String>,
+    message: String,
+    help: Option<String>,
+}
+
+impl Finding {
+    pub(super) fn new(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self { span, element: None, attribute: None, message: message.into(), help: None }
+    }
+
+    pub(super) fn element(self, name: &str) -> Self {
+        Self { element: Some(quote(name)), ..self }
+    }
+
+    pub(super) fn attribute(self, name: &str) -> Self {
+        Self { attribute: Some(quote(name)), ..self }
+    }
+
+    pub(super) fn help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+
+    pub(super) fn maybe_help(self, help: Option<String>) -> Self {
+        Self { help, ..self }
+    }
+}
+
+/// Gathers findings. They are made only while there is room, so that a file full of rubbish costs no more than its
+/// length.
+#[derive(Debug, Default)]
+pub(super) struct Report {
+    errors: Vec<Finding>,
+    warnings: Vec<Finding>,
+    omitted: usize,
+}
+
+impl Report {
+    pub(super) fn error(&mut self, finding: impl FnOnce() -> Finding) {
+        if self.errors.len() < MOST_PROBLEMS {
+            self.errors.push(finding());
+        } else {
+            self.omitted += 1;
+        }
+    }
+
+    pub(super) fn warning(&mut self, finding: impl FnOnce() -> Finding) {
+        if self.warnings.len() < MOST_PROBLEMS {
+            self.warnings.push(finding());
+        } else {
+            self.omitted += 1;
+        }
+    }
+
+    pub(super) fn has_errors(&self) -> bool {
+        !self.errors.is_empty()
+    }
+
+    /// The problems in the order of their places, and how many more there were. `text` is what the spans refer to.
+    pub(super) fn finish(self, text: &[u8]) -> (Vec<Problem>, usize) {
+        let errors = self.errors.into_iter().map(|finding| (Severity::Error, finding));
+        let warnings = self.warnings.into_iter().map(|finding| (Severity::Warning, finding));
+        let mut findings: Vec<_> = errors.chain(warnings).collect();
+        findings.sort_by_key(|(severity, finding)| (finding.span.start, *severity));
+        let mut place = Place::at_start(text);
+        let problem = |(severity, finding): (Severity, Finding)| {
+            let (line, column) = place.advance(text, finding.span.start);
+            let Finding { span, element, attribute, message, help } = finding;
+            Problem { severity, line, column, span, element, attribute, message, help }
+        };
+        (findings.into_iter().map(problem).collect(), self.omitted)
+    }
+}
+
+/// A sweep over the text that counts lines and characters once.
+struct Place {
+    at: usize,
+    line: usize,
+    column: usize,
+}
+
+impl Place {
+    fn at_start(text: &[u8]) -> Self {
+        // A byte order mark takes no room on the screen.
+        let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Self { at, line: 1, column: 1 }
+    }
+
+    fn advance(&mut self, text: &[u8], to: usize) -> (usize, usize) {
+        let to = to.min(text.len());
+        for &byte in text.get(self.at..to).unwrap_or_default() {
+            if byte == b'\n' {
+                self.line += 1;
+                self.column = 1;
+            } else if byte & 0xc0 != 0x80 {
+                // Every byte but the continuations of UTF-8 starts a character.
+                self.column += 1;
+            }
+        }
+        self.at = self.at.max(to);
+        (self.line, self.column)
+    }
+}
+
+/// A piece of the scene for a message: control characters escaped, cut when long.
+pub(super) fn quote(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut quoted: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    // Quotation marks need no escape between backquotes.
+    quoted = quoted.replace("\\\"", "\"").replace("\\'", "'");
+    if text.chars().nth(LONGEST).is_some() {
+        quoted.push_str("...");
+    }
+    quoted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_count_lines_and_characters() {
+        let text = "\u{feff}a\né b\r\nc".as_bytes();
+        let mut report = Report::default();
+        report.warning(|| Finding::new(13..13, "third"));
+        report.error(|| Finding::new(8..9, "second").help("do this"));
+        report.error(|| Finding::new(3..4, "first").element("e"));
+        let (list, omitted) = report.finish(text);
+        let shown = Problems { source: "x".into(), list, omitted }.to_string();
+        assert_eq!(shown, "1:1: first\n2:3: second (do this)\n3:2: warning: third");
+    }
+
+    #[test]
+    fn the_list_is_capped_and_the_rest_counted() {
+        let mut report = Report::default();
+        for _ in 0..MOST_PROBLEMS + 3 {
+            report.error(|| Finding::new(0..0, "e"));
+        }
+        report.warning(|| Finding::new(0..0, "w"));
+        let (list, omitted) = report.finish(b"");
+        assert_eq!((list.len(), omitted), (MOST_PROBLEMS + 1, 3));
+        let shown = Problems { source: String::new(), list, omitted }.to_string();
+        assert!(shown.ends_with("1:1: warning: w\nand 3 more"), "{shown}");
+    }
+
+    #[test]
+    fn quoted_text_is_harmless_and_short() {
+        assert_eq!(quote("a\u{1b}\n\"'"), "a\\u{1b}\\n\"'");
+        assert_eq!(quote(&"é".repeat(41)), format!("{}...", "é".repeat(40)));
+    }
+}

@@ -1,0 +1,89 @@
+//! The strict reader: a whole scene or all its problems at once.
+//!
+//! What the original accepts silently and then simulates differently from what was written, or dies of, is an error
+//! here (scene-format.md 6). A scene without errors means the same to both readers; that is checked at the end, so that
+//! no oddity of the original's parser can slip through.
+use std::borrow::Cow;
+
+use super::model::Scene;
+use super::problem::{Finding, Problem, Problems, Report};
+use super::{checks, document, original, xml};
+
+/// The largest scene file that is read, in bytes.
+pub const LARGEST_SCENE: usize = 8 << 20;
+
+/// A scene without errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loaded {
+    /// The scene; all indices are valid, all numbers finite.
+    pub scene: Scene,
+    /// What its author should look at all the same, in the order of the places.
+    pub warnings: Vec<Problem>,
+}
+
+/// Reads a scene. `name` is what messages call it.
+///
+/// # Errors
+///
+/// All problems that were found, up to [`super::MOST_PROBLEMS`] of a kind, when at least one of them is an error. The
+/// spans refer to `text` as given.
+pub fn read(name: &str, text: &[u8]) -> Result<Loaded, Problems> {
+    if text.len() > LARGEST_SCENE {
+        let message = format!("the file has {} bytes", text.len());
+        return Err(Problems::whole(name, message, "a scene has at most 8 MiB"));
+    }
+    if text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff") {
+        return Err(Problems::whole(name, "the file is in UTF-16".into(), "save it as UTF-8"));
+    }
+    let mut report = Report::default();
+    let readable = decode(text, &mut report);
+    let document = document::read(&readable, &mut report);
+    let mut scene = None;
+    if document.scene.is_none() {
+        if !document.broken && !document.other_root {
+            report.error(|| {
+                Finding::new(0..0, "the file has no `scene`").help("everything stands between `<scene>` and `</scene>`")
+            });
+        }
+    } else if let Some(parts) = xml::read(&document, &mut report) {
+        checks::check(&document, &parts, &mut report);
+        scene = parts.into_scene().filter(|_| !report.has_errors());
+    }
+    if let Some(found) = &scene {
+        compare(found, text, &mut report);
+    } else if !report.has_errors() {
+        report.error(|| Finding::new(0..0, "the scene is incomplete"));
+    }
+    let refused = report.has_errors();
+    let (list, omitted) = report.finish(text);
+    match scene {
+        Some(scene) if !refused => Ok(Loaded { scene, warnings: list }),
+        _ => Err(Problems { source: name.to_owned(), list, omitted }),
+    }
+}
+
+/// The text with every byte that is not UTF-8 replaced by `?`, so that places stay where they are.
+fn decode<'t>(text: &'t [u8], report: &mut Report) -> Cow<'t, str> {
+    if let Some(at) = text.iter().position(|&byte| byte == 0) {
+        report.error(|| Finding::new(at..at + 1, "a NUL byte").help("the original stops reading there"));
+    }
+    let Err(error) = std::str::from_utf8(text) else { return String::from_utf8_lossy(text) };
+    let at = error.valid_up_to();
+    report.error(|| Finding::new(at..at + 1, "a byte that is not UTF-8").help("save the file as UTF-8"));
+    let mut readable = String::with_capacity(text.len());
+    for chunk in text.utf8_chunks() {
+        readable.push_str(chunk.valid());
+        readable.extend(chunk.invalid().iter().map(|_| '?'));
+    }
+    Cow::Owned(readable)
+}
+
+/// Makes sure that the original reads the same.
+fn compare(scene: &Scene, text: &[u8], report: &mut Report) {
+    let difference = match original::read(text) {
+        Ok(original) if original.scene == *scene => return,
+        Ok(_) => "it joins lines without a space and may see other markup".to_owned(),
+        Err(refusal) => refusal.explanation,
+    };
+    report.error(|| Finding::new(0..0, "the original reads this file differently").help(difference));
+}

@@ -1,0 +1,400 @@
+//! From elements to a scene: which attributes each element has, and which values make sense (scene-format.md 4, 5).
+//!
+//! What only several elements together can get wrong is judged in `checks`.
+use super::document::{Document, Tag};
+use super::fields::{Count, Fields};
+use super::model::{Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport};
+use super::problem::{Finding, Report};
+
+/// The elements that objects were read from, so that later checks can point to them.
+pub(super) struct Parts<'d, 't> {
+    pub(super) particles: Vec<Part<'d, 't, Particle>>,
+    pub(super) edges: Vec<Part<'d, 't, Edge>>,
+    pub(super) half_planes: Vec<Part<'d, 't, HalfPlane>>,
+    pub(super) forces: Vec<Part<'d, 't, Force>>,
+    pub(super) integrator: Option<Part<'d, 't, (Integrator, f64)>>,
+    pub(super) duration: Option<Part<'d, 't, f64>>,
+    pub(super) collision: Option<Collision>,
+    pub(super) description: Option<Option<String>>,
+    pub(super) display: Option<Display>,
+}
+
+/// A tag and what was read from it, unless it had problems.
+pub(super) struct Part<'d, 't, T> {
+    pub(super) tag: &'d Tag<'t>,
+    pub(super) value: Option<T>,
+}
+
+impl Parts<'_, '_> {
+    /// The scene, when nothing of it is missing.
+    pub(super) fn into_scene(self) -> Option<Scene> {
+        fn values<T>(parts: Vec<Part<'_, '_, T>>) -> Option<Vec<T>> {
+            parts.into_iter().map(|part| part.value).collect()
+        }
+        let (integrator, time_step) = self.integrator?.value?;
+        Some(Scene {
+            duration: self.duration?.value?,
+            time_step,
+            integrator,
+            collision: self.collision?,
+            particles: values(self.particles)?,
+            edges: values(self.edges)?,
+            half_planes: values(self.half_planes)?,
+            forces: values(self.forces)?,
+            description: self.description?,
+            display: self.display?,
+        })
+    }
+}
+
+/// Reads all elements. `None` when the scene is of a kind that is not simulated here.
+pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> Option<Parts<'d, 't>> {
+    let mut reading = Reading { document, report };
+    if reading.is_rigid() {
+        return None;
+    }
+    let particles = reading.repeated("particle", particle);
+    let of_particles = reading.count("particle", "particle", particles.len());
+    let edges = reading.repeated("edge", |fields| edge(fields, of_particles));
+    let of_edges = reading.count("edge", "edge", edges.len());
+    let half_planes = reading.repeated("halfplane", |fields| {
+        let (point, normal) = (fields.vector("px", "py"), fields.vector("nx", "ny"));
+        Some(HalfPlane { point: point?, normal: normal? })
+    });
+    let of_half_planes = reading.count("halfplane", "half-plane", half_planes.len());
+    Some(Parts {
+        forces: reading.forces(of_particles, of_edges),
+        integrator: reading.required("integrator", "type=\"...\" dt=\"...\"", integrator),
+        duration: reading.required("duration", "time=\"...\"", duration),
+        collision: reading.single("collision", collision).map_or(Some(Collision::None), |part| part.value),
+        description: reading.optional("description", |fields| fields.text("text", "a text")),
+        display: reading.display(of_particles, of_edges, of_half_planes),
+        particles,
+        edges,
+        half_planes,
+    })
+}
+
+struct Reading<'d, 't, 'r> {
+    document: &'d Document<'t>,
+    report: &'r mut Report,
+}
+
+impl<'d, 't> Reading<'d, 't, '_> {
+    fn tags(&self, name: &str) -> impl Iterator<Item = &'d Tag<'t>> + use<'d, 't> {
+        let name = name.to_owned();
+        self.document.tags.iter().filter(move |tag| tag.rule.name == name)
+    }
+
+    /// Elements of a kind that may be repeated.
+    fn repeated<T>(
+        &mut self,
+        name: &str,
+        mut read: impl FnMut(&mut Fields<'d, 't, '_>) -> Option<T>,
+    ) -> Vec<Part<'d, 't, T>> {
+        let tags = self.tags(name).enumerate();
+        let read = |(number, tag)| Part { tag, value: read(&mut Fields::new(tag, Some(number), self.report)) };
+        tags.map(read).collect()
+    }
+
+    /// The first element of a kind of which only one counts.
+    fn single<T>(
+        &mut self,
+        name: &str,
+        read: impl FnOnce(&mut Fields<'d, 't, '_>) -> Option<T>,
+    ) -> Option<Part<'d, 't, T>> {
+        let mut tags = self.tags(name);
+        let tag = tags.next()?;
+        for other in tags {
+            self.report.error(|| {
+                Finding::new(other.span.clone(), format!("a second `{name}`"))
+                    .element(name)
+                    .help("the original takes the first and ignores the others; remove one")
+            });
+        }
+        Some(Part { tag, value: read(&mut Fields::new(tag, None, self.report)) })
+    }
+
+    /// A single element that may be absent; the outer `None` means unreadable.
+    fn optional<T>(
+        &mut self,
+        name: &str,
+        read: impl FnOnce(&mut Fields<'d, 't, '_>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        self.single(name, read).map_or(Some(None), |part| part.value.map(Some))
+    }
+
+    /// A single element that must be there.
+    fn required<T>(
+        &mut self,
+        name: &str,
+        attributes: &str,
+        read: impl FnOnce(&mut Fields<'d, 't, '_>) -> Option<T>,
+    ) -> Option<Part<'d, 't, T>> {
+        let part = self.single(name, read);
+        if let (None, Some(scene)) = (&part, &self.document.scene)
+            && !self.document.broken
+            && !self.document.meant.contains(name)
+        {
+            self.report.error(|| {
+                Finding::new(scene.clone(), format!("the scene has no `{name}`"))
+                    .element(name)
+                    .help(format!("add `<{name} {attributes}/>`"))
+            });
+        }
+        part
+    }
+
+    fn count(&self, name: &str, what: &'static str, count: usize) -> Count {
+        Count { what, count, certain: !self.document.broken && !self.document.meant.contains(name) }
+    }
+
+    /// Whether the scene is one of the unfinished rigid-body stub; reports wrong types, too.
+    fn is_rigid(&mut self) -> bool {
+        let types = [("particle-system", false), ("rigid-body", true)];
+        let stub = "rigid bodies are an unfinished stub of the original and are not simulated";
+        let single = self.single("simtype", |fields| {
+            // Absent and empty mean a particle system.
+            let rigid = !fields.is_blank("type") && fields.choice("type", &types)?;
+            if rigid {
+                fields.bad("type", format!("{stub}; use `particle-system`"));
+            }
+            Some(rigid)
+        });
+        let rigid = single.and_then(|part| part.value).unwrap_or(false);
+        if self.document.rigid_bodies && !rigid {
+            let scene = self.document.scene.clone().unwrap_or(0..0);
+            self.report.error(|| {
+                Finding::new(scene, "the scene has rigid bodies").help(format!("{stub}; use particles and edges"))
+            });
+        }
+        rigid
+    }
+
+    /// All forces in the order in which they act.
+    fn forces(&mut self, particles: Count, edges: Count) -> Vec<Part<'d, 't, Force>> {
+        let mut forces = self.repeated("springforce", |fields| spring(fields, edges));
+        forces.extend(self.repeated("simplegravity", |fields| {
+            Some(Force::SimpleGravity { acceleration: fields.vector("fx", "fy")? })
+        }));
+        forces.extend(self.repeated("gravitationalforce", |fields| {
+            let (pair, constant) = (pair(fields, particles), fields.scalar("G"));
+            let (first, second) = pair?;
+            Some(Force::Gravitation { first, second, constant: constant? })
+        }));
+        forces.extend(
+            self.repeated("constantforce", |fields| Some(Force::Constant { force: fields.vector("fx", "fy")? })),
+        );
+        forces.extend(self.repeated("dragdamping", |fields| {
+            let coefficient = fields.scalar("b")?;
+            negative(fields, "b", coefficient, "motion is driven instead of damped");
+            Some(Force::Drag { coefficient })
+        }));
+        forces.extend(self.repeated("vortexforce", |fields| {
+            let pair = pair(fields, particles);
+            let (strength, coupling) = (fields.scalar("kbs"), fields.scalar("kvc"));
+            let (first, second) = pair?;
+            Some(Force::Vortex { first, second, strength: strength?, coupling: coupling? })
+        }));
+        forces
+    }
+
+    fn display(&mut self, particles: Count, edges: Count, half_planes: Count) -> Option<Display> {
+        if let Some(part) = self.single("collisiondetection", |_| Some(())) {
+            self.report.warning(|| {
+                Finding::new(part.tag.span.clone(), "`collisiondetection` has no effect")
+                    .element("collisiondetection")
+                    .help("it belongs to Theme 2 Milestone 3; this program tests all pairs as Milestone 2 does")
+            });
+        }
+        let max_frequency = self.optional("maxsimfreq", |fields| fields.scalar("max"));
+        let viewport = self.optional("viewport", |fields| {
+            let (center, size) = (fields.vector("cx", "cy"), fields.scalar("size"));
+            Some(Viewport { center: center?, size: size? })
+        });
+        let background = self.optional("backgroundcolor", |fields| fields.color());
+        let tag = self.optional("scenetag", |fields| fields.text("tag", "a text"));
+        let mut colors = |name: &str, of: Count| {
+            let parts = self.repeated(name, |fields| {
+                let (index, color) = (fields.index("i", of), fields.color());
+                Some((index?, color?))
+            });
+            parts.into_iter().map(|part| part.value).collect::<Option<Vec<_>>>()
+        };
+        let particle_colors = colors("particlecolor", particles);
+        let edge_colors = colors("edgecolor", edges);
+        let half_plane_colors = colors("halfplanecolor", half_planes);
+        let paths = self.repeated("particlepath", |fields| path(fields, particles));
+        let paths = paths.into_iter().map(|part| part.value).collect::<Option<Vec<_>>>();
+        Some(Display {
+            max_frequency: max_frequency?,
+            viewport: viewport?,
+            background: background?,
+            tag: tag?,
+            particle_colors: particle_colors?,
+            edge_colors: edge_colors?,
+            half_plane_colors: half_plane_colors?,
+            paths: paths?,
+        })
+    }
+}
+
+type AnyFields<'d, 't, 'r> = Fields<'d, 't, 'r>;
+
+fn duration(fields: &mut AnyFields<'_, '_, '_>) -> Option<f64> {
+    let duration = fields.scalar("time")?;
+    if duration < 0.0 {
+        fields.bad("time", "the simulated time cannot be negative");
+    }
+    Some(duration)
+}
+
+fn integrator(fields: &mut AnyFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
+    let types = [
+        ("explicit-euler", Integrator::ExplicitEuler),
+        ("forward-backward-euler", Integrator::ForwardBackwardEuler),
+        ("symplectic-euler", Integrator::SymplecticEuler),
+        ("implicit-euler", Integrator::ImplicitEuler),
+        ("linearized-implicit-euler", Integrator::LinearizedImplicitEuler),
+    ];
+    let (integrator, time_step) = (fields.choice("type", &types), fields.scalar("dt"));
+    if time_step.is_some_and(|time_step| time_step <= 0.0) {
+        fields.bad("dt", "the time step must be positive; the original makes no step");
+    }
+    Some((integrator?, time_step?))
+}
+
+fn collision(fields: &mut AnyFields<'_, '_, '_>) -> Option<Collision> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum Kind {
+        None,
+        Simple,
+        Penalty,
+        ContinuousTime,
+        Hybrid,
+    }
+    let types = [
+        ("none", Kind::None),
+        ("simple", Kind::Simple),
+        ("penalty", Kind::Penalty),
+        ("continuous-time", Kind::ContinuousTime),
+        ("hybrid", Kind::Hybrid),
+    ];
+    let restitution = fields.scalar_or("COR", 1.0);
+    if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
+        fields.odd("COR", "a coefficient of restitution lies between 0 and 1");
+    }
+    let kind = fields.choice("type", &types)?;
+    let used: &[&str] = match kind {
+        Kind::None | Kind::Simple | Kind::ContinuousTime => &[],
+        Kind::Penalty => &["k", "thickness"],
+        Kind::Hybrid => &["maxiters", "k", "thickness"],
+    };
+    for name in ["maxiters", "k", "thickness"] {
+        if fields.has(name) && !used.contains(&name) {
+            fields.warning(name, "has no effect", "this type of collision handling does not use it");
+        }
+    }
+    let (default_stiffness, default_thickness) = if kind == Kind::Hybrid { (10.0, 0.1) } else { (100.0, 0.01) };
+    let mut force = || {
+        let (stiffness, thickness) =
+            (fields.scalar_or("k", default_stiffness), fields.scalar_or("thickness", default_thickness));
+        let (stiffness, thickness) = (stiffness?, thickness?);
+        negative(fields, "k", stiffness, "the penalty force attracts");
+        negative(fields, "thickness", thickness, "the penalty force sets in late");
+        Some((stiffness, thickness))
+    };
+    match kind {
+        Kind::None => restitution.map(|_| Collision::None),
+        Kind::Simple => Some(Collision::Simple { restitution: restitution? }),
+        Kind::ContinuousTime => Some(Collision::ContinuousTime { restitution: restitution? }),
+        Kind::Penalty => {
+            let (stiffness, thickness) = force()?;
+            restitution.map(|_| Collision::Penalty { stiffness, thickness })
+        }
+        Kind::Hybrid => {
+            let force = force();
+            let max_iterations = max_iterations(fields);
+            let (stiffness, thickness) = force?;
+            Some(Collision::Hybrid { restitution: restitution?, max_iterations: max_iterations?, stiffness, thickness })
+        }
+    }
+}
+
+/// `maxiters`: a scalar in the original, which cuts off its fraction.
+fn max_iterations(fields: &mut AnyFields<'_, '_, '_>) -> Option<i32> {
+    let written = fields.scalar_or("maxiters", 10.0)?;
+    if written.trunc() != written || written < f64::from(i32::MIN) || written > f64::from(i32::MAX) {
+        fields.bad("maxiters", "write a whole number of at most 2147483647");
+        return None;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "whole and in range")]
+    let iterations = written as i32;
+    if iterations < 0 {
+        fields.odd("maxiters", "it acts like 0: no impulse, only the rigid failsafe");
+    }
+    Some(iterations)
+}
+
+fn particle(fields: &mut AnyFields<'_, '_, '_>) -> Option<Particle> {
+    let (position, velocity) = (fields.vector("px", "py"), fields.vector("vx", "vy"));
+    let mass = fields.scalar("m");
+    if mass.is_some_and(|mass| mass <= 0.0) {
+        fields.bad("m", "a mass must be positive; the original divides by it");
+    }
+    let fixed = fields.boolean("fixed");
+    let radius = radius(fields, 0.1);
+    let tag = fields.optional_text("tag");
+    Some(Particle { position: position?, velocity: velocity?, mass: mass?, fixed: fixed?, radius: radius?, tag: tag? })
+}
+
+fn radius(fields: &mut AnyFields<'_, '_, '_>, default: f64) -> Option<f64> {
+    let radius = fields.scalar_or("radius", default)?;
+    if radius < 0.0 {
+        fields.bad("radius", "a radius cannot be negative");
+    }
+    Some(radius)
+}
+
+fn edge(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<Edge> {
+    let (pair, radius) = (pair(fields, particles), radius(fields, 0.015));
+    let (first, second) = pair?;
+    Some(Edge { first, second, radius: radius? })
+}
+
+fn spring(fields: &mut AnyFields<'_, '_, '_>, edges: Count) -> Option<Force> {
+    let edge = fields.index("edge", edges);
+    let (stiffness, rest_length) = (fields.scalar("k"), fields.scalar("l0"));
+    let damping = fields.scalar_or("b", 0.0);
+    let (edge, stiffness, rest_length, damping) = (edge?, stiffness?, rest_length?, damping?);
+    negative(fields, "k", stiffness, "the spring pushes where it should pull");
+    negative(fields, "l0", rest_length, "a length cannot be negative");
+    negative(fields, "b", damping, "motion is driven instead of damped");
+    Some(Force::Spring { edge, stiffness, rest_length, damping })
+}
+
+/// Two different particles in `i` and `j`.
+fn pair(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
+    let (first, second) = (fields.index("i", particles), fields.index("j", particles));
+    let (first, second) = (first?, second?);
+    if first == second {
+        fields.error("j", "is the same particle as `i`", "two different particles are needed");
+        return None;
+    }
+    Some((first, second))
+}
+
+fn path(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<ParticlePath> {
+    let (particle, duration, color) = (fields.index("i", particles), fields.scalar("duration"), fields.color());
+    if duration.is_some_and(|duration| duration < 0.0) {
+        fields.bad("duration", "a duration cannot be negative");
+    }
+    Some(ParticlePath { particle: particle?, duration: duration?, color: color? })
+}
+
+/// Warns of a number below zero that the original accepts.
+fn negative(fields: &mut AnyFields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
+    if value < 0.0 {
+        fields.odd(name, effect);
+    }
+}
