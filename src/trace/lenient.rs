@@ -431,6 +431,20 @@ mod tests {
     }
 
     #[test]
+    fn endless_lists_end_at_the_limit() {
+        let count = |count: i32| count.to_le_bytes();
+        // Impulses; empty polynomials; one polynomial of zeros after the other, each dropped but kept in raw form.
+        let heads =
+            [vec![count(i32::MAX)], vec![count(0), count(i32::MAX)], vec![count(0), count(i32::MAX), count(99)]];
+        for head in heads {
+            let mut reader = Lenient::new((&head.concat()[..]).chain(std::io::repeat(0)), LAYOUT);
+            reader.limit = 1 << 20;
+            assert_eq!(reader.next(&mut LenientFrame::default()).unwrap_err().cause, Cause::Memory);
+            assert!(reader.offset() < 1 << 21);
+        }
+    }
+
+    #[test]
     fn an_error_of_the_stream_is_named() {
         struct Broken;
         impl Read for Broken {

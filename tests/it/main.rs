@@ -1,5 +1,6 @@
 //! The integration tests: one binary, one module per topic.
 mod corpus;
+mod fuzz_replay;
 mod layers;
 mod parity;
 mod recordings;

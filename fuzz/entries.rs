@@ -1,0 +1,105 @@
+//! What the fuzz targets do with their bytes; the ordinary tests replay the seeds through the same functions.
+use fosssim_oracle::{
+    judge::parity,
+    scene::{Collision, Scene, original},
+    sim::{RootSearch, Simulation},
+    trace::{Digests, Frame, Indexed, Layout, Lenient, LenientFrame, Reader, Recorder, Summary, TraceError, compare},
+};
+use std::io::Cursor;
+
+/// The scenes of the `trace` target, one per collision type.
+pub const SCENES: [&str; 5] = [
+    r#"<scene><duration time="0.3"/><integrator type="explicit-euler" dt="0.1"/><collision type="none"/>
+        <particle m="1" px="0" py="0" vx="1" vy="2" fixed="0" radius="0.1"/></scene>"#,
+    r#"<scene><duration time="0.3"/><integrator type="symplectic-euler" dt="0.1"/>
+        <collision type="penalty" k="10" thickness="0.1"/>
+        <particle m="1" px="0" py="0" vx="1" vy="0" fixed="0" radius="0.3"/>
+        <particle m="2" px="0.5" py="0" vx="0" vy="0" fixed="0" radius="0.3"/></scene>"#,
+    r#"<scene><duration time="0.3"/><integrator type="explicit-euler" dt="0.1"/><collision type="simple" COR="0.5"/>
+        <particle m="1" px="0" py="0" vx="1" vy="0" fixed="0" radius="0.3"/>
+        <particle m="2" px="0.5" py="0" vx="0" vy="0" fixed="0" radius="0.3"/>
+        <halfplane px="0" py="-0.2" nx="0" ny="1"/></scene>"#,
+    r#"<scene><duration time="0.2"/><integrator type="explicit-euler" dt="0.1"/>
+        <collision type="continuous-time" COR="1"/>
+        <particle m="1" px="0" py="0.5" vx="0" vy="-4" fixed="0" radius="0.25"/>
+        <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#,
+    r#"<scene><duration time="0.2"/><integrator type="explicit-euler" dt="0.1"/>
+        <collision type="hybrid" COR="0.5" maxiters="2" k="1" thickness="0.01"/>
+        <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0" radius="0.1"/>
+        <particle m="1" px="1" py="0" vx="0" vy="0" fixed="0" radius="0.1"/>
+        <particle m="1" px="0.4" py="0.5" vx="0" vy="-4" fixed="0" radius="0.1"/>
+        <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-0.15" nx="0" ny="1"/></scene>"#,
+];
+
+/// More than this many steps, particles, edges or half-planes are not simulated.
+const SMALL: usize = 6;
+
+/// Reads a scene; a small one that is accepted is simulated, and its recording read back.
+pub fn scene(bytes: &[u8]) {
+    let Ok(read) = original::read(bytes) else { return };
+    let mut scene = read.scene;
+    let sizes = [scene.particles.len(), scene.edges.len(), scene.half_planes.len(), scene.forces.len()];
+    if sizes.into_iter().any(|size| size > SMALL) {
+        return;
+    }
+    if let Collision::Hybrid { max_iterations, .. } = &mut scene.collision {
+        *max_iterations = (*max_iterations).min(5);
+    }
+    if let Ok((layout, trace, true)) = record(&scene, SMALL) {
+        let mut reader = Reader::of_slice(&trace, layout);
+        let mut frame = Frame::default();
+        while reader.next(&mut frame).expect("our own recording is sound") {
+            assert!(reader.notes().is_empty(), "our own recording has nothing odd: {:?}", reader.notes());
+        }
+        assert_eq!(reader.trailing(), Ok(0));
+    }
+}
+
+/// The recording of at most `steps` steps with its layout, and whether no step failed.
+pub fn record(scene: &Scene, steps: usize) -> std::io::Result<(Layout, Vec<u8>, bool)> {
+    let steps = scene.steps().min(u32::try_from(steps).unwrap_or(u32::MAX));
+    let layout = Layout { steps, ..Layout::of(scene) };
+    let mut simulation = Simulation::new(scene, RootSearch::default());
+    let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
+    let sound = (0..steps).all(|_| simulation.step(&mut recorder).is_ok());
+    Ok((layout, recorder.finish()?.0, sound))
+}
+
+/// Reads a trace in every way and judges it. The first byte chooses the scene.
+pub fn trace(bytes: &[u8]) {
+    let Some((&choice, trace)) = bytes.split_first() else { return };
+    let xml = SCENES[usize::from(choice) % SCENES.len()];
+    let scene = original::read(xml.as_bytes()).expect("our own scene").scene;
+    let layout = Layout::of(&scene);
+
+    let strict = frames(Reader::of_slice(trace, layout));
+    assert_eq!(strict, frames(Reader::new(trace, layout)), "knowing the length makes no difference");
+
+    let mut lenient = Lenient::new(trace, layout);
+    let mut frame = LenientFrame::default();
+    let stop = (0..layout.records()).find_map(|_| lenient.next(&mut frame).err());
+    assert!(stop.is_none() || strict.is_err(), "what the strict reader accepts, the lenient one does: {stop:?}");
+
+    let mut indexed = Indexed::open(Cursor::new(trace), layout);
+    let mut frame = Frame::default();
+    assert_eq!(indexed.stopped().is_none(), strict.is_ok());
+    for record in (0..indexed.records()).rev() {
+        assert!(indexed.frame_at(record, &mut frame).is_ok_and(|offset| offset.is_some()));
+    }
+
+    assert_eq!(Digests::of(trace, layout).records, indexed.records());
+    assert!(!Summary::of(&scene, trace).to_string().is_empty());
+    let comparison = compare(Reader::of_slice(trace, layout), Reader::new(trace, layout));
+    assert_eq!((comparison.differing, comparison.same()), (0, strict.is_ok()));
+
+    let options = parity::Options { threads: 1, ..parity::Options::default() };
+    let outcome = parity::judge(&scene, trace, &options, &mut ());
+    assert_eq!(outcome.overall == fosssim_oracle::judge::Overall::None, outcome.stop.is_some());
+}
+
+/// Number of records and of bytes behind them, or what is wrong.
+fn frames(mut reader: Reader<&[u8]>) -> Result<(u64, u64), TraceError> {
+    let mut frame = Frame::default();
+    while reader.next(&mut frame)? {}
+    Ok((reader.records(), reader.trailing()?))
+}
