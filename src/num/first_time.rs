@@ -24,7 +24,13 @@ use super::{
 /// With more than ten polynomials whose sets are as ragged as can be; a detection has at most four.
 #[inline]
 pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
-    first_time_of(polynomials.iter().map(Polynomial::coefficients))
+    let lists = polynomials.iter().map(Polynomial::coefficients);
+    // Two polynomials, of degree five at most, meet in five intervals at most; four of them in nine.
+    match polynomials.len() {
+        0..=2 => intersected::<5>(lists),
+        3..=4 => intersected::<9>(lists),
+        _ => intersected::<32>(lists),
+    }
 }
 
 /// [`first_time`] of coefficient lists, highest power first, taken as they are; degrees up to [`MAX_DEGREE`].
@@ -35,14 +41,25 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
 /// # Panics
 /// With more than ten lists whose sets are as ragged as can be.
 pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
-    let mut lists = lists.into_iter();
+    intersected::<32>(lists.into_iter())
+}
+
+/// The intersection of the positive sets and its first time, with room for `CAPACITY` intervals.
+#[inline]
+fn intersected<'a, const CAPACITY: usize>(mut lists: impl Iterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
     let Some(first) = lists.next() else { return Ok(f64::INFINITY) };
-    let mut set = positive_set(first)?;
+    let mut set = Intervals::<CAPACITY>::new();
+    for &interval in positive_set(first)?.as_slice() {
+        set.push(interval);
+    }
     for list in lists {
         set = set.intersection(&positive_set(list)?);
     }
     Ok(set.next_time(0.0))
 }
+
+/// The positive set of one polynomial: before merging, at most one interval per gap between six zeros.
+pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
 
 /// Where one polynomial is positive, judged by one sample per gap between its real zeros (root-finder.md 15.3).
 ///
@@ -51,8 +68,8 @@ pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f
 ///
 /// # Panics
 /// With more than [`MAX_DEGREE`]` + 1` coefficients.
-pub fn positive_set(coefficients: &[f64]) -> Result<Intervals, DoesNotTerminate> {
-    let mut set = Intervals::new();
+pub fn positive_set(coefficients: &[f64]) -> Result<PositiveSet, DoesNotTerminate> {
+    let mut set = PositiveSet::new();
     let zeros = match coefficients.len() {
         0 => return Ok(set),
         1 => Zeros::default(),

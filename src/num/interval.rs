@@ -3,10 +3,6 @@
 //! Intervals are closed where they meet others: touching ones merge, and an intersection may be a single point
 //! (root-finder.md 15.4 and 16). The lists never allocate.
 
-/// The largest number of intervals in a [`Intervals`] list. The positive set of a polynomial of degree six has at
-/// most four, and each further polynomial of an intersection adds at most three.
-pub const MAX_INTERVALS: usize = 32;
-
 /// The times from `lo` to `hi`, either of which may be infinite. `lo <= hi` unless a bound is NaN.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Interval {
@@ -28,25 +24,28 @@ impl Interval {
     }
 }
 
-/// A list of intervals, normalised unless it is just being filled.
+/// A list of at most `CAPACITY` intervals, normalised unless it is just being filled.
+///
+/// The positive set of a polynomial of degree six has at most four intervals, that of a parabola two; each further
+/// polynomial of an intersection adds at most one less than it has itself.
 #[derive(Debug, Clone, Copy)]
-pub struct Intervals {
+pub struct Intervals<const CAPACITY: usize> {
     length: usize,
-    list: [Interval; MAX_INTERVALS],
+    list: [Interval; CAPACITY],
 }
 
-impl Default for Intervals {
+impl<const CAPACITY: usize> Default for Intervals<CAPACITY> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Intervals {
+impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// The empty set.
     #[inline]
     #[must_use]
     pub const fn new() -> Self {
-        Self { length: 0, list: [Interval { lo: 0.0, hi: 0.0 }; MAX_INTERVALS] }
+        Self { length: 0, list: [Interval { lo: 0.0, hi: 0.0 }; CAPACITY] }
     }
 
     /// The intervals, in order.
@@ -59,7 +58,7 @@ impl Intervals {
     /// Appends an interval without merging it.
     ///
     /// # Panics
-    /// When the list already holds [`MAX_INTERVALS`].
+    /// When the list already holds `CAPACITY`.
     #[inline]
     pub fn push(&mut self, interval: Interval) {
         self.list[self.length] = interval;
@@ -97,10 +96,10 @@ impl Intervals {
     /// The times in both lists (root-finder.md 16.1). Intervals that only touch give a single point.
     ///
     /// # Panics
-    /// When the result would hold more than [`MAX_INTERVALS`].
+    /// When the result would hold more than `CAPACITY`.
     #[inline]
     #[must_use]
-    pub fn intersection(&self, other: &Self) -> Self {
+    pub fn intersection<const OTHER: usize>(&self, other: &Intervals<OTHER>) -> Self {
         let mut both = Self::new();
         for &a in self.as_slice() {
             for &b in other.as_slice() {
@@ -133,7 +132,7 @@ impl Intervals {
 mod tests {
     use super::{Interval, Intervals};
 
-    fn intervals(list: &[(f64, f64)]) -> Intervals {
+    fn intervals(list: &[(f64, f64)]) -> Intervals<4> {
         let mut intervals = Intervals::new();
         for &(lo, hi) in list {
             intervals.push(Interval { lo, hi });
@@ -142,7 +141,7 @@ mod tests {
         intervals
     }
 
-    fn pairs(intervals: &Intervals) -> Vec<(f64, f64)> {
+    fn pairs(intervals: &Intervals<4>) -> Vec<(f64, f64)> {
         intervals.as_slice().iter().map(|interval| (interval.lo, interval.hi)).collect()
     }
 
@@ -164,6 +163,6 @@ mod tests {
         assert_eq!(set.next_time(0.0), 0.5);
         assert_eq!(set.next_time(0.75), 0.75);
         assert_eq!(set.next_time(1.0), f64::INFINITY);
-        assert_eq!(Intervals::new().next_time(0.0), f64::INFINITY);
+        assert_eq!(Intervals::<4>::new().next_time(0.0), f64::INFINITY);
     }
 }

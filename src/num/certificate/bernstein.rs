@@ -126,16 +126,15 @@ impl Bounded {
     #[inline]
     fn split(&mut self, t: f64) -> Self {
         let degree = self.degree;
-        let mut left = self.control;
         let mut right = self.control;
-        for row in 1..=degree {
-            for i in 0..=degree - row {
+        // Row by row the first entry is the left part's next coefficient; the last one stays in place, as the right
+        // part's.
+        for (row, left) in self.control.iter_mut().enumerate().take(degree + 1) {
+            *left = right[0];
+            for i in 0..degree - row {
                 right[i] += (right[i + 1] - right[i]) * t;
             }
-            left[row] = right[0];
         }
-        // Row by row the last entries stay in place: they are the coefficients of the right part.
-        self.control = left;
         Self { control: right, ..*self }
     }
 

@@ -47,7 +47,8 @@ fn exact_line(a: f64, b: f64) -> bool {
     let zero = -b / a;
     let before = evaluate(&[a, b], zero - 1.0) > 0.0;
     let after = evaluate(&[a, b], zero + 1.0) > 0.0;
-    !(before && zero > 0.0 || after && zero <= 1.0) && !zero.is_nan()
+    let meets = (before && zero > 0.0) || (after && zero <= 1.0);
+    !meets && !zero.is_nan()
 }
 
 /// The parabola `a t^2 + b t + c`, `a` not zero and not both others.

@@ -118,9 +118,12 @@ fn search_ends(coefficients: &[f64]) -> bool {
     })
 }
 
+/// The windows that two parabolas leave open, and some more.
+type Windows = Intervals<8>;
+
 /// The times of `[0, 1]` at which all lines and parabolas are positive, exactly as the root finder computes them.
-fn windows_of_closed_forms(polynomials: &[Polynomial]) -> Intervals {
-    let mut windows = Intervals::new();
+fn windows_of_closed_forms(polynomials: &[Polynomial]) -> Windows {
+    let mut windows = Windows::new();
     windows.push(Interval { lo: 0.0, hi: 1.0 });
     for list in polynomials.iter().map(Polynomial::coefficients).filter(|list| list.len() <= 3) {
         // Closed forms always return.
@@ -129,7 +132,7 @@ fn windows_of_closed_forms(polynomials: &[Polynomial]) -> Intervals {
         }
     }
     // An interval that ends at 0 does not count for the original.
-    let mut counted = Intervals::new();
+    let mut counted = Windows::new();
     for &window in windows.as_slice() {
         if window.hi > 0.0 {
             counted.push(window);
