@@ -437,7 +437,8 @@ mod tests {
         let heads =
             [vec![count(i32::MAX)], vec![count(0), count(i32::MAX)], vec![count(0), count(i32::MAX), count(99)]];
         for head in heads {
-            let mut reader = Lenient::new((&head.concat()[..]).chain(std::io::repeat(0)), LAYOUT);
+            let head = head.concat();
+            let mut reader = Lenient::new((&head[..]).chain(std::io::repeat(0)), LAYOUT);
             reader.limit = 1 << 20;
             assert_eq!(reader.next(&mut LenientFrame::default()).unwrap_err().cause, Cause::Memory);
             assert!(reader.offset() < 1 << 21);
