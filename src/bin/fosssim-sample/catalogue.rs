@@ -363,7 +363,6 @@ catalogue! {
         FailsafeNoCentre "failsafe-no-centre": "The centre of mass is not added back.";
         FailsafeMomentumUnweighted "failsafe-momentum-unweighted": "The momentum is not weighted with the masses.";
         FailsafeMomentumVelocity "failsafe-momentum-velocity": "The momentum is made of velocities where displacements belong.";
-        FailsafeMomentumFromEnd "failsafe-momentum-from-end": "The angular momentum uses end positions where displacements belong.";
         FailsafeNoTranslation "failsafe-no-translation": "The centre of mass does not move.";
         FailsafeAngularUnweighted "failsafe-angular-unweighted": "The angular momentum is not weighted with the masses.";
         FailsafeAngularOverwritten "failsafe-angular-overwritten": "The angular momentum is overwritten instead of summed.";
@@ -402,7 +401,6 @@ catalogue! {
         LogTiny "log-tiny": "All logged coefficients are 1e-11.";
         LogZeros "log-zeros": "All logged coefficients are zero.";
         LogSwapped "log-swapped": "Each two neighbouring polynomials are logged in the wrong order.";
-        LogPadded "log-padded": "Every logged polynomial has a leading zero.";
         LogTrailingZero "log-trailing-zero": "Every logged polynomial has a zero too many at the end.";
         LogRounded "log-rounded": "Logged coefficients are rounded to six digits.";
         LogPolynomialsKept "log-polynomials-kept": "The list of polynomials is never emptied.";
@@ -450,10 +448,12 @@ catalogue! {
         ZonesReversed "zones-reversed": "Zones are moved in the opposite order, which changes nothing.";
     }
     Variant Failsafe {
+        FailsafeMomentumFromEnd "momentum-from-end": "The angular momentum uses end positions about the centre; what the start adds is parallel to its arm.";
         FailsafeWholeDisplacement "whole-displacement": "The angular momentum uses whole displacements; the centre's part cancels.";
         FailsafeRotationMatrix "rotation-matrix": "The rotation is written as a matrix, and the sum in another order.";
     }
     Variant Trace {
+        LogPadded "padded": "Every logged polynomial has a leading zero, which changes nothing of its value.";
         LogImpulsesReversed "impulses-reversed": "The impulses of a step are logged in the opposite order.";
     }
     Hostile Process {

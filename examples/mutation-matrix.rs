@@ -1,0 +1,203 @@
+//! Which scene catches which mistake: runs every wrong sample and every correct variant on every scene of a folder and
+//! judges the traces under each rule book. `scripts/mutation-matrix` builds and calls it.
+//!
+//! It prints one matrix per rule book, the mistakes that no scene catches, the variants that are refused, and a small
+//! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all:
+//! then no rule book could ever see it.
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+    process::{Command, ExitCode},
+};
+
+use anyhow::{Context, ensure};
+use fosssim_oracle::{
+    judge::{Overall, parity},
+    scene::{Scene, original},
+};
+use rayon::prelude::*;
+use serde::Deserialize;
+
+/// A rule book: whether it accepts a trace.
+type Rules = fn(&Scene, &[u8]) -> bool;
+
+/// All rule books.
+const RULE_BOOKS: &[(&str, Rules)] = &[("parity", accepted_by_parity)];
+
+fn accepted_by_parity(scene: &Scene, trace: &[u8]) -> bool {
+    let options = parity::Options { threads: 1, ..parity::Options::default() };
+    parity::judge(scene, trace, &options, &mut ()).overall == Overall::Passed
+}
+
+#[derive(Deserialize)]
+struct Listing {
+    mistakes: Vec<Row>,
+}
+
+/// A row of the sample's catalogue.
+#[derive(Deserialize)]
+struct Row {
+    id: String,
+    kind: String,
+}
+
+/// A scene and its correct trace.
+struct Case {
+    name: String,
+    path: PathBuf,
+    scene: Scene,
+    correct: Vec<u8>,
+}
+
+/// What came of one sample on one scene.
+#[derive(Clone)]
+enum Cell {
+    /// The trace is the correct one.
+    Same,
+    /// Another trace; which of the rule books accept it.
+    Other(Vec<bool>),
+}
+
+fn main() -> anyhow::Result<ExitCode> {
+    let folder = std::env::args_os().nth(1).context("usage: mutation-matrix FOLDER (of groups of scenes)")?;
+    let sample = std::env::current_exe()?
+        .ancestors()
+        .nth(2)
+        .map(|folder| folder.join("fosssim-sample"))
+        .filter(|path| path.is_file())
+        .context("fosssim-sample is not built beside this example: run scripts/mutation-matrix")?;
+    let cases = cases(Path::new(&folder), &sample)?;
+    let list = Command::new(&sample).args(["--list", "--json"]).output()?;
+    let mut rows = serde_json::from_slice::<Listing>(&list.stdout)?.mistakes;
+    rows.retain(|row| row.kind != "hostile");
+    let matrix: Vec<Vec<Cell>> = rows
+        .par_iter()
+        .map(|row| cases.iter().map(|case| cell(&sample, row, case)).collect::<anyhow::Result<_>>())
+        .collect::<anyhow::Result<_>>()?;
+    for (book, (name, _)) in RULE_BOOKS.iter().enumerate() {
+        print_book(name, book, &rows, &cases, &matrix);
+    }
+    let invisible: Vec<&str> = rows
+        .iter()
+        .zip(&matrix)
+        .filter(|(row, cells)| row.kind == "wrong" && cells.iter().all(|cell| matches!(cell, Cell::Same)))
+        .map(|(row, _)| row.id.as_str())
+        .collect();
+    print_list("mistakes that change no trace (must be none)", &invisible);
+    Ok(ExitCode::from(u8::from(!invisible.is_empty())))
+}
+
+fn cases(folder: &Path, sample: &Path) -> anyhow::Result<Vec<Case>> {
+    let mut paths = Vec::new();
+    let groups = std::fs::read_dir(folder).with_context(|| format!("{}: can't be read", folder.display()))?;
+    for group in groups {
+        let group = group?.path();
+        if group.is_dir() {
+            for file in std::fs::read_dir(&group)? {
+                paths.push(file?.path());
+            }
+        }
+    }
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
+    paths.sort();
+    ensure!(!paths.is_empty(), "{}: no group of this folder holds a scene", folder.display());
+    paths
+        .into_par_iter()
+        .map(|path| {
+            let bytes = std::fs::read(&path)?;
+            let scene = original::read(&bytes).with_context(|| path.display().to_string())?.scene;
+            let correct = run(sample, &path, None)?;
+            let name = path.strip_prefix(folder)?.with_extension("").display().to_string();
+            Ok(Case { name, path, scene, correct })
+        })
+        .collect()
+}
+
+/// The trace that a sample leaves, by way of a pipe.
+fn run(sample: &Path, scene: &Path, mistake: Option<&str>) -> anyhow::Result<Vec<u8>> {
+    let mut command = Command::new(sample);
+    command.arg("-s").arg(scene).args(["-d", "0", "-o", "/dev/stderr"]);
+    command.args(mistake.map(|id| format!("--mistake={id}")));
+    Ok(command.output().context("the sample can't be started")?.stderr)
+}
+
+fn cell(sample: &Path, row: &Row, case: &Case) -> anyhow::Result<Cell> {
+    let trace = run(sample, &case.path, Some(&row.id))?;
+    if trace == case.correct {
+        return Ok(Cell::Same);
+    }
+    Ok(Cell::Other(RULE_BOOKS.iter().map(|(_, accepts)| accepts(&case.scene, &trace)).collect()))
+}
+
+/// Whether this rule book refuses the trace.
+fn refused(cell: &Cell, book: usize) -> bool {
+    matches!(cell, Cell::Other(accepted) if !accepted[book])
+}
+
+fn print_book(name: &str, book: usize, rows: &[Row], cases: &[Case], matrix: &[Vec<Cell>]) {
+    println!("rules: {name}\n  . the correct trace   - another trace, accepted   X refused\n");
+    for (index, case) in cases.iter().enumerate() {
+        println!("  {index:3} {}", case.name);
+    }
+    println!();
+    for (row, cells) in rows.iter().zip(matrix) {
+        let marks: String = cells
+            .iter()
+            .map(|cell| match cell {
+                Cell::Same => '.',
+                Cell::Other(accepted) if accepted[book] => '-',
+                Cell::Other(_) => 'X',
+            })
+            .collect();
+        println!("  {:36} {marks}", row.id);
+    }
+    println!();
+    let chosen = |kind: &str, caught: bool| -> Vec<&str> {
+        rows.iter()
+            .zip(matrix)
+            .filter(|(row, cells)| row.kind == kind && caught == cells.iter().any(|cell| refused(cell, book)))
+            .map(|(row, _)| row.id.as_str())
+            .collect()
+    };
+    println!("  {} mistakes caught\n", chosen("wrong", true).len());
+    print_list("mistakes that no scene catches", &chosen("wrong", false));
+    print_list("correct variants that a scene refuses", &chosen("variant", true));
+    let subset: Vec<&str> =
+        sufficient(book, rows, cases.len(), matrix).into_iter().map(|index| cases[index].name.as_str()).collect();
+    print_list("scenes that together catch all of these mistakes", &subset);
+}
+
+fn print_list(title: &str, names: &[&str]) {
+    println!("  {title}: {}", names.len());
+    for name in names {
+        println!("    {name}");
+    }
+    println!();
+}
+
+/// A small set of scenes that catches every mistake that can be caught: the scene with the most new ones first, then
+/// without those that others made superfluous.
+fn sufficient(book: usize, rows: &[Row], scenes: usize, matrix: &[Vec<Cell>]) -> BTreeSet<usize> {
+    let caught = |scene: usize| -> BTreeSet<usize> {
+        (0..rows.len()).filter(|&row| rows[row].kind == "wrong" && refused(&matrix[row][scene], book)).collect()
+    };
+    let caught: Vec<BTreeSet<usize>> = (0..scenes).map(caught).collect();
+    let union = |chosen: &BTreeSet<usize>| -> BTreeSet<usize> {
+        chosen.iter().flat_map(|&scene| caught[scene].iter().copied()).collect()
+    };
+    let all = union(&(0..scenes).collect());
+    let mut chosen = BTreeSet::new();
+    while union(&chosen) != all {
+        let known = union(&chosen);
+        let best = (0..scenes).rev().max_by_key(|&scene| caught[scene].difference(&known).count());
+        chosen.extend(best);
+    }
+    for scene in chosen.clone() {
+        let mut without = chosen.clone();
+        without.remove(&scene);
+        if union(&without) == all {
+            chosen = without;
+        }
+    }
+    chosen
+}
