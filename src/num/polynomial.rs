@@ -27,11 +27,15 @@ impl Polynomial {
     }
 
     /// Drops leading coefficients in place as [`Polynomial::trimmed`] does. Where polynomials are made for many pairs,
-    /// this is faster: most lose nothing, and none is copied.
+    /// this is faster, since none is copied.
     #[inline]
     pub fn trim(&mut self) {
-        if self.coefficients().first().is_some_and(|&first| is_small(first)) {
-            self.drop_small();
+        while let Some(leading) = self.storage[MAX_COEFFICIENTS - usize::from(self.length)..].first_mut() {
+            if !is_small(*leading) {
+                break;
+            }
+            *leading = 0.0;
+            self.length -= 1;
         }
     }
 
@@ -53,12 +57,6 @@ impl Polynomial {
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {
         &self.storage[MAX_COEFFICIENTS - usize::from(self.length)..]
-    }
-
-    /// Kept apart from [`Polynomial::trim`], since it is rarely needed there.
-    #[cold]
-    fn drop_small(&mut self) {
-        *self = Self::untrimmed(trim(self.coefficients()));
     }
 
     /// The value at `t`, see [`evaluate`].
