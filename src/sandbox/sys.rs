@@ -336,10 +336,12 @@ pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Res
 pub(super) struct Announced {
     /// The announcement's number.
     pub(super) id: u64,
+    /// The calling thread.
+    pub(super) thread: u32,
     /// The call's number.
     pub(super) call: i64,
-    /// Its first argument.
-    pub(super) first: u64,
+    /// Its arguments.
+    pub(super) arguments: [u64; 6],
 }
 
 /// Takes the next announcement; `None` when the caller has died meanwhile.
@@ -353,8 +355,9 @@ pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<A
         Err(error) => Err(error),
         Ok(_) => Ok(Some(Announced {
             id: notification.id,
+            thread: notification.pid,
             call: i64::from(notification.data.nr),
-            first: notification.data.args[0],
+            arguments: notification.data.args,
         })),
     }
 }
@@ -364,6 +367,15 @@ pub(super) fn let_through(listener: BorrowedFd<'_>, id: u64) -> io::Result<()> {
     let flags = libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32;
     let mut answer = libc::seccomp_notif_resp { id, val: 0, error: 0, flags };
     // SAFETY: the structure is the one that this request reads, and it outlives the call.
+    let done = unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) };
+    check(i64::from(done)).map(drop)
+}
+
+/// Answers the announced call in the kernel's place: success, or an error number.
+pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, result: Result<(), i32>) -> io::Result<()> {
+    let error = result.err().map_or(0, |errno| -errno);
+    let mut answer = libc::seccomp_notif_resp { id, val: 0, error, flags: 0 };
+    // SAFETY: as in `let_through`.
     let done = unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) };
     check(i64::from(done)).map(drop)
 }

@@ -269,6 +269,139 @@ fn the_folder_is_the_graders_again_when_the_run_is_over() {
     assert_eq!(bench.folder.path().metadata().unwrap().uid(), owner);
 }
 
+/// Builds a C program in the folder; `None` (said in a line) without a compiler that can.
+fn compiled(folder: &Path, source: &str, options: &[&str]) -> Option<PathBuf> {
+    let (from, to) = (folder.join("source.c"), folder.join("built"));
+    std::fs::write(&from, source).unwrap();
+    let built = std::process::Command::new("cc")
+        .current_dir(folder)
+        .args(["-O0", "-o"])
+        .args([&to, &from])
+        .args(options)
+        .output();
+    match built {
+        Ok(output) if output.status.success() => Some(to),
+        _ => {
+            eprintln!("skipped: cc cannot build this here ({options:?})");
+            None
+        }
+    }
+}
+
+#[test]
+fn a_missing_library_is_named() {
+    let Some(bench) = Bench::new() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let library = ["-shared", "-fPIC", "-o", "libcourse.so"];
+    if compiled(folder.path(), "int course(void) { return 0; }", &library).is_none() {
+        return;
+    }
+    let source = "int course(void); int main(void) { return course(); }";
+    let Some(program) = compiled(folder.path(), source, &["-L.", "-lcourse"]) else { return };
+    let missing = StartProblem::MissingLibrary { library: "libcourse.so".into() };
+    assert_eq!(bench.run(program, &[]).ended, Ended::CouldNotStart(missing));
+}
+
+#[test]
+fn a_sanitised_program_runs_and_its_memory_is_limited_all_the_same() {
+    let Some(bench) = Bench::new() else { return };
+    let source = "#include <stdlib.h>\n#include <string.h>\nint main(int count, char **words) {\n\
+                  int size = atoi(words[1]); memset(malloc(size), 1, size); return 0; }";
+    let Some(program) = compiled(bench.folder.path(), source, &["-fsanitize=address"]) else { return };
+    assert_eq!(bench.run(&program, &["1000"]).ended, Ended::Exited(0));
+    assert_eq!(bench.run(&program, &["200000000"]).ended, Ended::MemoryLimit);
+}
+
+#[test]
+fn a_build_step_compiles_a_program_in_the_sandbox() {
+    let Some(bench) = Bench::new() else { return };
+    if compiled(bench.folder.path(), "int main(void) { return 0; }", &[]).is_none() {
+        return;
+    }
+    std::fs::remove_file(bench.folder.path().join("built")).unwrap();
+    std::fs::write(bench.folder.path().join("Makefile"), "built: source.c\n\tcc -o built source.c\n").unwrap();
+    let limits = Limits { cpu: Duration::from_secs(10), folder_bytes: 64 << 20, ..Limits::default() };
+    for job in [bench.job("/usr/bin/make", &[]), bench.job("/usr/bin/cc", &["-o", "built", "source.c"])] {
+        if !Path::new("/usr/bin/make").exists() {
+            eprintln!("skipped: there is no make");
+            return;
+        }
+        let outcome = bench.finish(&job.policy(Policy::Tools).limits(limits.clone()));
+        assert_eq!(outcome.ended, Ended::Exited(0), "{}", text(&outcome.stderr.bytes));
+        let built = bench.folder.path().join("built");
+        assert_eq!(bench.run(&built, &[]).ended, Ended::Exited(0));
+        std::fs::remove_file(built).unwrap();
+    }
+    std::fs::write(bench.folder.path().join("source.c"), "int main(void) { return nothing; }").unwrap();
+    let job = bench.job("/usr/bin/cc", &["-o", "built", "source.c"]).policy(Policy::Tools).limits(limits);
+    let outcome = bench.finish(&job);
+    assert_eq!(outcome.ended, Ended::Exited(1));
+    assert!(text(&outcome.stderr.bytes).contains("nothing"));
+}
+
+/// The process that runs exactly these words, and its parent.
+fn process(words: &[&str]) -> Option<(i32, i32)> {
+    let line: Vec<u8> = words.iter().flat_map(|word| [word.as_bytes(), b"\0"].concat()).collect();
+    let pids =
+        std::fs::read_dir("/proc").unwrap().flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    let pid: i32 =
+        { pids }.find(|pid| std::fs::read(format!("/proc/{pid}/cmdline")).is_ok_and(|found| found == line))?;
+    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
+    let parent = status.lines().find_map(|line| line.strip_prefix("PPid:"))?.trim().parse().ok()?;
+    Some((pid, parent))
+}
+
+/// Looks again and again until there is an answer; a test that gets none fails after half a minute.
+fn eventually<T>(mut look: impl FnMut() -> Option<T>) -> T {
+    let start = std::time::Instant::now();
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        assert!(start.elapsed() < Duration::from_secs(30), "it did not happen in time");
+        std::thread::yield_now();
+    }
+}
+
+fn kill(pid: i32) {
+    assert!(std::process::Command::new("/bin/kill").args(["-KILL", &pid.to_string()]).status().unwrap().success());
+}
+
+#[test]
+fn a_program_dies_with_its_supervisor_and_the_loss_is_our_fault() {
+    let Some(bench) = Bench::new() else { return };
+    let words = ["/bin/sleep", "98761"];
+    let running = bench.backend.start(&bench.job(words[0], &words[1..])).unwrap();
+    let (_, supervisor) = eventually(|| process(&words));
+    kill(supervisor);
+    let error = running.wait().unwrap_err();
+    assert!(error.to_string().contains("lost"), "{error}");
+    eventually(|| process(&words).is_none().then_some(()));
+}
+
+#[test]
+fn a_program_dies_with_its_grader() {
+    const ROLE: &str = "FOSSSIM_TEST_GRADER";
+    let words = ["/bin/sleep", "98762"];
+    let Some(bench) = Bench::new() else { return };
+    if std::env::var_os(ROLE).is_some() {
+        // The grader that is going to be killed; it would wait for its wall limit.
+        let _ = bench.backend.start(&bench.job(words[0], &words[1..])).unwrap().wait();
+        return;
+    }
+    let mut grader = std::process::Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "sandbox::a_program_dies_with_its_grader"])
+        .env(ROLE, "1")
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let (_, supervisor) = eventually(|| process(&words));
+    grader.kill().unwrap();
+    grader.wait().unwrap();
+    eventually(|| process(&words).is_none().then_some(()));
+    eventually(|| (!Path::new(&format!("/proc/{supervisor}/exe")).exists()).then_some(()));
+}
+
 #[test]
 fn without_walls_the_limits_still_hold() {
     let bench_folder = tempfile::tempdir().unwrap();

@@ -18,10 +18,9 @@ pub(super) const ALLOWED: &[Call] = calls![
     SYS_read SYS_write SYS_readv SYS_writev SYS_pread64 SYS_pwrite64 SYS_preadv SYS_pwritev SYS_preadv2 SYS_pwritev2
     SYS_openat SYS_close SYS_close_range SYS_lseek SYS_fstat SYS_newfstatat SYS_statx SYS_faccessat SYS_faccessat2
     SYS_readlinkat SYS_getdents64 SYS_getcwd SYS_chdir SYS_fchdir SYS_mkdirat SYS_unlinkat SYS_renameat SYS_renameat2
-    SYS_ftruncate SYS_truncate SYS_fsync SYS_fdatasync SYS_fadvise64 SYS_copy_file_range SYS_sendfile SYS_dup SYS_dup3
+    SYS_ftruncate SYS_fsync SYS_fdatasync SYS_fadvise64 SYS_copy_file_range SYS_sendfile SYS_dup SYS_dup3
     SYS_fcntl SYS_flock SYS_pipe2 SYS_ppoll SYS_pselect6 SYS_eventfd2 SYS_epoll_create1 SYS_epoll_ctl SYS_epoll_pwait
-    SYS_timerfd_create SYS_timerfd_settime SYS_timerfd_gettime SYS_statfs SYS_fstatfs SYS_utimensat SYS_umask
-    SYS_fchmod SYS_fchmodat
+    SYS_timerfd_create SYS_timerfd_settime SYS_timerfd_gettime SYS_statfs SYS_fstatfs SYS_umask
     SYS_mmap SYS_mprotect SYS_munmap SYS_mremap SYS_madvise SYS_msync SYS_mincore SYS_brk SYS_mlock SYS_munlock
     SYS_membarrier
     SYS_rt_sigaction SYS_rt_sigprocmask SYS_rt_sigreturn SYS_rt_sigsuspend SYS_rt_sigpending SYS_rt_sigtimedwait
@@ -40,8 +39,8 @@ pub(super) const ALLOWED: &[Call] = calls![
 #[cfg(target_arch = "x86_64")]
 pub(super) const ALLOWED_OLD: &[Call] = calls![
     SYS_open SYS_creat SYS_stat SYS_lstat SYS_access SYS_readlink SYS_getdents SYS_mkdir SYS_rmdir SYS_unlink SYS_rename
-    SYS_dup2 SYS_pipe SYS_poll SYS_select SYS_eventfd SYS_epoll_create SYS_epoll_wait SYS_utime SYS_utimes SYS_futimesat
-    SYS_chmod SYS_pause SYS_alarm SYS_time SYS_getpgrp SYS_getrlimit SYS_setrlimit SYS_arch_prctl
+    SYS_dup2 SYS_pipe SYS_poll SYS_select SYS_eventfd SYS_epoll_create SYS_epoll_wait
+    SYS_pause SYS_alarm SYS_time SYS_getpgrp SYS_getrlimit SYS_setrlimit SYS_arch_prctl
 ];
 #[cfg(not(target_arch = "x86_64"))]
 pub(super) const ALLOWED_OLD: &[Call] = &[];
@@ -59,15 +58,36 @@ pub(super) const LINKING_OLD: &[Call] = calls![SYS_link SYS_symlink SYS_mknod];
 #[cfg(not(target_arch = "x86_64"))]
 pub(super) const LINKING_OLD: &[Call] = &[];
 
+/// Permission bits by name or descriptor. Landlock does not know them, so that a program under the grader's own user
+/// could change the grader's files.
+pub(super) const MODES: &[Call] = calls![SYS_fchmodat SYS_fchmod];
+#[cfg(target_arch = "x86_64")]
+pub(super) const MODES_OLD: &[Call] = calls![SYS_chmod];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const MODES_OLD: &[Call] = &[];
+
+/// Times of files, which Landlock does not know either.
+pub(super) const TIMES: &[Call] = calls![SYS_utimensat];
+#[cfg(target_arch = "x86_64")]
+pub(super) const TIMES_OLD: &[Call] = calls![SYS_utime SYS_utimes SYS_futimesat];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const TIMES_OLD: &[Call] = &[];
+
 /// What libraries try and can do without; refused with `EPERM` or `EACCES` rather than taken for an attack. The C
 /// library asks the name service by a socket, for one.
 pub(super) const REFUSED: &[Call] = calls![
-    SYS_socket SYS_socketpair SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr SYS_removexattr
+    SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr SYS_removexattr
     SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
-    SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid SYS_setgroups SYS_setfsuid SYS_setfsgid
+    SYS_setgroups SYS_setfsuid SYS_setfsgid
     SYS_personality SYS_shmget SYS_shmat SYS_shmctl SYS_semget SYS_semctl SYS_semop SYS_msgget SYS_msgsnd SYS_msgrcv
     SYS_msgctl SYS_mq_open SYS_rt_sigqueueinfo SYS_rt_tgsigqueueinfo SYS_pidfd_send_signal SYS_mlockall SYS_ioprio_set
 ];
+
+/// Refused calls that only older processor families have.
+#[cfg(target_arch = "x86_64")]
+pub(super) const REFUSED_OLD: &[Call] = calls![SYS_chown SYS_lchown];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const REFUSED_OLD: &[Call] = &[];
 
 /// The kernel's dangerous corners. No submission comes here by accident: the program is stopped and the call named.
 pub(super) const FORBIDDEN: &[Call] = calls![
@@ -87,11 +107,32 @@ pub(super) const FORBIDDEN_OLD: &[Call] = calls![SYS_iopl SYS_ioperm SYS_modify_
 #[cfg(not(target_arch = "x86_64"))]
 pub(super) const FORBIDDEN_OLD: &[Call] = &[];
 
+/// Becoming another user. The kernel refuses this without privileges, which no program has; `make` sets its own user
+/// again before every command.
+pub(super) const IDENTITY: &[Call] =
+    calls![SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid];
+
+/// Every group: what exists at all.
+pub(super) const GROUPS: [&[Call]; 14] = [
+    ALLOWED,
+    ALLOWED_OLD,
+    FORKING,
+    LINKING,
+    LINKING_OLD,
+    MODES,
+    MODES_OLD,
+    TIMES,
+    TIMES_OLD,
+    IDENTITY,
+    REFUSED,
+    REFUSED_OLD,
+    FORBIDDEN,
+    FORBIDDEN_OLD,
+];
+
 /// The usual name of a call.
 pub(super) fn name(number: i64) -> String {
-    let groups =
-        [ALLOWED, ALLOWED_OLD, FORKING, LINKING, LINKING_OLD, REFUSED, FORBIDDEN, FORBIDDEN_OLD].into_iter().flatten();
-    for (name, known) in groups {
+    for (name, known) in GROUPS.into_iter().flatten() {
         if *known == number {
             return name.trim_start_matches("SYS_").to_string();
         }
@@ -106,7 +147,7 @@ mod tests {
     #[test]
     fn no_call_is_in_two_groups() {
         let mut seen = std::collections::BTreeMap::new();
-        for group in [ALLOWED, ALLOWED_OLD, FORKING, LINKING, LINKING_OLD, REFUSED, FORBIDDEN, FORBIDDEN_OLD] {
+        for group in GROUPS {
             for (name, number) in group {
                 assert_eq!(seen.insert(*number, *name), None, "{name} is listed twice");
             }

@@ -100,7 +100,8 @@ fn limits(order: &Order, own_user: bool) -> io::Result<()> {
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
     const SPARE_PROCESSES: u64 = 16;
-    sys::limit(libc::RLIMIT_CORE, 0)?;
+    // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
+    sys::limit(libc::RLIMIT_CORE, 1)?;
     sys::limit(libc::RLIMIT_FSIZE, order.folder_bytes)?;
     sys::limit(libc::RLIMIT_NOFILE, u64::from(order.open_files))?;
     sys::limit(libc::RLIMIT_CPU, order.cpu_micros.div_ceil(1_000_000) + SPARE_SECONDS)?;
@@ -125,6 +126,7 @@ fn filter_calls(plan: &Plan) -> io::Result<()> {
         announce: walls.notify,
         // Tools signal their own children, which Landlock's scope or the own user tell from others.
         own_process: (!plan.order.tools || !(walls.scopes || walls.own_user)).then(|| std::process::id() as i32),
+        own_user: plan.user.is_some(),
     };
     for (index, program) in filter::filters(purpose)?.iter().enumerate() {
         let listener = sys::install_filter(program, walls.notify && index == 0)?;

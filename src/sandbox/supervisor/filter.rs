@@ -13,7 +13,7 @@ use seccompiler::{
     BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter, SeccompRule,
 };
 
-use super::calls::{self, Call};
+use super::calls;
 
 /// Stands for "announce" while a filter is compiled, because the compiler does not know that action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
@@ -69,6 +69,8 @@ pub(super) struct Purpose {
     /// The process that the filter will guard, the only one that it may signal; `None` when its signals are
     /// confined by other walls.
     pub(super) own_process: Option<i32>,
+    /// Whether the program runs as a user of its own, whose permissions keep it from changing files of others.
+    pub(super) own_user: bool,
 }
 
 /// The filters in the order of installation; the first is the one that announces.
@@ -78,13 +80,27 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
         refusals.entry(errno).or_default().insert(call, rules);
     };
-    for (_, call) in calls::REFUSED {
+    for (_, call) in calls::REFUSED.iter().chain(calls::REFUSED_OLD) {
         let network = *call == libc::SYS_socket || *call == libc::SYS_socketpair;
         refuse(if network { libc::EACCES } else { libc::EPERM }, *call, Vec::new());
     }
     if !purpose.tools {
-        for (_, call) in calls::LINKING.iter().chain(calls::LINKING_OLD) {
+        for (_, call) in calls::LINKING.iter().chain(calls::LINKING_OLD).chain(calls::IDENTITY) {
             refuse(libc::EPERM, *call, Vec::new());
+        }
+    }
+    if !(purpose.tools && purpose.own_user) {
+        for (_, call) in calls::TIMES_OLD {
+            refuse(libc::EPERM, *call, Vec::new());
+        }
+        // A build tool may set the times of a file that it has open (no path: a null pointer), which is what most do.
+        let by_path = SeccompCondition::new(1, SeccompCmpArgLen::Qword, SeccompCmpOp::Ne, 0);
+        let named = rule(vec![by_path.map_err(io::Error::other)?])?;
+        refuse(libc::EPERM, libc::SYS_utimensat, if purpose.tools { vec![named] } else { Vec::new() });
+        if !(purpose.tools && purpose.announce) {
+            for (_, call) in calls::MODES.iter().chain(calls::MODES_OLD) {
+                refuse(libc::EPERM, *call, Vec::new());
+            }
         }
     }
     refuse(libc::ENOTTY, libc::SYS_ioctl, vec![all_differ(1, &HARMLESS_REQUESTS)?]);
@@ -107,17 +123,7 @@ type Rules = BTreeMap<i64, Vec<SeccompRule>>;
 
 /// Whatever is in some group gets past this filter; the others then decide. All else does not exist.
 fn known() -> io::Result<BpfProgram> {
-    let groups: [&[Call]; 8] = [
-        calls::ALLOWED,
-        calls::ALLOWED_OLD,
-        calls::FORKING,
-        calls::LINKING,
-        calls::LINKING_OLD,
-        calls::REFUSED,
-        calls::FORBIDDEN,
-        calls::FORBIDDEN_OLD,
-    ];
-    let rules = groups.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
+    let rules = calls::GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
     compile(rules, SeccompAction::Errno(libc::ENOSYS as u32), SeccompAction::Allow)
 }
 
@@ -140,6 +146,10 @@ fn forbidden(purpose: Purpose) -> io::Result<BpfProgram> {
         }
     }
     rules.insert(libc::SYS_clone, clone);
+    if purpose.tools && purpose.announce && !purpose.own_user {
+        // The supervisor changes the mode itself, in the working folder only.
+        rules.extend(calls::MODES.iter().chain(calls::MODES_OLD).map(|(_, call)| (*call, Vec::new())));
+    }
     let action =
         if purpose.announce { SeccompAction::Trace(ANNOUNCE_PLACEHOLDER.into()) } else { SeccompAction::KillProcess };
     let mut program = compile(rules, SeccompAction::Allow, action)?;
@@ -178,7 +188,7 @@ mod tests {
     #[test]
     fn the_announcing_filter_has_no_placeholder_left() {
         for tools in [false, true] {
-            let filters = filters(Purpose { tools, announce: true, own_process: Some(77) }).unwrap();
+            let filters = filters(Purpose { tools, announce: true, own_process: Some(77), own_user: true }).unwrap();
             let returns = |k: u32| filters[0].iter().any(|i| i.code == RETURN_CONSTANT && i.k == k);
             assert!(returns(ACTION_ANNOUNCE));
             assert!(filters.iter().flatten().all(|i| i.k != ACTION_TRACE | u32::from(ANNOUNCE_PLACEHOLDER)));
@@ -187,7 +197,8 @@ mod tests {
 
     #[test]
     fn without_announcements_forbidden_calls_kill() {
-        let filters = filters(Purpose { tools: false, announce: false, own_process: Some(77) }).unwrap();
+        let filters =
+            filters(Purpose { tools: false, announce: false, own_process: Some(77), own_user: true }).unwrap();
         assert!(filters.iter().flatten().all(|instruction| instruction.k != ACTION_ANNOUNCE));
         assert!(
             filters[0].iter().any(|instruction| instruction.code == RETURN_CONSTANT && instruction.k == 0x8000_0000)

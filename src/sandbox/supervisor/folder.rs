@@ -4,11 +4,11 @@
 //! and nothing here fails because an entry has gone meanwhile.
 
 use std::ffi::CString;
-use std::fs::Metadata;
+use std::fs::{Metadata, Permissions};
 use std::io;
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
 use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::{FileTypeExt, MetadataExt};
+use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt};
 use std::path::Path;
 
 use crate::sandbox::sys;
@@ -68,6 +68,26 @@ pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<
         true
     });
     sys::change_owner(folder, user, group)
+}
+
+/// Opens folders that are closed to their own owner, so that they can be read and removed. Only called while no process
+/// of the program is alive.
+pub(super) fn open_up(folder: BorrowedFd<'_>) {
+    walk(folder, 0, &mut |path, metadata| {
+        let mode = metadata.permissions().mode();
+        if metadata.is_dir() && mode & 0o700 != 0o700 {
+            let name = path.file_name().and_then(|name| CString::new(name.as_bytes()).ok());
+            let parent = path.parent().and_then(|parent| std::fs::File::open(parent).ok());
+            if let (Some(name), Some(parent)) = (name, parent)
+                && let Ok(opened) = sys::open_beneath(parent.as_fd(), &name, libc::O_PATH | libc::O_DIRECTORY)
+            {
+                let entry = format!("/proc/self/fd/{}", opened.as_raw_fd());
+                // A folder that stays closed is reported as over the limit by the measurement that follows.
+                let _ = std::fs::set_permissions(entry, Permissions::from_mode(mode | 0o700));
+            }
+        }
+        true
+    });
 }
 
 /// Visits everything beneath the folder until the visitor says stop. The answer is whether everything was visited.

@@ -7,6 +7,7 @@ mod calls;
 mod child;
 mod filter;
 mod folder;
+mod modes;
 mod probe;
 pub(super) mod processes;
 mod run;

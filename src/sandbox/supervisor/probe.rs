@@ -61,7 +61,8 @@ fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
         version => why(walls::nothing(version >= SCOPES_SINCE).and_then(walls::enforce)),
     };
     let filters = |announce| {
-        filter::filters(filter::Purpose { tools: false, announce, own_process: Some(std::process::id() as i32) })
+        let own_process = Some(std::process::id() as i32);
+        filter::filters(filter::Purpose { tools: false, announce, own_process, own_user: user.is_some() })
     };
     let install = || -> io::Result<()> {
         // The announcing filter goes first, as in a real run; the next probe below only adds to it.

@@ -122,7 +122,7 @@ fn descendants() -> Vec<Stat> {
 }
 
 /// All process ids.
-fn all() -> impl Iterator<Item = i32> {
+pub(in crate::sandbox) fn all() -> impl Iterator<Item = i32> {
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
 }

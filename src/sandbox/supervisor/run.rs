@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::child::{self, Plan};
 use super::folder::{self, Contents};
 use super::streams::Capture;
-use super::{calls, processes, slot, walls};
+use super::{calls, modes, processes, slot, walls};
 use crate::sandbox::sys::{self, Fork};
 use crate::sandbox::wire::{self, Cause, Event, Failure, Order, Report};
 
@@ -172,6 +172,7 @@ impl Run {
         self.stdout.take_rest();
         self.stderr.take_rest();
         self.hear();
+        folder::open_up(self.folder.as_fd());
         let after = folder::measure(self.folder.as_fd(), u64::MAX, u64::MAX);
         if let Some((_, (owner, group))) = &self.slot {
             folder::give(self.folder.as_fd(), *owner, *group)
@@ -308,9 +309,15 @@ impl Run {
             let _ = sys::let_through(listener.as_fd(), announced.id);
             return Ok(());
         }
+        if modes::concerns(announced.call) {
+            let result = modes::change(&announced, self.folder.as_fd(), &wire::path(&self.order.folder));
+            // As above.
+            let _ = sys::answer(listener.as_fd(), announced.id, result);
+            return Ok(());
+        }
         let mut call = calls::name(announced.call);
         if announced.call == libc::SYS_clone {
-            let process = announced.first & libc::CLONE_THREAD as u64 == 0;
+            let process = announced.arguments[0] & libc::CLONE_THREAD as u64 == 0;
             call.push_str(if process { " (it started another process)" } else { " (it made a namespace)" });
         } else if call.ends_with("fork") {
             call.push_str(" (it started another process)");

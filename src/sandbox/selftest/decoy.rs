@@ -1,0 +1,162 @@
+//! What a hostile program would like to reach: secrets, a scene, another submission, a process.
+//!
+//! The state of all of it is recorded before and after a run, to the permission bits and the times of change.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::io;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// One set of decoys, for one run.
+pub(super) struct Decoy {
+    root: PathBuf,
+    /// The working folder.
+    pub(super) work: PathBuf,
+    /// The scene, which the program may read.
+    pub(super) scene: PathBuf,
+    secret: String,
+    victim: Child,
+}
+
+/// What the decoys look like: for every path its facts and contents.
+pub(super) struct State(BTreeMap<PathBuf, (Facts, Vec<u8>)>);
+
+type Facts = [i64; 7];
+
+impl State {
+    /// The first path that differs, if any.
+    pub(super) fn difference(&self, after: &Self) -> Option<String> {
+        let changed = self.0.iter().find(|(path, state)| after.0.get(*path) != Some(state)).map(|(path, _)| path);
+        let added = || after.0.keys().find(|path| !self.0.contains_key(*path));
+        changed.or_else(added).map(|path| path.display().to_string())
+    }
+}
+
+impl Decoy {
+    /// Makes everything anew beneath `root`.
+    pub(super) fn set_up(root: &Path) -> io::Result<Self> {
+        if root.exists() {
+            std::fs::remove_dir_all(root)?;
+        }
+        let (secrets, work) = (root.join("secrets"), root.join("work"));
+        let (scenes, neighbour) = (root.join("scenes"), root.join("neighbour"));
+        for folder in [&secrets.join("inner"), &secrets.join("empty"), &work, &scenes, &neighbour] {
+            std::fs::create_dir_all(folder)?;
+        }
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+        let secret = blake3::hash(format!("{now} {} {}", std::process::id(), root.display()).as_bytes()).to_hex();
+        let scene = scenes.join("scene.xml");
+        for (path, text, mode) in [
+            (secrets.join("reference.bin"), secret.as_str(), 0o644),
+            (secrets.join("private.txt"), secret.as_str(), 0o600),
+            (secrets.join("inner/more.txt"), secret.as_str(), 0o644),
+            (neighbour.join("answer.txt"), secret.as_str(), 0o644),
+            (scene.clone(), "<scene/>", 0o644),
+        ] {
+            std::fs::write(&path, text)?;
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode))?;
+        }
+        // The umask must not be what protects the secrets: open every folder on the way to all users.
+        for folder in [root, &secrets, &secrets.join("inner"), &scenes, &neighbour] {
+            std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))?;
+        }
+        let null = Stdio::null;
+        let victim = Command::new("/bin/sleep").arg("600").stdin(null()).stdout(null()).stderr(null()).spawn()?;
+        Ok(Self { root: root.into(), work, scene, secret: secret.to_string(), victim })
+    }
+
+    /// What the program is told: secrets, victim, scene, neighbour.
+    pub(super) fn arguments(&self) -> [OsString; 4] {
+        [
+            self.root.join("secrets").into(),
+            self.victim.id().to_string().into(),
+            self.scene.clone().into(),
+            self.root.join("neighbour").into(),
+        ]
+    }
+
+    /// Whether the text holds the secret.
+    pub(super) fn is_betrayed(&self, text: &[u8]) -> bool {
+        text.windows(self.secret.len()).any(|window| window == self.secret.as_bytes())
+    }
+
+    /// Whether the victim lives.
+    pub(super) fn is_alive(&mut self) -> bool {
+        matches!(self.victim.try_wait(), Ok(None))
+    }
+
+    /// The state of everything but the working folder.
+    pub(super) fn state(&self) -> io::Result<State> {
+        let mut state = BTreeMap::new();
+        for folder in ["secrets", "scenes", "neighbour"] {
+            record(&self.root.join(folder), &mut state)?;
+        }
+        Ok(State(state))
+    }
+
+    /// Removes everything.
+    pub(super) fn clear(self) -> io::Result<()> {
+        std::fs::remove_dir_all(&self.root)
+    }
+}
+
+impl Drop for Decoy {
+    fn drop(&mut self) {
+        // It may have been killed by the attack.
+        let _ = self.victim.kill();
+        let _ = self.victim.wait();
+    }
+}
+
+fn record(path: &Path, state: &mut BTreeMap<PathBuf, (Facts, Vec<u8>)>) -> io::Result<()> {
+    let metadata = path.symlink_metadata()?;
+    let mut contents = Vec::new();
+    if metadata.is_dir() {
+        for entry in std::fs::read_dir(path)? {
+            record(&entry?.path(), state)?;
+        }
+    } else if metadata.is_file() {
+        contents = std::fs::read(path)?;
+    }
+    let facts = [
+        i64::from(metadata.mode()),
+        i64::from(metadata.uid()),
+        i64::from(metadata.gid()),
+        metadata.nlink().cast_signed(),
+        // The time of change moves with every change of owner, mode, name or contents.
+        metadata.ctime(),
+        metadata.ctime_nsec(),
+        metadata.ino().cast_signed(),
+    ];
+    state.insert(path.into(), (facts, contents));
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_change_shows() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut decoy = Decoy::set_up(&folder.path().join("run")).unwrap();
+        let reference = folder.path().join("run/secrets/reference.bin");
+        let before = decoy.state().unwrap();
+        assert_eq!(before.difference(&decoy.state().unwrap()), None);
+        std::fs::set_permissions(&reference, std::fs::Permissions::from_mode(0o600)).unwrap();
+        std::fs::set_permissions(&reference, std::fs::Permissions::from_mode(0o644)).unwrap();
+        assert!(before.difference(&decoy.state().unwrap()).unwrap().ends_with("reference.bin"), "even when undone");
+        let before = decoy.state().unwrap();
+        std::fs::write(folder.path().join("run/neighbour/planted"), "x").unwrap();
+        assert!(before.difference(&decoy.state().unwrap()).is_some());
+        let secret = std::fs::read(&reference).unwrap();
+        assert!(decoy.is_betrayed(&[b"it is ", &secret[..]].concat()) && !decoy.is_betrayed(b"it is"));
+        assert!(decoy.is_alive());
+        decoy.victim.kill().unwrap();
+        decoy.victim.wait().unwrap();
+        assert!(!decoy.is_alive());
+    }
+}

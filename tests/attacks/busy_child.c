@@ -1,0 +1,9 @@
+// promise: The processor time of children counts.
+// expect: cpu
+// policy: tools
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    if (fork() == 0) spin();
+    wait(NULL);
+}

@@ -1,0 +1,9 @@
+// promise: A submission cannot execute itself again.
+// expect: violation execve
+// needs: named violations
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    execv("/proc/self/exe", argv);
+    breach("execve");
+}

@@ -1,0 +1,10 @@
+// promise: The system calls of 32-bit programs are closed.
+// expect: violation
+// needs: x86_64
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    long answer = 20;
+    __asm__ volatile("int $0x80" : "+a"(answer) : : "memory", "r8", "r9", "r10", "r11");
+    breach("int 0x80");
+}

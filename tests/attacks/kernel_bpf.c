@@ -1,0 +1,9 @@
+// promise: Programs for the kernel (BPF) cannot be loaded.
+// expect: violation bpf
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    char attributes[128] = {0};
+    syscall(SYS_bpf, 0, attributes, sizeof attributes);
+    breach("bpf");
+}

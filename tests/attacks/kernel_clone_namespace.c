@@ -1,0 +1,8 @@
+// promise: Namespaces cannot be made by starting a process.
+// expect: violation clone
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    syscall(SYS_clone, CLONE_NEWUSER | SIGCHLD, 0, 0, 0, 0);
+    breach("clone");
+}

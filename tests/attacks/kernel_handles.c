@@ -1,0 +1,9 @@
+// promise: Files cannot be opened by handle.
+// expect: violation open_by_handle_at
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    char handle[128] = {0};
+    syscall(SYS_open_by_handle_at, AT_FDCWD, handle, O_RDONLY);
+    breach("open_by_handle_at");
+}

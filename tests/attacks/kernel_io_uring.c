@@ -1,0 +1,9 @@
+// promise: The asynchronous calls (io_uring) are closed.
+// expect: violation io_uring_setup
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    char parameters[256] = {0};
+    syscall(SYS_io_uring_setup, 4, parameters);
+    breach("io_uring_setup");
+}

@@ -1,0 +1,8 @@
+// promise: Kernel modules cannot be loaded.
+// expect: violation init_module
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    syscall(SYS_init_module, "", 0, "");
+    breach("init_module");
+}

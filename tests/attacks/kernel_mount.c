@@ -1,0 +1,9 @@
+// promise: Nothing can be mounted.
+// expect: violation mount
+#include "attack.h"
+#include <sys/mount.h>
+int main(int argc, char **argv) {
+    begin(argc);
+    mount("none", ".", "tmpfs", 0, "");
+    breach("mount");
+}

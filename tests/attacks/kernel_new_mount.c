@@ -1,0 +1,8 @@
+// promise: Nothing can be mounted by the newer calls.
+// expect: violation fsopen
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    syscall(SYS_fsopen, "tmpfs", 0);
+    breach("fsopen");
+}

@@ -1,0 +1,9 @@
+// promise: Performance counters are closed.
+// expect: violation perf_event_open
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    char attributes[128] = {0};
+    syscall(SYS_perf_event_open, attributes, 0, -1, -1, 0);
+    breach("perf_event_open");
+}

@@ -1,0 +1,10 @@
+// promise: The memory of other processes cannot be read.
+// expect: violation process_vm_readv
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    char byte;
+    struct iovec here = {&byte, 1}, there = {(void *)main, 1};
+    process_vm_readv(getppid(), &here, 1, &there, 1, 0);
+    breach("process_vm_readv");
+}

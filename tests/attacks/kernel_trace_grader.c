@@ -1,0 +1,9 @@
+// promise: The grader cannot be traced.
+// expect: violation ptrace
+#include "attack.h"
+#include <sys/ptrace.h>
+int main(int argc, char **argv) {
+    begin(argc);
+    ptrace(PTRACE_ATTACH, atoi(argv[2]), 0, 0);
+    breach("ptrace");
+}

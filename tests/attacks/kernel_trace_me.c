@@ -1,0 +1,9 @@
+// promise: A program cannot ask to be traced.
+// expect: violation ptrace
+#include "attack.h"
+#include <sys/ptrace.h>
+int main(int argc, char **argv) {
+    begin(argc);
+    ptrace(PTRACE_TRACEME, 0, 0, 0);
+    breach("ptrace");
+}

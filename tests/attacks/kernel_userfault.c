@@ -1,0 +1,8 @@
+// promise: Page faults cannot be handled by the program (userfaultfd).
+// expect: violation userfaultfd
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    syscall(SYS_userfaultfd, 0);
+    breach("userfaultfd");
+}

@@ -1,0 +1,11 @@
+// promise: The depth of folders is limited.
+// expect: folder
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    for (int i = 0; i < 60; i++) {
+        mkdir("d", 0755);
+        chdir("d");
+    }
+    for (;;) pause();
+}

@@ -1,0 +1,8 @@
+// promise: Ignoring the signals of limits gains no processor time.
+// expect: cpu
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    for (int signal_number = 1; signal_number < 32; signal_number++) signal(signal_number, SIG_IGN);
+    spin();
+}

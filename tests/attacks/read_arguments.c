@@ -1,0 +1,13 @@
+// promise: The command lines of other processes cannot be read.
+// expect: exited 0
+// needs: file rules
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    char path[100];
+    snprintf(path, sizeof path, "/proc/%d/cmdline", getppid());
+    unreadable(path);
+    snprintf(path, sizeof path, "/proc/%s/cmdline", argv[2]);
+    unreadable(path);
+    if (opendir("/proc")) breach("processes can be listed");
+}

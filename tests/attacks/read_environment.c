@@ -1,0 +1,13 @@
+// promise: The grader's environment does not reach the program.
+// expect: exited 0
+#include "attack.h"
+extern char **environ;
+int main(int argc, char **argv) {
+    begin(argc);
+    const char *known[] = {"PATH=", "LC_ALL=", "HOME=", "TMPDIR=", "FOSSSIM_ATTACK="};
+    for (char **variable = environ; *variable; variable++) {
+        int found = 0;
+        for (int i = 0; i < 5; i++) found |= strncmp(*variable, known[i], strlen(known[i])) == 0;
+        if (!found) breach(*variable);
+    }
+}

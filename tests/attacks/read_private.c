@@ -1,0 +1,8 @@
+// promise: Files that only their owner may read stay unread.
+// expect: exited 0
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    unreadable(in(argv[1], "private.txt"));
+    unreadable("/etc/shadow");
+}

@@ -1,0 +1,14 @@
+// promise: The links of /proc lead nowhere that is closed.
+// expect: exited 0
+// needs: file rules
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    const char *roots[] = {"/proc/self/root", "/proc/thread-self/root", "/proc/self/cwd/../../../../../../../../.."};
+    for (int i = 0; i < 3; i++) {
+        char path[PATH_MAX];
+        snprintf(path, sizeof path, "%s%s/reference.bin", roots[i], argv[1]);
+        unreadable(path);
+    }
+    unreadable("/proc/self/cwd/../secrets/reference.bin");
+}

@@ -1,0 +1,8 @@
+// promise: A program that sleeps is stopped by the clock.
+// expect: wall
+// wall: 300
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    for (;;) sleep(1000);
+}

@@ -1,0 +1,10 @@
+// promise: A trace without end is cut at its limit.
+// expect: output trace
+// pipe: any
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    static char block[1 << 16];
+    int fd = open("trace.bin", O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    for (;;) write(fd, block, sizeof block);
+}

@@ -1,0 +1,8 @@
+// promise: A folder in place of the trace is not collected.
+// expect: exited 0
+// leaves: refused
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    return mkdir("trace.bin", 0755);
+}
