@@ -1,1 +1,3 @@
 //! (follows)
+
+pub mod grade;

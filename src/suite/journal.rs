@@ -110,6 +110,12 @@ impl Journal {
         self.found.get(key).cloned().map(|grade| SceneGrade { cached: true, ..grade })
     }
 
+    /// All results that are known, by key.
+    #[must_use]
+    pub fn snapshot(&self) -> BTreeMap<Key, SceneGrade> {
+        self.found.clone()
+    }
+
     /// Keeps a result. Faults of ours and scenes that were not run are not kept: they are tried again.
     ///
     /// # Errors

@@ -1,0 +1,67 @@
+//! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
+use super::{one_line, points};
+use crate::suite::{Grade, Verdict};
+use std::fmt::Write;
+
+/// Annotations; the words are escaped as workflow commands want it.
+pub(super) fn annotations(grades: &[Grade]) -> String {
+    let mut text = String::new();
+    for grade in grades {
+        for scene in grade.scenes().filter(|scene| !scene.verdict.is_accepted()) {
+            let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
+            let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
+            let _ = writeln!(text, "::{level} title={title}::{}", data(&scene.summary));
+        }
+    }
+    text
+}
+
+/// What follows `::` in a workflow command.
+fn data(text: &str) -> String {
+    one_line(text).replace('%', "%25")
+}
+
+/// A property's value in a workflow command.
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}
+
+/// A Markdown table per submission.
+pub(super) fn summary(grades: &[Grade]) -> String {
+    let mut text = String::new();
+    for grade in grades {
+        let reached = grade.points.map_or_else(|| "no points (the grader failed)".to_owned(), points);
+        let _ = writeln!(
+            text,
+            "### {}: {} ({reached} of {})\n",
+            cell(&grade.submission),
+            grade.verdict,
+            points(grade.max_points)
+        );
+        let _ = writeln!(text, "| scene | verdict | points | what happened |\n|---|---|---:|---|");
+        for scene in grade.scenes() {
+            let (name, words) = (cell(&scene.scene), cell(&scene.summary));
+            let _ = writeln!(text, "| {name} | {} | {} | {words} |", scene.verdict, points(scene.points));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Text without Markdown or HTML of its own.
+fn cell(text: &str) -> String {
+    let mut cell = String::new();
+    for c in one_line(text).chars() {
+        match c {
+            '<' => cell.push_str("&lt;"),
+            '>' => cell.push_str("&gt;"),
+            '&' => cell.push_str("&amp;"),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '|' | '#' | '!' | '~' | '@' => {
+                cell.push('\\');
+                cell.push(c);
+            }
+            c => cell.push(c),
+        }
+    }
+    cell
+}

@@ -1,0 +1,285 @@
+//! Grades submissions on a plan: scenes are shared out among jobs, results are told and kept as they come.
+//!
+//! Events are the interface to reports and progress displays. They arrive on the caller's thread, one after the other;
+//! a result has been written to the journal before its event is sent. What is found in the journal is not run again.
+use super::{
+    execute::{Cancellation, Runner, not_run},
+    grade::{Build, Grade, SceneGrade},
+    journal::{Journal, JournalError, Key},
+    plan::Plan,
+    score,
+    staging::{self, Staged, StagingError},
+    verdict::Verdict,
+};
+use crate::sandbox::Backend;
+use std::{
+    path::PathBuf,
+    sync::{
+        Arc, OnceLock,
+        atomic::{AtomicUsize, Ordering},
+        mpsc,
+    },
+    time::{Duration, Instant},
+};
+
+/// What is graded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Submission {
+    /// Its name in reports.
+    pub name: String,
+    /// The program, or the folder of sources when the plan builds.
+    pub path: PathBuf,
+}
+
+/// How to go about it.
+#[derive(Debug, Clone, Copy)]
+pub struct BatchOptions {
+    /// Runs at one time.
+    pub jobs: usize,
+    /// Whether a run is cut short at its first wrong step.
+    pub fail_fast: bool,
+}
+
+/// What happens during a grading.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// A scene begins to run.
+    SceneBegins {
+        /// The submission's number.
+        submission: usize,
+        /// The scene's number in the plan.
+        scene: usize,
+    },
+    /// Steps of a running scene have been judged up to this one; not every step is told.
+    Step {
+        /// The submission's number.
+        submission: usize,
+        /// The scene's number in the plan.
+        scene: usize,
+        /// The step.
+        step: u32,
+    },
+    /// A scene has its verdict.
+    SceneDone {
+        /// The submission's number.
+        submission: usize,
+        /// The scene's number in the plan.
+        scene: usize,
+        /// The result.
+        grade: &'a SceneGrade,
+    },
+    /// A submission has its grade.
+    Graded {
+        /// The submission's number.
+        submission: usize,
+        /// The grade.
+        grade: &'a Grade,
+    },
+}
+
+/// Why a grading ended early. What was judged before is in the journal.
+#[derive(Debug, thiserror::Error)]
+pub enum BatchError {
+    /// A result can't be kept.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+}
+
+enum Message {
+    Begins(usize, usize),
+    Step(usize, usize, u32),
+    /// Found in the journal is told as well; it needs no keeping.
+    Done(usize, usize, Box<SceneGrade>, Option<Key>),
+}
+
+/// One submission at work: staged once, by the first job that needs it.
+struct Work {
+    staged: OnceLock<Result<Arc<Staged>, String>>,
+    begun: OnceLock<Instant>,
+    left: AtomicUsize,
+}
+
+/// Grades all submissions; the grades come back in the same order. After a cancellation the scenes that were not run
+/// say so.
+///
+/// # Errors
+/// When a result can't be written to the journal; everything at work is ended first.
+pub fn run(
+    plan: &Plan,
+    submissions: &[Submission],
+    backend: &Backend,
+    mut journal: Option<&mut Journal>,
+    options: BatchOptions,
+    cancellation: &Cancellation,
+    on_event: &mut dyn FnMut(Event<'_>),
+) -> Result<Vec<Grade>, BatchError> {
+    let scenes: Vec<_> = plan.scenes().collect();
+    let works: Vec<Work> = submissions
+        .iter()
+        .map(|_| Work { staged: OnceLock::new(), begun: OnceLock::new(), left: AtomicUsize::new(scenes.len()) })
+        .collect();
+    let tasks = submissions.len() * scenes.len();
+    let next = AtomicUsize::new(0);
+    let known: Option<&Journal> = journal.as_deref();
+    // Jobs look results up in what the journal held at the start; new ones are kept by the main thread.
+    let found = known.map(Journal::snapshot).unwrap_or_default();
+    let words = plan_words(plan, options);
+    let (sender, receiver) = mpsc::channel();
+    let mut results: Vec<Vec<Option<SceneGrade>>> = submissions.iter().map(|_| vec![None; scenes.len()]).collect();
+    let mut grades: Vec<Option<Grade>> = submissions.iter().map(|_| None).collect();
+    let mut failed = None;
+    std::thread::scope(|scope| {
+        for _ in 0..options.jobs.clamp(1, tasks.max(1)) {
+            let (sender, works, next, scenes, found, words) = (sender.clone(), &works, &next, &scenes, &found, &words);
+            scope.spawn(move || {
+                let runner = Runner {
+                    backend,
+                    run: &plan.run,
+                    limits: &plan.limits,
+                    hints: plan.hints,
+                    fail_fast: options.fail_fast,
+                    cancellation,
+                };
+                loop {
+                    let task = next.fetch_add(1, Ordering::Relaxed);
+                    if task >= tasks {
+                        return;
+                    }
+                    let (submission, number) = (task / scenes.len(), task % scenes.len());
+                    let (work, scene) = (&works[submission], scenes[number]);
+                    let steps = scene.scene.steps();
+                    work.begun.get_or_init(Instant::now);
+                    let _ = sender.send(Message::Begins(submission, number));
+                    let staged = work.staged.get_or_init(|| {
+                        stage(&submissions[submission], plan, backend, cancellation)
+                            .map(Arc::new)
+                            .map_err(|error| error.to_string())
+                    });
+                    let (grade, key) = match staged {
+                        Err(message) => (not_run(&scene.name, steps, Verdict::JudgeError, message.clone()), None),
+                        Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.succeeded) => {
+                            let verdict =
+                                if cancellation.is_cancelled() { Verdict::NotRun } else { Verdict::CompileError };
+                            (not_run(&scene.name, steps, verdict, "the sources do not build".to_owned()), None)
+                        }
+                        Ok(staged) => {
+                            let words: Vec<&str> =
+                                words.iter().map(String::as_str).chain([scene.name.as_str()]).collect();
+                            let key = Key::of(&staged.digest, &scene.xml, &words);
+                            match found.get(&key) {
+                                Some(grade) => (SceneGrade { cached: true, ..grade.clone() }, None),
+                                None => {
+                                    let mut told = Instant::now();
+                                    let mut on_step = |step| {
+                                        // A display can't show more, and a channel should not hold more.
+                                        if told.elapsed() > Duration::from_millis(100) {
+                                            told = Instant::now();
+                                            let _ = sender.send(Message::Step(submission, number, step));
+                                        }
+                                    };
+                                    (runner.grade(&staged.program, scene, &mut on_step), Some(key))
+                                }
+                            }
+                        }
+                    };
+                    let _ = sender.send(Message::Done(submission, number, Box::new(grade), key));
+                }
+            });
+        }
+        drop(sender);
+        for message in receiver {
+            match message {
+                Message::Begins(submission, scene) => on_event(Event::SceneBegins { submission, scene }),
+                Message::Step(submission, scene, step) => on_event(Event::Step { submission, scene, step }),
+                Message::Done(submission, scene, grade, key) => {
+                    if let (Some(journal), Some(key)) = (journal.as_deref_mut(), key)
+                        && failed.is_none()
+                        && let Err(error) = journal.keep(&key, &submissions[submission].name, &grade)
+                    {
+                        failed = Some(error);
+                        cancellation.cancel();
+                    }
+                    on_event(Event::SceneDone { submission, scene, grade: &grade });
+                    results[submission][scene] = Some(*grade);
+                    let work = &works[submission];
+                    if work.left.fetch_sub(1, Ordering::Relaxed) == 1 {
+                        let scenes = results[submission].iter_mut().filter_map(Option::take).collect();
+                        let wall = work.begun.get().map_or(Duration::ZERO, Instant::elapsed);
+                        let build = match work.staged.get() {
+                            Some(Ok(staged)) => staged.build.clone(),
+                            _ => None,
+                        };
+                        let grade = assemble(plan, &submissions[submission], backend, scenes, build, wall);
+                        on_event(Event::Graded { submission, grade: &grade });
+                        grades[submission] = Some(grade);
+                    }
+                }
+            }
+        }
+    });
+    match failed {
+        Some(error) => Err(error.into()),
+        None => Ok(grades.into_iter().flatten().collect()),
+    }
+}
+
+/// Everything besides program and scene that a result depends on.
+fn plan_words(plan: &Plan, options: BatchOptions) -> Vec<String> {
+    vec![
+        "parity".to_owned(),
+        plan.run.join("\u{1f}"),
+        format!("{:?}", plan.limits),
+        format!("{:?}", plan.hints),
+        format!("fail_fast={}", options.fail_fast),
+    ]
+}
+
+fn stage(
+    submission: &Submission,
+    plan: &Plan,
+    backend: &Backend,
+    cancellation: &Cancellation,
+) -> Result<Staged, StagingError> {
+    match &plan.build {
+        Some(step) if submission.path.is_dir() => staging::build(&submission.path, step, backend, cancellation),
+        _ => staging::program(&submission.path),
+    }
+}
+
+fn assemble(
+    plan: &Plan,
+    submission: &Submission,
+    backend: &Backend,
+    scenes: Vec<SceneGrade>,
+    build: Option<Build>,
+    wall: Duration,
+) -> Grade {
+    let mut scenes = scenes.into_iter();
+    let groups: Vec<_> = plan
+        .groups
+        .iter()
+        .map(|group| score::group(&group.name, group.stakes, scenes.by_ref().take(group.scenes.len()).collect()))
+        .collect();
+    let verdict = groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun);
+    let (active, missing): (Vec<_>, Vec<_>) = backend.layers().iter().partition(|layer| layer.active);
+    Grade {
+        submission: submission.name.clone(),
+        suite: plan.name.clone(),
+        rules: "parity",
+        verdict,
+        points: (verdict != Verdict::JudgeError).then(|| groups.iter().map(|group| group.points).sum()),
+        max_points: plan.max_points(),
+        groups,
+        build,
+        warnings: missing
+            .iter()
+            .filter(|report| report.required)
+            .map(|report| format!("{} does not hold: {}", report.layer.name(), report.detail))
+            .collect(),
+        layers: active.iter().map(|report| report.layer.name().to_owned()).collect(),
+        wall,
+    }
+}
+
+#[cfg(test)]
+mod tests;

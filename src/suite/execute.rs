@@ -1,0 +1,250 @@
+//! Runs one program on one scene in the sandbox and judges its trace while it is written.
+use super::{
+    conclude::conclude,
+    config::{Hints, RunLimits},
+    grade::SceneGrade,
+    verdict::Verdict,
+};
+use crate::{
+    judge::parity::{self, Options, Progress, Remark},
+    sandbox::{Backend, Canceller, Job, Limits, Policy, SandboxError},
+    scene::Scene,
+};
+use std::{
+    io::{self, Read},
+    path::Path,
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+
+/// Name of the scene's copy in the working folder, and of the trace.
+const SCENE_FILE: &str = "scene.xml";
+const TRACE_FILE: &str = "trace.bin";
+
+/// A fault of ours or of the machine is tried so often before it is reported.
+const ATTEMPTS: u32 = 2;
+
+/// A scene to run.
+#[derive(Debug, Clone)]
+pub struct SceneTask {
+    /// Its name, `Group/name`.
+    pub name: String,
+    /// Its XML, as the program gets it.
+    pub xml: Vec<u8>,
+    /// The scene itself.
+    pub scene: Scene,
+}
+
+/// How scenes are run.
+#[derive(Debug)]
+pub struct Runner<'a> {
+    /// The sandbox.
+    pub backend: &'a Backend,
+    /// The command line; `{program}`, `{scene}` and `{trace}` are replaced.
+    pub run: &'a [String],
+    /// Limits of each run.
+    pub limits: &'a RunLimits,
+    /// How much the result tells.
+    pub hints: Hints,
+    /// Whether a run is cut short at its first wrong step.
+    pub fail_fast: bool,
+    /// Stops everything from outside.
+    pub cancellation: &'a Cancellation,
+}
+
+impl Runner<'_> {
+    /// Runs `program` on a scene, in a working folder of its own that is gone afterwards, and judges it. A fault of
+    /// ours is tried once more, then it is the verdict. `on_step` hears the number of every judged step.
+    #[must_use]
+    pub fn grade(&self, program: &Path, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneGrade {
+        let mut attempt = 1;
+        loop {
+            if self.cancellation.is_cancelled() {
+                return self.without_run(task, Verdict::NotRun, "grading was stopped".to_owned());
+            }
+            match self.attempt(program, task, on_step) {
+                Ok(grade) => return grade,
+                Err(_) if attempt < ATTEMPTS => attempt += 1,
+                Err(error) => return self.without_run(task, Verdict::JudgeError, error.to_string()),
+            }
+        }
+    }
+
+    fn without_run(&self, task: &SceneTask, verdict: Verdict, summary: String) -> SceneGrade {
+        not_run(&task.name, task.scene.steps(), verdict, summary)
+    }
+
+    fn attempt(
+        &self,
+        program: &Path,
+        task: &SceneTask,
+        on_step: &mut dyn FnMut(u32),
+    ) -> Result<SceneGrade, ExecuteError> {
+        let folder = tempfile::Builder::new().prefix("fosssim-run-").tempdir().map_err(ExecuteError::Folder)?;
+        let scene_file = folder.path().join(SCENE_FILE);
+        std::fs::write(&scene_file, &task.xml).map_err(ExecuteError::Folder)?;
+        let job = Job::new(program, folder.path())
+            .arguments(self.arguments(program))
+            .trace_pipe(TRACE_FILE)
+            .policy(Policy::Submission)
+            .limits(self.sandbox_limits());
+        let mut running = self.backend.start(&job)?;
+        let canceller = running.canceller();
+        let _registered = self.cancellation.register(canceller.clone());
+        let bytes = AtomicU64::new(0);
+        let options = Options { stop_at_first: self.fail_fast, threads: 1, ..Options::default() };
+        let mut watch = Watch { on_step };
+        let mut cut_short = false;
+        let judged = match running.trace() {
+            Some(inner) => {
+                let mut trace = Counted { inner, bytes: &bytes };
+                let judged = parity::judge(&task.scene, &mut trace, &options, &mut watch);
+                cut_short = self.fail_fast && judged.wrong_steps > 0 && judged.steps_judged < judged.steps;
+                if cut_short {
+                    canceller.cancel();
+                }
+                // What the judge did not want is read all the same, within the limit: a program must not die of our
+                // closing the pipe. An error here ends the program as well, and its outcome says so.
+                let _ = io::copy(&mut trace, &mut io::sink());
+                judged
+            }
+            None => parity::judge(&task.scene, io::empty(), &options, &mut watch),
+        };
+        let outcome = running.wait()?;
+        Ok(conclude(&task.name, &outcome, &judged, bytes.load(Ordering::Relaxed), cut_short, self.hints))
+    }
+
+    fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
+        self.run
+            .iter()
+            .skip(1)
+            .map(|word| {
+                word.replace("{scene}", SCENE_FILE)
+                    .replace("{trace}", TRACE_FILE)
+                    .replace("{program}", &program.to_string_lossy())
+                    .into()
+            })
+            .collect()
+    }
+
+    fn sandbox_limits(&self) -> Limits {
+        let limits = self.limits;
+        Limits {
+            cpu: limits.cpu,
+            wall: limits.wall,
+            memory: limits.memory,
+            output_bytes: limits.output,
+            trace_bytes: limits.trace,
+            folder_bytes: limits.folder,
+            folder_files: limits.files,
+            ..Limits::default()
+        }
+    }
+}
+
+/// A scene that was not judged, with the reason.
+#[must_use]
+pub fn not_run(scene: &str, steps: u32, verdict: Verdict, summary: String) -> SceneGrade {
+    SceneGrade {
+        scene: scene.to_owned(),
+        verdict,
+        summary,
+        details: Vec::new(),
+        points: 0.0,
+        max_points: 0.0,
+        right_steps: 0,
+        steps,
+        cpu: Duration::ZERO,
+        wall: Duration::ZERO,
+        memory: None,
+        stdout: String::new(),
+        stderr: String::new(),
+        cached: false,
+    }
+}
+
+/// Why a scene could not be run: always our fault or the machine's.
+#[derive(Debug, thiserror::Error)]
+enum ExecuteError {
+    #[error("no working folder for a run: {0}")]
+    Folder(io::Error),
+    #[error(transparent)]
+    Sandbox(#[from] SandboxError),
+}
+
+/// Counts the bytes that arrive.
+struct Counted<'a, R> {
+    inner: R,
+    bytes: &'a AtomicU64,
+}
+
+impl<R: Read> Read for Counted<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        self.bytes.fetch_add(count as u64, Ordering::Relaxed);
+        Ok(count)
+    }
+}
+
+/// Tells how judging goes.
+struct Watch<'a> {
+    on_step: &'a mut dyn FnMut(u32),
+}
+
+impl Progress for Watch<'_> {
+    fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
+        (self.on_step)(step);
+    }
+}
+
+/// Stops a grading from outside, for example on Ctrl-C: no new run begins, and every run at work is ended.
+#[derive(Debug, Default)]
+pub struct Cancellation {
+    cancelled: AtomicBool,
+    next: AtomicU64,
+    running: Mutex<Vec<(u64, Canceller)>>,
+}
+
+impl Cancellation {
+    /// Stops everything, now and later.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::SeqCst);
+        for (_, canceller) in self.lock().iter() {
+            canceller.cancel();
+        }
+    }
+
+    /// Whether grading has been stopped.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::SeqCst)
+    }
+
+    /// Adds a run for as long as the result lives. A run that begins after the stop is ended at once.
+    pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
+        let number = self.next.fetch_add(1, Ordering::Relaxed);
+        self.lock().push((number, canceller.clone()));
+        if self.is_cancelled() {
+            canceller.cancel();
+        }
+        Registered { cancellation: self, number }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<(u64, Canceller)>> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+struct Registered<'a> {
+    cancellation: &'a Cancellation,
+    number: u64,
+}
+
+impl Drop for Registered<'_> {
+    fn drop(&mut self) {
+        self.cancellation.lock().retain(|(number, _)| *number != self.number);
+    }
+}
