@@ -3,9 +3,10 @@
 //! Coincidence is exact: two points are in one place when their coordinates compare equal, `-0` and `0` included, and
 //! a particle is on an edge or a half-plane when the formula of simulation.md 3 gives the zero vector. Only the start
 //! is looked at; what happens later is the simulator's business.
-use super::document::{Document, Tag};
+use super::document::Document;
 use super::model::{Collision, Edge, Force, HalfPlane, Integrator, Particle};
 use super::problem::{Finding, Report};
+use super::tag::Tag;
 use super::xml::{Part, Parts};
 use crate::num::vector::Vec2;
 

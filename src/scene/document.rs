@@ -1,39 +1,15 @@
 //! The scene's elements with their places, and everything that is wrong with the XML itself.
 //!
-//! quick-xml cuts the text into tags and attributes; nesting, names and places are judged here. Values are left as
-//! they are written. Nothing is looked at twice, so that the work grows with the length of the text only.
+//! quick-xml cuts the text into tags; nesting and the names of elements are judged here, attributes in `tag`. Nothing is looked at twice, so that the work grows with the length of the text only.
 use std::collections::BTreeSet;
 use std::ops::Range;
 
 use quick_xml::errors::{Error, SyntaxError};
 use quick_xml::events::Event;
-use quick_xml::events::attributes::{AttrError, Attributes};
 
 use super::grammar::{self, Rule};
 use super::problem::{Finding, MOST_PROBLEMS, Report, quote};
-
-/// An attribute as written.
-#[derive(Debug)]
-pub(super) struct Attribute<'t> {
-    pub(super) name: &'t str,
-    pub(super) value: &'t str,
-    /// The bytes of the value, without its quotation marks unless it is empty.
-    pub(super) span: Range<usize>,
-}
-
-/// A known child of the scene.
-#[derive(Debug)]
-pub(super) struct Tag<'t> {
-    pub(super) rule: &'static Rule,
-    /// The bytes of `<name`.
-    pub(super) span: Range<usize>,
-    /// Known attributes, each once.
-    pub(super) attributes: Vec<Attribute<'t>>,
-    /// Known attributes that a misspelt one was probably meant to be.
-    pub(super) meant: BTreeSet<&'static str>,
-    /// Whether its attributes could not all be read.
-    pub(super) broken: bool,
-}
+use super::tag::{self, Tag, is_space, offset};
 
 /// What the text holds.
 #[derive(Debug, Default)]
@@ -147,7 +123,8 @@ impl<'t> Reading<'t, '_> {
             Error::Syntax(syntax) => syntax_words(*syntax),
             other => (other.to_string(), None),
         };
-        let end = self.text[at..].char_indices().nth(1).map_or(self.text.len(), |(offset, _)| at + offset);
+        let first = self.text.get(at..).and_then(|rest| rest.chars().next());
+        let end = at + first.map_or(0, char::len_utf8);
         self.report.error(|| Finding::new(at..end, message).maybe_help(help));
     }
 
@@ -244,7 +221,7 @@ impl<'t> Reading<'t, '_> {
         }
         static SCENE: Rule = Rule { name: "scene", attributes: &[] };
         if self.in_scene {
-            self.attributes(&SCENE, inner, span.clone());
+            tag::read(self.text, &SCENE, inner, span.clone(), self.report);
         }
     }
 
@@ -267,7 +244,7 @@ impl<'t> Reading<'t, '_> {
                 self.document.rigid_bodies = true;
                 return;
             }
-            let tag = self.attributes(rule, inner, span.clone());
+            let tag = tag::read(self.text, rule, inner, span.clone(), self.report);
             self.document.tags.push(tag);
             return;
         }
@@ -282,86 +259,6 @@ impl<'t> Reading<'t, '_> {
                     |similar| format!("did you mean `{similar}`?"),
                 ),
             )
-        });
-    }
-
-    fn attributes(&mut self, rule: &'static Rule, inner: &'t str, span: Range<usize>) -> Tag<'t> {
-        let mut tag = Tag { rule, span: span.clone(), attributes: Vec::new(), meant: BTreeSet::new(), broken: false };
-        let mut found = Attributes::new(inner, span.len() - 1);
-        // Its own check compares each with all others; here there are few names to compare with.
-        found.with_checks(false);
-        for attribute in found {
-            match attribute {
-                Ok(attribute) => {
-                    let name = attribute.key.into_inner();
-                    let std::borrow::Cow::Borrowed(value) = attribute.value else { continue };
-                    self.attribute(&mut tag, name, value);
-                }
-                Err(error) => {
-                    // What stands behind it may belong to another element.
-                    tag.broken = true;
-                    self.broken_attribute(rule, inner, span.start + 1, &error);
-                    break;
-                }
-            }
-        }
-        tag
-    }
-
-    fn attribute(&mut self, tag: &mut Tag<'t>, name: &'t str, value: &'t str) {
-        let at = offset(self.text, name);
-        let name_span = at..at + name.len();
-        let rule = tag.rule;
-        if !rule.attributes.contains(&name) {
-            self.report.error(|| {
-                let similar = grammar::closest(name, rule.attributes.iter().copied());
-                tag.meant.extend(similar);
-                let help = match similar {
-                    Some(similar) => format!("did you mean `{similar}`?"),
-                    None if rule.attributes.is_empty() => format!("`{}` has none", rule.name),
-                    None => format!("`{}` has {}", rule.name, list(rule.attributes)),
-                };
-                Finding::new(name_span, format!("unknown attribute `{}` of `{}`", quote(name), rule.name))
-                    .element(rule.name)
-                    .attribute(name)
-                    .help(help)
-            });
-        } else if tag.attributes.iter().any(|other| other.name == name) {
-            self.report.error(|| {
-                Finding::new(name_span, format!("a second `{name}` of `{}`", rule.name))
-                    .element(rule.name)
-                    .attribute(name)
-                    .help("the original takes the first; remove one")
-            });
-        } else {
-            let at = offset(self.text, value);
-            let span = if value.is_empty() { at - 1..at + 1 } else { at..at + value.len() };
-            tag.attributes.push(Attribute { name, value, span });
-        }
-    }
-
-    fn broken_attribute(&mut self, rule: &Rule, inner: &str, start: usize, error: &AttrError) {
-        let (at, message) = match *error {
-            AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),
-            AttrError::ExpectedValue(at) => (at, "a value is missing after"),
-            AttrError::UnquotedValue(at) => (at, "quotation marks are missing around the value after"),
-            AttrError::ExpectedQuote(at, _) => (at, "the closing quotation mark is missing after"),
-            AttrError::Duplicated(at, _) => (at, "an attribute occurs twice after"),
-        };
-        // The position lies behind the word that matters, white space and all.
-        let before = inner.get(..at).unwrap_or(inner).trim_ascii_end();
-        let word = before.rfind(|c: char| c.is_ascii_whitespace()).map_or(0, |space| space + 1);
-        let (from, message, help) = if let Some(other) = before.rfind('<') {
-            (other, "a `<`".to_owned(), "is the `>` of this element missing?")
-        } else if before[word..].starts_with('/') {
-            (word, "a `/`".to_owned(), "`/` stands directly before `>`")
-        } else {
-            (word, format!("{message} `{}`", quote(&before[word..])), "attributes are written `name=\"value\"`")
-        };
-        self.report.error(|| {
-            Finding::new(start + from..start + before.len(), format!("{message} in `{}`", rule.name))
-                .element(rule.name)
-                .help(help)
         });
     }
 
@@ -400,25 +297,6 @@ impl<'t> Reading<'t, '_> {
         }
         self.open.pop();
         self.in_scene &= !self.open.is_empty();
-    }
-}
-
-fn is_space(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\n' | b'\r' | b'\t')
-}
-
-/// Where a part of the text starts.
-fn offset(text: &str, part: &str) -> usize {
-    (part.as_ptr() as usize).saturating_sub(text.as_ptr() as usize).min(text.len())
-}
-
-/// Names for a message: `a`, `b` and `c`.
-pub(super) fn list(names: &[&str]) -> String {
-    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    match quoted.split_last() {
-        Some((last, [])) => last.clone(),
-        Some((last, others)) => format!("{} and {last}", others.join(", ")),
-        None => String::new(),
     }
 }
 

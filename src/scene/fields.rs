@@ -6,11 +6,11 @@ use std::ops::Range;
 
 use quick_xml::escape::{EscapeError, unescape};
 
-use super::document::{Attribute, Tag, list};
 use super::grammar;
 use super::model::Color;
 use super::numbers::{self, Flaw};
 use super::problem::{Finding, Report, Severity, quote};
+use super::tag::{Attribute, Tag, list};
 use crate::num::vector::Vec2;
 
 /// How many objects of a kind there are, for indices that point to them.

@@ -1,10 +1,11 @@
 //! From elements to a scene: which attributes each element has, and which values make sense (scene-format.md 4, 5).
 //!
 //! What only several elements together can get wrong is judged in `checks`.
-use super::document::{Document, Tag};
+use super::document::Document;
 use super::fields::{Count, Fields};
 use super::model::{Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport};
 use super::problem::{Finding, Report};
+use super::tag::Tag;
 
 /// The elements that objects were read from, so that later checks can point to them.
 pub(super) struct Parts<'d, 't> {

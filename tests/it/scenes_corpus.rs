@@ -1,4 +1,6 @@
 //! Every scene of the course, read by both readers.
+#![expect(clippy::disallowed_methods, reason = "the corpus is a folder of files")]
+
 use std::path::{Path, PathBuf};
 
 use fosssim_oracle::scene::{self, original};

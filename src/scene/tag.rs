@@ -1,0 +1,144 @@
+//! One tag: its attributes as written, with their places, and everything that is wrong with their form and names.
+//!
+//! Values are neither translated nor understood here; that is the business of `fields`.
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use quick_xml::events::attributes::{AttrError, Attributes};
+
+use super::grammar::{self, Rule};
+use super::problem::{Finding, Report, quote};
+
+/// An attribute as written.
+#[derive(Debug)]
+pub(super) struct Attribute<'t> {
+    pub(super) name: &'t str,
+    pub(super) value: &'t str,
+    /// The bytes of the value, without its quotation marks unless it is empty.
+    pub(super) span: Range<usize>,
+}
+
+/// A known child of the scene.
+#[derive(Debug)]
+pub(super) struct Tag<'t> {
+    pub(super) rule: &'static Rule,
+    /// The bytes of `<name`.
+    pub(super) span: Range<usize>,
+    /// Known attributes, each once.
+    pub(super) attributes: Vec<Attribute<'t>>,
+    /// Known attributes that a misspelt one was probably meant to be.
+    pub(super) meant: BTreeSet<&'static str>,
+    /// Whether its attributes could not all be read.
+    pub(super) broken: bool,
+}
+
+/// Reads a tag. `inner` is the part of `text` between `<` and `>` or `/>`, and `span` the bytes of `<name`.
+pub(super) fn read<'t>(
+    text: &'t str,
+    rule: &'static Rule,
+    inner: &'t str,
+    span: Range<usize>,
+    report: &mut Report,
+) -> Tag<'t> {
+    let (start, name_length) = (span.start + 1, span.len() - 1);
+    let mut tag = Tag { rule, span, attributes: Vec::new(), meant: BTreeSet::new(), broken: false };
+    let mut found = Attributes::new(inner, name_length);
+    // Its own check compares each with all others; here there are few names to compare with.
+    found.with_checks(false);
+    for attribute in found {
+        match attribute {
+            Ok(attribute) => {
+                let name = attribute.key.into_inner();
+                let Cow::Borrowed(value) = attribute.value else { continue };
+                tag.add(text, name, value, report);
+            }
+            Err(error) => {
+                // What stands behind it may belong to another element.
+                tag.broken = true;
+                report.error(|| broken(rule, inner, start, &error));
+                break;
+            }
+        }
+    }
+    tag
+}
+
+impl<'t> Tag<'t> {
+    fn add(&mut self, text: &'t str, name: &'t str, value: &'t str, report: &mut Report) {
+        let at = offset(text, name);
+        let name_span = at..at + name.len();
+        let rule = self.rule;
+        if !rule.attributes.contains(&name) {
+            report.error(|| {
+                let similar = grammar::closest(name, rule.attributes.iter().copied());
+                self.meant.extend(similar);
+                let help = match similar {
+                    Some(similar) => format!("did you mean `{similar}`?"),
+                    None if rule.attributes.is_empty() => format!("`{}` has none", rule.name),
+                    None => format!("`{}` has {}", rule.name, list(rule.attributes)),
+                };
+                Finding::new(name_span, format!("unknown attribute `{}` of `{}`", quote(name), rule.name))
+                    .element(rule.name)
+                    .attribute(name)
+                    .help(help)
+            });
+        } else if self.attributes.iter().any(|other| other.name == name) {
+            report.error(|| {
+                Finding::new(name_span, format!("a second `{name}` of `{}`", rule.name))
+                    .element(rule.name)
+                    .attribute(name)
+                    .help("the original takes the first; remove one")
+            });
+        } else {
+            let at = offset(text, value);
+            let span = if value.is_empty() { at - 1..at + 1 } else { at..at + value.len() };
+            self.attributes.push(Attribute { name, value, span });
+        }
+    }
+}
+
+/// What is wrong with the form of an attribute. `start` is where `inner` starts in the text.
+fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Finding {
+    let (at, message) = match *error {
+        AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),
+        AttrError::ExpectedValue(at) => (at, "a value is missing after"),
+        AttrError::UnquotedValue(at) => (at, "quotation marks are missing around the value after"),
+        AttrError::ExpectedQuote(at, _) => (at, "the closing quotation mark is missing after"),
+        AttrError::Duplicated(at, _) => (at, "an attribute occurs twice after"),
+    };
+    // The position lies behind the word that matters, white space and all.
+    let before = inner.get(..at).unwrap_or(inner).trim_ascii_end();
+    let word = before.rfind(|c: char| c.is_ascii_whitespace()).map_or(0, |space| space + 1);
+    let bare = before.rfind(['"', '\'']).map_or(0, |quotation| quotation + 1);
+    let (from, message, help) = if let Some(other) = before[bare..].rfind('<') {
+        (bare + other, "a `<`".to_owned(), "is the `>` of this element missing?")
+    } else if before[word..].starts_with('/') {
+        (word, "a `/`".to_owned(), "`/` stands directly before `>`")
+    } else {
+        (word, format!("{message} `{}`", quote(&before[word..])), "attributes are written `name=\"value\"`")
+    };
+    Finding::new(start + from..start + before.len(), format!("{message} in `{}`", rule.name))
+        .element(rule.name)
+        .help(help)
+}
+
+/// White space of XML.
+pub(super) fn is_space(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\n' | b'\r' | b'\t')
+}
+
+/// Where a part of the text starts.
+pub(super) fn offset(text: &str, part: &str) -> usize {
+    (part.as_ptr() as usize).saturating_sub(text.as_ptr() as usize).min(text.len())
+}
+
+/// Names for a message: `a`, `b` and `c`.
+pub(super) fn list(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} and {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
