@@ -1,4 +1,5 @@
 //! The integration tests: one binary, one module per topic.
+mod allocations;
 mod attacks;
 mod corpus;
 mod fuzz_replay;
