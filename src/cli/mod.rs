@@ -1,11 +1,43 @@
-//! The command line (follows).
+//! The command line: arguments, files, the terminal. The only room with files; everything else takes and gives bytes.
 
-/// Runs the command.
+mod arguments;
+mod commands;
+mod console;
+pub mod exit;
+mod input;
+mod original;
+mod output;
+
+use clap::Parser;
+use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
+
+/// Runs the command that the program's arguments ask for.
 #[must_use]
-pub fn main() -> std::process::ExitCode {
+pub fn main() -> ExitCode {
+    let words: Vec<OsString> = std::env::args_os().collect();
     // Before anything else and before any thread: this process may be a sandbox's supervisor.
-    if let Some(code) = crate::sandbox::supervisor_main(std::env::args_os()) {
+    if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
         return code;
     }
-    std::process::ExitCode::from(2)
+    let program = words.first().cloned().unwrap_or_default();
+    if original::is_called(&program) {
+        return original::main(program.as_bytes(), words.get(1..).unwrap_or_default());
+    }
+    if words.get(1).is_some_and(|word| word == "original") {
+        let name = [program.as_bytes(), b" original"].concat();
+        return original::main(&name, &words[2..]);
+    }
+    let arguments = match arguments::Arguments::try_parse_from(words) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version come this way, too. A closed pipe does not change the exit code.
+            drop(error.print());
+            return ExitCode::from(if error.use_stderr() { exit::FAULT } else { exit::ACCEPTED });
+        }
+    };
+    let code = commands::run(&arguments.command).unwrap_or_else(|error| {
+        console::complain(format!("error: {error:#}\n").as_bytes());
+        exit::FAULT
+    });
+    ExitCode::from(code)
 }

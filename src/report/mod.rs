@@ -1,3 +1,17 @@
-//! (follows)
+//! Results to bytes: text and JSON reports, and the original program's own output.
+//!
+//! Every renderer is a pure function from results to text; nothing here opens a file, reads a clock or computes a
+//! verdict. Core types are not `Serialize`: `view` owns the serialised shapes and their schema version.
+#![forbid(unsafe_code)]
 
+pub mod check;
+pub mod describe;
 pub mod grade;
+pub mod number;
+pub mod original;
+pub mod problems;
+pub mod simulate;
+pub mod style;
+pub mod table;
+pub mod trace;
+pub mod view;

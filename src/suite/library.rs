@@ -8,10 +8,7 @@ static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/references")
 
 /// The names of all embedded scenes, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    let mut names: Vec<_> =
-        ASSETS.dirs().flat_map(Dir::files).filter_map(|file| file.path().to_str()?.strip_suffix(".xml")).collect();
-    names.sort_unstable();
-    names.into_iter()
+    stems(&ASSETS, ".xml")
 }
 
 /// The XML of a scene.
@@ -26,16 +23,22 @@ pub fn recording(name: &str) -> Option<&'static [u8]> {
     file(&REFERENCES, name, "bin.zst")
 }
 
-/// The digests of a recording's steps, as text.
-#[must_use]
-pub fn steps(name: &str) -> Option<&'static [u8]> {
-    file(&REFERENCES, name, "steps")
+/// The names of all embedded recordings, in alphabetical order.
+pub fn recordings() -> impl Iterator<Item = &'static str> {
+    stems(&REFERENCES, ".bin.zst")
 }
 
-/// The list of all recordings with their sizes and digests.
+/// A file of the folder of recordings: `manifest.txt`, `Group/name.steps` or `Group/name.bin.zst`.
 #[must_use]
-pub fn manifest() -> Option<&'static [u8]> {
-    REFERENCES.get_file("manifest.txt").map(|file| file.contents())
+pub fn reference(path: &str) -> Option<&'static [u8]> {
+    REFERENCES.get_file(path).map(|file| file.contents())
+}
+
+fn stems(dir: &'static Dir<'static>, extension: &str) -> impl Iterator<Item = &'static str> {
+    let files = dir.dirs().flat_map(Dir::files);
+    let mut names: Vec<_> = files.filter_map(|file| file.path().to_str()?.strip_suffix(extension)).collect();
+    names.sort_unstable();
+    names.into_iter()
 }
 
 fn file(dir: &'static Dir<'static>, name: &str, extension: &str) -> Option<&'static [u8]> {

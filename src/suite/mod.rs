@@ -11,6 +11,7 @@ mod grade;
 pub mod journal;
 pub mod library;
 pub mod plan;
+pub mod recording;
 pub mod score;
 mod staging;
 mod verdict;

@@ -1,14 +1,21 @@
 //! The integration tests: one binary, one module per topic.
 mod allocations;
 mod attacks;
+mod check;
 mod corpus;
+mod drop_in;
 mod fuzz_replay;
 mod layers;
 mod parity;
+mod record;
 mod recordings;
 mod root_vectors;
 mod samples;
 mod sandbox;
 mod scenes_corpus;
 mod scenes_props;
+mod simulate;
+mod trace;
 mod trace_props;
+mod verdicts;
+mod workspace;

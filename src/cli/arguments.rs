@@ -1,0 +1,204 @@
+//! The command line as typed. What it means is decided by the commands.
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
+
+/// Grades the traces of FOSSSim, a course's collision simulator: right or wrong, where, and why.
+#[derive(Debug, Parser)]
+#[command(name = "fosssim-oracle", version, max_term_width = 100, after_help = EXIT_CODES)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  accepted, or done
+  1  graded and not accepted; traces or recordings that differ
+  2  wrong usage, an input that can't be used, or the program's own fault
+
+SCENE is a file, or asset:Group/name for a scene that comes with the program.
+TRACE is a file (.zst files are unpacked), - for standard input, or asset:Group/name for its recording.";
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    Simulate(Simulate),
+    Check(Check),
+    #[command(subcommand)]
+    Trace(Trace),
+    Record(Record),
+    Original(Original),
+    Completions(Completions),
+    Man(Man),
+}
+
+/// How a report is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// For people.
+    Text,
+    /// For programs; one JSON object.
+    Json,
+}
+
+/// Simulates a scene, and records its trace.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle simulate asset:ContinuousTimeTests/head-on-equal-masses --output reference.bin")]
+pub(super) struct Simulate {
+    /// The scene, a file or asset:Group/name.
+    pub(super) scene: PathBuf,
+    /// Where to write the trace; - for standard output. Without it nothing is kept.
+    #[arg(short, long, value_name = "TRACE")]
+    pub(super) output: Option<PathBuf>,
+    /// Search all roots, also where a certificate excludes an impact, and count disagreements.
+    #[arg(long)]
+    pub(super) audit: bool,
+    /// How the summary is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}
+
+/// Grades a trace by the original's rules, and says what is wrong and where.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle check scenes/test00.xml submission.bin
+  fosssim-oracle check scenes/test00.xml submission.bin --format json --output report.json")]
+pub(super) struct Check {
+    /// The scene, a file or asset:Group/name.
+    pub(super) scene: PathBuf,
+    /// The trace, a file, - for standard input, or asset:Group/name.
+    pub(super) trace: PathBuf,
+    /// How the report is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+    /// Where to write the report, instead of to standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+    /// Number of threads, eight at most; the report does not depend on it. One per core by default.
+    #[arg(long, value_name = "N")]
+    pub(super) threads: Option<NonZeroUsize>,
+    /// Search all roots, also where a certificate excludes an impact, and count disagreements.
+    #[arg(long)]
+    pub(super) audit: bool,
+}
+
+/// Looks into traces.
+#[derive(Debug, Subcommand)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle trace show scenes/test00.xml submission.bin --step 14")]
+pub(super) enum Trace {
+    Info(TraceInfo),
+    Show(TraceShow),
+    Diff(TraceDiff),
+}
+
+/// Says what a trace holds, and where it is damaged.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle trace info scenes/test00.xml submission.bin")]
+pub(super) struct TraceInfo {
+    /// The scene, which decides how the trace is to be read.
+    pub(super) scene: PathBuf,
+    /// The trace.
+    pub(super) trace: PathBuf,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}
+
+/// Shows what one step logged, in words or as JSON.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle trace show scenes/test00.xml submission.bin --step 14")]
+pub(super) struct TraceShow {
+    /// The scene, which decides how the trace is to be read.
+    pub(super) scene: PathBuf,
+    /// The trace.
+    pub(super) trace: PathBuf,
+    /// The step, from 1; 0 is the initial record.
+    #[arg(long, short, value_name = "N")]
+    pub(super) step: u32,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}
+
+/// Compares two traces of one scene bit by bit, and shows the first difference.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle trace diff scenes/test00.xml reference.bin submission.bin
+
+The exit code is 0 when they are the same, 1 when they differ.")]
+pub(super) struct TraceDiff {
+    /// The scene, which decides how the traces are to be read.
+    pub(super) scene: PathBuf,
+    /// One trace.
+    pub(super) left: PathBuf,
+    /// The other trace.
+    pub(super) right: PathBuf,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}
+
+/// Records the traces of all scenes of a folder, or checks that they are still the same.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle record --check
+  fosssim-oracle record --assets my-scenes --references my-references
+
+Scenes are read from ASSETS/<Group>/<name>.xml. REFERENCES gets <Group>/<name>.bin.zst, a digest per step in
+<Group>/<name>.steps, and manifest.txt.")]
+pub(super) struct Record {
+    /// Write nothing; simulate in memory, and fail with a diff when a byte differs. Without an assets folder this
+    /// checks the scenes that come with the program.
+    #[arg(long)]
+    pub(super) check: bool,
+    /// The folder of scenes.
+    #[arg(long, value_name = "DIR", default_value = "assets")]
+    pub(super) assets: PathBuf,
+    /// The folder of recordings.
+    #[arg(long, value_name = "DIR", default_value = "references")]
+    pub(super) references: PathBuf,
+}
+
+/// Behaves as the original program: same flags, same output, same files, same exit codes.
+///
+/// The same happens when the program is called under a name that starts with FOSSSimOracle.
+#[derive(Debug, Args)]
+#[command(
+    disable_help_flag = true,
+    after_help = "\
+Example:
+  fosssim-oracle original -s scenes/test00.xml -d 0 -i submission.bin"
+)]
+pub(super) struct Original {
+    /// The original's own flags; original --help lists them.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "FLAGS")]
+    pub(super) words: Vec<OsString>,
+}
+
+/// Prints a completion script for a shell.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle completions bash > ~/.local/share/bash-completion/completions/fosssim-oracle")]
+pub(super) struct Completions {
+    /// The shell.
+    pub(super) shell: Shell,
+}
+
+/// Prints the manual page.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle man | man -l -")]
+pub(super) struct Man {}

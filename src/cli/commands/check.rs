@@ -1,0 +1,56 @@
+//! `check`: grades a trace.
+use crate::{
+    cli::{
+        arguments::{Check, Format},
+        console, exit, input,
+        output::Output,
+    },
+    judge::{Stop, Unreadable, parity},
+    report::{self, style::Style},
+    sim::{RootSearch, StepError},
+};
+use anyhow::{Result, bail};
+
+pub(super) fn run(arguments: &Check) -> Result<u8> {
+    let scene = input::scene(&arguments.scene)?;
+    let mut trace = input::trace(&arguments.trace)?;
+    let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
+    // An output that can't be written is said before the work is done, not after.
+    let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
+    let options = parity::Options {
+        threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
+        root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded },
+        stop_at_first: false,
+    };
+    let mut bar = console::Bar::new(scene.scene.steps());
+    let outcome = parity::judge(&scene.scene, &mut trace.reader, &options, &mut bar);
+    drop(bar);
+    match &outcome.stop {
+        Some(Stop::Step(StepError::VortexHessian { .. })) => bail!(
+            "the scene {} has a vortexforce, which has no Hessian: choose an integrator that is not implicit",
+            scene.name
+        ),
+        Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => {
+            if let Some(message) = trace.failure() {
+                bail!("cannot read the trace {} at byte {offset}: {message}", trace.name);
+            }
+        }
+        _ => {}
+    }
+    let (scene, trace) = (scene.name.as_str(), trace.name.as_str());
+    let check = report::check::Check { scene, trace, outcome: &outcome, audit: arguments.audit };
+    let style = if target.is_some() { Style::Plain } else { console::style() };
+    let text = match arguments.format {
+        Format::Text => check.text(style),
+        Format::Json => check.json(),
+    };
+    match target {
+        Some(target) => target.finish_with(text.as_bytes())?,
+        None => console::print(text.as_bytes())?,
+    }
+    let disagreements = outcome.searches.disagreements;
+    if disagreements > 0 {
+        bail!("{disagreements} disagreements between certificates and the root finder; please report this");
+    }
+    Ok(if check.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}

@@ -1,0 +1,59 @@
+//! `simulate`: simulates a scene and records its trace.
+use crate::{
+    cli::{
+        arguments::{Format, Simulate},
+        console, exit, input,
+        output::Output,
+    },
+    report::{describe::step_error, simulate::Summary, style::Style},
+    sim::{RootSearch, Simulation},
+    trace::{Counts, Layout, Recorder},
+};
+use anyhow::{Context, Result, bail};
+
+pub(super) fn run(arguments: &Simulate) -> Result<u8> {
+    let scene = input::scene(&arguments.scene)?;
+    let inputs: Vec<_> = scene.identity.into_iter().collect();
+    let output = match &arguments.output {
+        Some(name) => Output::create(name, &inputs)?,
+        None => Output::Nowhere,
+    };
+    let to_stdout = output.is_stdout();
+    let root_search = if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded };
+    let mut simulation = Simulation::new(&scene.scene, root_search);
+    let mut recorder = Recorder::start(output, Layout::of(&scene.scene), simulation.state());
+    let mut counts = Counts::default();
+    let steps = scene.scene.steps();
+    let mut bar = console::Bar::new(steps);
+    for step in 1..=steps {
+        if let Err(error) = simulation.step(&mut (&mut recorder, &mut counts)) {
+            let (step, words) = step_error(&error);
+            bail!("the scene {} can't be simulated: step {step} has no result, because {words}", scene.name);
+        }
+        if recorder.failed() {
+            break;
+        }
+        bar.at(step);
+    }
+    drop(bar);
+    let (output, written) = recorder.finish().context("the trace could not be written")?;
+    output.finish()?;
+    let name = arguments.output.as_ref().map(|name| name.display().to_string());
+    let searches = simulation.search_counts();
+    let audited = arguments.audit.then_some(searches);
+    let summary = Summary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };
+    let style = if to_stdout { Style::Plain } else { console::style() };
+    let text = match arguments.format {
+        Format::Text => summary.text(style),
+        Format::Json => summary.json(),
+    };
+    if to_stdout {
+        console::complain(text.as_bytes());
+    } else {
+        console::print(text.as_bytes())?;
+    }
+    if searches.disagreements > 0 {
+        bail!("{} disagreements between certificates and the root finder; please report this", searches.disagreements);
+    }
+    Ok(exit::ACCEPTED)
+}

@@ -1,0 +1,53 @@
+//! Scenes as inputs: strict reading, all problems at once.
+use super::{Identity, asset, no_asset, open, read_limited};
+use crate::{
+    cli::console,
+    report::problems,
+    scene::{self, Loaded},
+    suite::library,
+};
+use anyhow::{Context, Result, bail};
+use std::path::Path;
+
+/// A scene that has been read.
+#[derive(Debug)]
+pub(in crate::cli) struct SceneInput {
+    /// The name as typed, fit for printing.
+    pub(in crate::cli) name: String,
+    /// The scene.
+    pub(in crate::cli) scene: scene::Scene,
+    /// The file, when there is one.
+    pub(in crate::cli) identity: Option<Identity>,
+}
+
+/// Reads a scene and complains about what is odd in it.
+///
+/// # Errors
+/// When it can't be read, or has errors: all of them, with their places.
+pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
+    let shown = name.display().to_string();
+    let (bytes, identity) = match asset(name) {
+        Some(asset) => {
+            let scene = library::scene(asset).with_context(|| no_asset("scene", asset))?;
+            (scene.to_vec(), None)
+        }
+        None => scene_file(name).with_context(|| format!("cannot read the scene {shown}"))?,
+    };
+    match scene::read(&shown, &bytes) {
+        Ok(Loaded { scene, warnings, .. }) => {
+            // Embedded scenes are as they are meant to be.
+            if identity.is_some() {
+                console::complain(problems::warnings(&shown, &bytes, &warnings).as_bytes());
+            }
+            Ok(SceneInput { name: shown, scene, identity })
+        }
+        Err(refused) => bail!("{}", problems::errors(&shown, &bytes, &refused)),
+    }
+}
+
+/// The bytes of a scene file, which may not be larger than any sensible scene.
+fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
+    let (file, metadata) = open(name)?;
+    let bytes = read_limited(file, &metadata)?;
+    Ok((bytes, Some(Identity::of(&metadata))))
+}

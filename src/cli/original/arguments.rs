@@ -1,0 +1,228 @@
+//! The original's command line (oracle-behaviour.md 1): what was typed, or the words and exit code it ends with.
+//!
+//! Words are bytes: file names that are not UTF-8 pass through. The rules are those of the argument library that the
+//! original uses: value and flag are separate words, the first word that makes no sense ends the program, `--help` and
+//! `--version` take effect where they stand.
+use super::usage;
+use std::{ffi::OsString, os::unix::ffi::OsStringExt};
+
+/// What was asked for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Arguments {
+    pub(super) scene: OsString,
+    pub(super) output: Option<OsString>,
+    pub(super) input: Option<OsString>,
+    pub(super) display: bool,
+    pub(super) generate: bool,
+    pub(super) movie: Option<OsString>,
+}
+
+/// How the program ends instead of running.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Ending {
+    pub(super) stdout: Vec<u8>,
+    pub(super) stderr: Vec<u8>,
+    pub(super) exit_code: u8,
+}
+
+/// A flag with a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Flag {
+    pub(super) letter: &'static str,
+    pub(super) name: &'static str,
+    pub(super) boolean: bool,
+    pub(super) required: bool,
+    pub(super) help: &'static str,
+}
+
+const fn flag(letter: &'static str, name: &'static str, boolean: bool, help: &'static str) -> Flag {
+    Flag { letter, name, boolean, required: false, help }
+}
+
+/// The flags in the order in which the usage lists them.
+pub(super) const FLAGS: [Flag; 7] = [
+    flag("m", "moviedir", false, "Folder for one SVG picture per step"),
+    flag("i", "inputfile", false, "Binary trace to grade"),
+    flag("o", "outputfile", false, "Binary trace to record"),
+    flag("g", "generate", true, "1 to write a PNG picture per step, 0 not to"),
+    flag("d", "display", true, "1 to simulate in a window, 0 without one"),
+    flag("p", "paused", true, "1 to start paused, 0 to start running"),
+    Flag { required: true, ..flag("s", "scene", false, "XML scene file to simulate") },
+];
+
+/// Reads the words after the program's name.
+///
+/// # Errors
+/// What to print, and the exit code: help, version, or a parse error.
+pub(super) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Ending> {
+    let mut values: [Option<&[u8]>; FLAGS.len()] = [None; FLAGS.len()];
+    let mut words = words.iter().map(Vec::as_slice);
+    while let Some(word) = words.next() {
+        match word {
+            b"--" | b"--ignore_rest" => break,
+            b"-h" | b"--help" => return Err(Ending { stdout: usage::help(program), ..Ending::default() }),
+            b"--version" => return Err(Ending { stdout: usage::version(program), ..Ending::default() }),
+            // The library takes these for bundles of flags that are all used up.
+            b"" | b"-" => continue,
+            _ => {}
+        }
+        let Some(place) = FLAGS.iter().position(|flag| is(flag, word)) else {
+            return Err(wrong(program, word, b"Couldn't find match for argument"));
+        };
+        let flag = &FLAGS[place];
+        let title = format!("-{} (--{})", flag.letter, flag.name);
+        if values[place].is_some() {
+            return Err(wrong(program, title.as_bytes(), b"Argument already set!"));
+        }
+        let Some(value) = words.next() else {
+            return Err(wrong(program, title.as_bytes(), b"Missing a value for this argument!"));
+        };
+        if flag.boolean
+            && let Err(text) = boolean(value)
+        {
+            return Err(wrong(program, title.as_bytes(), &text));
+        }
+        values[place] = Some(value);
+    }
+    let value = |letter: &str| FLAGS.iter().position(|flag| flag.letter == letter).and_then(|place| values[place]);
+    let text = |letter: &str| value(letter).map(|bytes| OsString::from_vec(bytes.to_vec()));
+    let switch = |letter: &str, default: Option<bool>| {
+        value(letter).and_then(|bytes| boolean(bytes).ok().flatten()).or(default).unwrap_or(false)
+    };
+    let Some(scene) = text("s") else {
+        return Err(failure(program, b" ", b"Required argument missing: scene"));
+    };
+    Ok(Arguments {
+        scene,
+        output: text("o"),
+        input: text("i"),
+        display: switch("d", Some(true)),
+        generate: switch("g", None),
+        movie: text("m"),
+    })
+}
+
+fn is(flag: &Flag, word: &[u8]) -> bool {
+    match word.strip_prefix(b"--") {
+        Some(name) => name == flag.name.as_bytes(),
+        None => word.strip_prefix(b"-") == Some(flag.letter.as_bytes()),
+    }
+}
+
+/// A boolean by stream extraction: one integer that is 0 or 1. An empty value is no value: the default stays.
+fn boolean(value: &[u8]) -> Result<Option<bool>, Vec<u8>> {
+    let is_space = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0x0b;
+    let mut rest = value;
+    let mut found = None;
+    while !rest.is_empty() {
+        let start = rest.iter().position(|byte| !is_space(byte)).unwrap_or(rest.len());
+        let (negative, digits) = match &rest[start..] {
+            [b'-', digits @ ..] => (true, digits),
+            [b'+', digits @ ..] => (false, digits),
+            digits => (false, digits),
+        };
+        let length = digits.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let significant = digits[..length].iter().skip_while(|&&byte| byte == b'0').collect::<Vec<_>>();
+        let one = match significant[..] {
+            [] => false,
+            [b'1'] if !negative => true,
+            _ => return Err(unreadable(value)),
+        };
+        if length == 0 {
+            return Err(unreadable(value));
+        }
+        if found.is_some() {
+            return Err([b"More than one valid value parsed from string '", value, b"'"].concat());
+        }
+        found = Some(one);
+        rest = &digits[length..];
+    }
+    Ok(found)
+}
+
+fn unreadable(value: &[u8]) -> Vec<u8> {
+    [b"Couldn't read argument value from string '", value, b"'"].concat()
+}
+
+fn wrong(program: &[u8], argument: &[u8], text: &[u8]) -> Ending {
+    failure(program, &[b"Argument: ", argument].concat(), text)
+}
+
+fn failure(program: &[u8], argument: &[u8], text: &[u8]) -> Ending {
+    Ending { stderr: usage::failure(program, argument, text), exit_code: 1, ..Ending::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(words: &[&str]) -> Result<Arguments, Ending> {
+        let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();
+        parse(b"./FOSSSimOracle", &words)
+    }
+
+    fn error(words: &[&str]) -> String {
+        let ending = run(words).unwrap_err();
+        assert_eq!((ending.exit_code, ending.stdout.is_empty()), (1, true));
+        let text = String::from_utf8(ending.stderr).unwrap();
+        assert!(text.ends_with("For complete USAGE and HELP type: \n   ./FOSSSimOracle --help\n\n"));
+        text[..text.find("\n\nBrief USAGE: \n").unwrap()].to_owned()
+    }
+
+    #[test]
+    fn flags_may_come_in_any_order_and_by_either_name() {
+        let arguments = run(&["--inputfile", "t", "-d", "0", "--scene", "x.xml", "-p", " 01"]).unwrap();
+        assert_eq!(arguments.scene, "x.xml");
+        assert_eq!(arguments.input, Some("t".into()));
+        assert_eq!((arguments.display, arguments.generate, arguments.output), (false, false, None));
+        assert!(run(&["-s", "-d"]).unwrap().display, "a value may look like a flag, and the window is the default");
+    }
+
+    #[test]
+    fn what_follows_the_double_hyphen_is_ignored() {
+        assert_eq!(run(&["-s", "a", "--", "-s", "nonsense"]).unwrap().scene, "a");
+        assert!(error(&["--ignore_rest", "-s", "a"]).contains("Required argument missing: scene"));
+    }
+
+    #[test]
+    fn parse_errors_have_the_originals_words() {
+        assert_eq!(error(&[]), "PARSE ERROR:  \n             Required argument missing: scene");
+        assert_eq!(error(&["-sx"]), "PARSE ERROR: Argument: -sx\n             Couldn't find match for argument");
+        assert_eq!(
+            error(&["--scene=x"]),
+            "PARSE ERROR: Argument: --scene=x\n             Couldn't find match for argument"
+        );
+        assert_eq!(
+            error(&["-s"]),
+            "PARSE ERROR: Argument: -s (--scene)\n             Missing a value for this argument!"
+        );
+        assert_eq!(
+            error(&["--scene", "a", "-s", "b"]),
+            "PARSE ERROR: Argument: -s (--scene)\n             Argument already set!"
+        );
+        for value in ["2", "-1", "true", "1x", " "] {
+            assert_eq!(
+                error(&["-d", value]),
+                format!(
+                    "PARSE ERROR: Argument: -d (--display)\n             \
+                     Couldn't read argument value from string '{value}'"
+                )
+            );
+        }
+        assert!(error(&["-g", "1 0"]).ends_with("More than one valid value parsed from string '1 0'"));
+    }
+
+    #[test]
+    fn help_and_version_win_only_over_what_follows() {
+        let ending = run(&["--version", "nonsense"]).unwrap_err();
+        assert_eq!(ending.stdout, b"\n./FOSSSimOracle  version: none\n\n");
+        assert_eq!(ending.exit_code, 0);
+        assert!(error(&["nonsense", "-h"]).contains("Couldn't find match"));
+    }
+
+    #[test]
+    fn an_empty_boolean_leaves_the_default() {
+        assert!(run(&["-s", "a", "-d", ""]).unwrap().display);
+        assert!(!run(&["-s", "a", "-g", ""]).unwrap().generate);
+    }
+}

@@ -1,0 +1,206 @@
+//! Recording and grading as the original does them (oracle-behaviour.md 2).
+use super::arguments::Arguments;
+use crate::{
+    cli::{
+        console,
+        input::{self, Identity},
+    },
+    judge::{Stop, Unreadable, parity, parity::Progress},
+    report::describe::step_error,
+    report::original::{
+        Heading, INPUT_AND_OUTPUT, NO_PICTURE_FOLDER, NO_VORTEX_HESSIAN, Task, Transcript, input_not_opened,
+        output_not_opened, residual_file,
+    },
+    scene::{
+        Integrator, LARGEST_IMPLICIT, Scene,
+        original::{self, OriginalScene, Refusal, RefusalKind},
+    },
+    sim::{RootSearch, Simulation, StepError},
+    trace::{Layout, Recorder},
+};
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{self, BufWriter, Read, Write},
+    os::unix::{ffi::OsStrExt, fs::OpenOptionsExt},
+    path::Path,
+};
+
+/// The exit code of everything that goes wrong.
+const FAILED: u8 = 1;
+
+/// Runs with parsed arguments; `words` are the raw ones. Returns the exit code.
+pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
+    if arguments.input.is_some() && arguments.output.is_some() {
+        return complain(INPUT_AND_OUTPUT);
+    }
+    let (scene, identity) = match load(arguments) {
+        Ok(loaded) => loaded,
+        Err(refusal) => return refuse_scene(arguments, &refusal),
+    };
+    if let Some(message) = unsupported(arguments, &scene.scene) {
+        return complain(&message);
+    }
+    let task = match (&arguments.output, &arguments.input) {
+        (Some(file), _) => Task::Record(file.as_bytes()),
+        (None, Some(file)) => Task::Grade(file.as_bytes()),
+        (None, None) => Task::Run,
+    };
+    let scene_name = arguments.scene.as_bytes();
+    let heading = Heading { scene_name, scene: &scene.scene, description: &scene.description, task };
+    let mut transcript = Transcript::new(BufWriter::new(io::stdout()), heading);
+    match (&arguments.output, &arguments.input) {
+        (Some(file), _) => match create(Path::new(file), identity) {
+            Ok(file) => simulate(&scene.scene, file, transcript),
+            Err(message) => {
+                console::complain(&message);
+                FAILED
+            }
+        },
+        (None, Some(file)) => {
+            if let Ok(trace) = open(Path::new(file)) {
+                return grade(&scene.scene, trace, transcript);
+            }
+            let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
+            console::complain(&input_not_opened(third_word));
+            transcript.not_opened();
+            drop(transcript.finish());
+            FAILED
+        }
+        (None, None) => simulate(&scene.scene, io::sink(), transcript),
+    }
+}
+
+fn complain(text: &str) -> u8 {
+    console::complain(text.as_bytes());
+    FAILED
+}
+
+/// Reads the scene as the original does. A directory opens and reads as empty text.
+fn load(arguments: &Arguments) -> Result<(OriginalScene, Option<Identity>), Refusal> {
+    let name = Path::new(&arguments.scene);
+    let unreadable = || Refusal::unreadable(&arguments.scene.to_string_lossy());
+    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name).map_err(|_| unreadable())?;
+    let metadata = file.metadata().map_err(|_| unreadable())?;
+    let bytes = if metadata.is_dir() {
+        Vec::new()
+    } else {
+        input::read_limited(file, &metadata).map_err(|error| Refusal {
+            kind: RefusalKind::Undefined,
+            stderr: format!("cannot read the scene {}: {error}\n", name.display()).into_bytes(),
+            exit_code: FAILED,
+            explanation: error.to_string(),
+        })?
+    };
+    Ok((original::read(&bytes)?, Some(Identity::of(&metadata))))
+}
+
+fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
+    if refusal.kind == RefusalKind::Crash {
+        // The original dies of an uncaught exception here.
+        return complain(&format!("{}: {}\n", arguments.scene.display(), refusal.explanation));
+    }
+    console::complain(&refusal.stderr);
+    refusal.exit_code
+}
+
+/// What the original would need a window, a picture or very much memory for.
+fn unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
+    if arguments.display {
+        return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
+    }
+    if arguments.generate {
+        return Some("PNG pictures of the steps (-g 1) are not supported; leave -g out, or give -g 0\n".to_owned());
+    }
+    if let Some(folder) = &arguments.movie {
+        if !Path::new(folder).is_dir() {
+            return Some(NO_PICTURE_FOLDER.to_owned());
+        }
+        return Some("SVG pictures of the steps (-m) are not supported; leave -m out\n".to_owned());
+    }
+    let implicit = matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler);
+    let particles = scene.particles.len();
+    (implicit && particles > LARGEST_IMPLICIT).then(|| {
+        format!("{particles} particles are too many for an implicit integrator, which can have {LARGEST_IMPLICIT}\n")
+    })
+}
+
+/// Creates the trace.
+fn create(name: &Path, scene: Option<Identity>) -> Result<File, Vec<u8>> {
+    let existing = fs::metadata(name).ok().map(|metadata| Identity::of(&metadata));
+    if existing.is_some() && existing == scene {
+        let text = format!("{} is the scene itself; choose another name for the trace\n", name.display());
+        return Err(text.into_bytes());
+    }
+    create_now(name).map_err(|_| output_not_opened(name.as_os_str().as_bytes()))
+}
+
+/// Creates or truncates a file. A pipe without a reader is an error and does not block.
+fn create_now(name: &Path) -> io::Result<File> {
+    OpenOptions::new().write(true).create(true).truncate(true).custom_flags(libc::O_NONBLOCK).open(name)
+}
+
+/// Opens the trace; a directory opens and reads as an empty file.
+fn open(name: &Path) -> io::Result<Box<dyn Read + Send>> {
+    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name)?;
+    let metadata = file.metadata()?;
+    if metadata.is_dir() { Ok(Box::new(io::empty())) } else { input::patient(file, &metadata) }
+}
+
+/// Simulates, and records into `file`.
+fn simulate<W: Write>(scene: &Scene, file: W, mut transcript: Transcript<'_, impl Write>) -> u8 {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(file, Layout::of(scene), simulation.state());
+    transcript.begins();
+    let mut stopped = None;
+    for step in 1..=scene.steps() {
+        transcript.step_begins(step);
+        stopped = simulation.step(&mut recorder).err();
+        if stopped.is_some() || recorder.failed() {
+            break;
+        }
+    }
+    let written = recorder.finish();
+    if stopped.is_none() && written.is_ok() {
+        transcript.completes();
+    }
+    transcript.closes();
+    drop(transcript.finish());
+    match (stopped, written) {
+        (Some(error), _) => step_failed(&error),
+        // The original would go on and claim that the trace was saved.
+        (None, Err(error)) => complain(&format!("the trace could not be written: {error}\n")),
+        (None, Ok(_)) => 0,
+    }
+}
+
+/// Grades a trace and writes `residual.txt`.
+fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<'_, impl Write>) -> u8 {
+    let outcome = parity::judge(scene, trace, &parity::Options::default(), &mut transcript);
+    transcript.graded(&outcome);
+    drop(transcript.finish());
+    if let Some(residuals) = residual_file(&outcome)
+        && let Ok(mut file) = create_now(Path::new("residual.txt"))
+    {
+        // Like the original, this follows links, truncates, and takes no notice of a failure.
+        drop(file.write_all(residuals.as_bytes()));
+    }
+    match &outcome.stop {
+        None => 0,
+        Some(Stop::Step(error)) => step_failed(error),
+        Some(Stop::Trace { cause: Unreadable::State | Unreadable::Impulses, .. }) => FAILED,
+        Some(Stop::Trace { cause: Unreadable::Memory | Unreadable::Io, frame, step, offset, message }) => {
+            complain(&format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {message}\n"))
+        }
+    }
+}
+
+/// What the original computes without end, or gives up.
+fn step_failed(error: &StepError) -> u8 {
+    match error {
+        StepError::VortexHessian { .. } => complain(NO_VORTEX_HESSIAN),
+        StepError::RootSearch { .. } | StepError::Newton { .. } => {
+            let (step, words) = step_error(error);
+            complain(&format!("step {step} has no result: {words}\n"))
+        }
+    }
+}

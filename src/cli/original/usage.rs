@@ -1,0 +1,144 @@
+//! The original's usage, version and parse-error texts, with the line breaks of its argument library.
+use super::arguments::{FLAGS, Flag};
+
+const WIDTH: usize = 75;
+const TITLE: &str = "Forty One Sixty Seven Sim";
+
+/// What `--version` prints.
+pub(super) fn version(program: &[u8]) -> Vec<u8> {
+    [b"\n", program, b"  version: none\n\n"].concat()
+}
+
+/// What `--help` prints.
+pub(super) fn help(program: &[u8]) -> Vec<u8> {
+    let mut text = b"\nUSAGE: \n\n".to_vec();
+    text.extend(brief(program));
+    text.extend(b"\n\nWhere: \n\n");
+    for flag in &FLAGS {
+        let value = format!(" <{}>", kind(flag));
+        text.extend(wrapped(format!("-{}{value},  --{}{value}", flag.letter, flag.name).as_bytes(), 3, 3));
+        let required = if flag.required { "(required)  " } else { "" };
+        text.extend(wrapped(format!("{required}{}", flag.help).as_bytes(), 5, 0));
+        text.push(b'\n');
+    }
+    for (names, help) in [
+        ("--,  --ignore_rest", "Ignores everything that follows."),
+        ("--version", "Displays version information and exits."),
+        ("-h,  --help", "Displays usage information and exits."),
+    ] {
+        text.extend(wrapped(names.as_bytes(), 3, 3));
+        text.extend(wrapped(help.as_bytes(), 5, 0));
+        text.push(b'\n');
+    }
+    text.push(b'\n');
+    text.extend(wrapped(TITLE.as_bytes(), 3, 0));
+    text.push(b'\n');
+    text
+}
+
+/// What a parse error prints; `argument` is a space when no argument is to blame.
+pub(super) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
+    let mut text = [b"PARSE ERROR: ", argument, b"\n             ", message, b"\n\nBrief USAGE: \n"].concat();
+    text.extend(brief(program));
+    text.extend([b"\nFor complete USAGE and HELP type: \n   ", program, b" --help\n\n"].concat());
+    text
+}
+
+/// The flags in one wrapped paragraph.
+fn brief(program: &[u8]) -> Vec<u8> {
+    let mut line = [program, b" "].concat();
+    for flag in &FLAGS {
+        let entry = format!("-{} <{}>", flag.letter, kind(flag));
+        let entry = if flag.required { format!(" {entry}") } else { format!(" [{entry}]") };
+        line.extend(entry.as_bytes());
+    }
+    line.extend(b" [--] [--version] [-h]");
+    // Long program names do not push the following lines off the page.
+    wrapped(&line, 3, (program.len() + 2).min(WIDTH / 2))
+}
+
+const fn kind(flag: &Flag) -> &'static str {
+    if flag.boolean { "boolean" } else { "string" }
+}
+
+/// Breaks a text at spaces, commas and bars so that lines have at most [`WIDTH`] columns: `indent` spaces before the
+/// first line, `further` more before the others. Words that do not fit are split where the line ends.
+fn wrapped(text: &[u8], indent: usize, further: usize) -> Vec<u8> {
+    let mut lines = Vec::new();
+    let mut indent = indent;
+    let mut allowed = WIDTH - indent;
+    let mut rest = text;
+    if rest.len() <= allowed {
+        lines.extend(std::iter::repeat_n(b' ', indent));
+        lines.extend([rest, b"\n"].concat());
+        return lines;
+    }
+    let mut first = true;
+    while !rest.is_empty() {
+        let mut length = rest.len().min(allowed);
+        if length == allowed {
+            // The byte after the line decides, too: a break there needs no shorter line. Past the end there is a NUL.
+            let breaks = |at: usize| matches!(rest.get(at), Some(b' ' | b',' | b'|'));
+            length = (0..=allowed).rev().find(|&at| breaks(at)).unwrap_or(0);
+            if length == 0 {
+                length = allowed;
+            }
+        }
+        if let Some(newline) = rest[..length].iter().position(|&byte| byte == b'\n') {
+            length = newline + 1;
+        }
+        lines.extend(std::iter::repeat_n(b' ', indent));
+        lines.extend([&rest[..length], b"\n"].concat());
+        if std::mem::take(&mut first) {
+            indent += further;
+            allowed -= further;
+        }
+        rest = &rest[length..];
+        // No line starts with a space.
+        let spaces = rest.iter().take_while(|&&byte| byte == b' ').count();
+        rest = &rest[spaces..];
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(bytes: &[u8]) -> &str {
+        std::str::from_utf8(bytes).unwrap()
+    }
+
+    #[test]
+    fn the_brief_usage_hangs_below_the_programs_name() {
+        let expected = "   ./FOSSSimOracle  [-m <string>] [-i <string>] [-o <string>] [-g\n\
+            \x20                   <boolean>] [-d <boolean>] [-p <boolean>] -s <string>\n\
+            \x20                   [--] [--version] [-h]\n";
+        assert_eq!(text(&brief(b"./FOSSSimOracle")), expected);
+    }
+
+    #[test]
+    fn a_long_program_name_takes_half_the_width_at_most() {
+        let program = b"/opt/course/with/a/long/path/to/the/program/FOSSSimOracleT2M2-linux-x86_64-release";
+        let usage = brief(program);
+        let mut lines = text(&usage).lines();
+        assert_eq!(lines.next().unwrap().len(), WIDTH);
+        for line in lines {
+            assert!(line.starts_with(&" ".repeat(3 + WIDTH / 2)) && line.len() <= WIDTH, "{line:?}");
+        }
+    }
+
+    #[test]
+    fn help_names_every_flag_and_closes_with_the_title() {
+        let help = help(b"p");
+        let help = text(&help);
+        assert!(help.starts_with("\nUSAGE: \n\n   p  [-m <string>]"));
+        assert!(help.contains("\n   -s <string>,  --scene <string>\n     (required)  XML scene file to simulate\n\n"));
+        assert!(help.ends_with(
+            "\n   -h,  --help\n     Displays usage information and exits.\n\n\n   Forty One Sixty Seven Sim\n\n"
+        ));
+        for flag in &FLAGS {
+            assert!(help.contains(&format!("--{} <", flag.name)), "{}", flag.name);
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Output files: they appear whole, by renaming a finished temporary file that lies beside the target, or not at all.
+//!
+//! An error, SIGINT and SIGTERM remove the temporary file. Standard output and character devices such as `/dev/null`
+//! are written directly. Pipes, sockets and block devices are refused: a pipe without a reader would block for ever.
+use super::{console, exit, input::Identity};
+use anyhow::{Context, Result, bail};
+use std::{
+    ffi::OsStr,
+    fs::{self, File, OpenOptions, Permissions},
+    io::{self, Write},
+    os::unix::fs::{FileTypeExt, OpenOptionsExt, PermissionsExt},
+    path::{Path, PathBuf},
+    sync::{Mutex, OnceLock, PoisonError},
+};
+use tempfile::{NamedTempFile, TempPath};
+
+/// An output that is being written.
+#[derive(Debug)]
+pub(super) enum Output {
+    /// Nothing is kept.
+    Nowhere,
+    /// Standard output (`-`).
+    Stdout,
+    /// A character device.
+    Device(File, PathBuf),
+    /// A file, for the moment under another name.
+    File { temporary: NamedTempFile, target: PathBuf },
+}
+
+impl Output {
+    /// Prepares an output. Nothing appears under its name before [`Output::finish`].
+    ///
+    /// # Errors
+    /// When the output can't be written, or is one of `inputs`.
+    pub(super) fn create(name: &Path, inputs: &[Identity]) -> Result<Self> {
+        if name == Path::new("-") || name == Path::new("/dev/stdout") {
+            return Ok(Self::Stdout);
+        }
+        Self::create_file(name, inputs).with_context(|| format!("cannot write {}", name.display()))
+    }
+
+    fn create_file(name: &Path, inputs: &[Identity]) -> Result<Self> {
+        let mut target = name.to_owned();
+        let mut mode = 0o666;
+        match fs::metadata(name) {
+            Ok(existing) => {
+                let kind = existing.file_type();
+                if inputs.contains(&Identity::of(&existing)) {
+                    bail!("it is also an input; choose another name");
+                } else if kind.is_dir() {
+                    bail!("it is a directory; name a file inside");
+                } else if kind.is_char_device() {
+                    let device = OpenOptions::new().write(true).custom_flags(libc::O_NONBLOCK).open(name)?;
+                    return Ok(Self::Device(device, target));
+                } else if !kind.is_file() {
+                    bail!("it is a pipe, socket or block device; use `-` for standard output");
+                }
+                // The rename would replace a protected file as well: ask first whether it may be written.
+                OpenOptions::new().write(true).open(name)?;
+                // Replaced is the file that a symbolic link points to, not the link.
+                target = name.canonicalize()?;
+                mode = existing.permissions().mode();
+            }
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                if name.symlink_metadata().is_ok() {
+                    bail!("it is a symbolic link to a file that does not exist");
+                }
+                if name.file_name().is_none() || name.as_os_str().as_encoded_bytes().ends_with(b"/") {
+                    bail!("it names a directory; name a file inside");
+                }
+            }
+            Err(error) => return Err(error.into()),
+        }
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        clean_up_when_interrupted();
+        let mut pending = pending();
+        let temporary = tempfile::Builder::new()
+            .prefix(".fosssim-oracle-")
+            .permissions(Permissions::from_mode(mode))
+            .tempfile_in(folder)
+            .with_context(|| format!("no file can be made in {}", folder.display()))?;
+        pending.push(temporary.path().to_owned());
+        drop(pending);
+        Ok(Self::File { temporary, target })
+    }
+
+    /// Whether this is standard output, so that nothing else may be printed there.
+    pub(super) const fn is_stdout(&self) -> bool {
+        matches!(self, Self::Stdout)
+    }
+
+    /// Writes everything at once, and lets the file appear under its name.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub(super) fn finish_with(mut self, bytes: &[u8]) -> Result<()> {
+        let name = self.name();
+        self.write_all(bytes).with_context(|| format!("cannot write {name}"))?;
+        self.finish()
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Self::Nowhere => "nothing".to_owned(),
+            Self::Stdout => "to standard output".to_owned(),
+            Self::Device(_, name) | Self::File { target: name, .. } => name.display().to_string(),
+        }
+    }
+
+    /// Lets the file appear under its name.
+    ///
+    /// # Errors
+    /// When the last bytes or the rename fail; the target is then as it was before.
+    pub(super) fn finish(mut self) -> Result<()> {
+        console::unless_closed(self.flush())?;
+        if let Self::File { temporary, target } = self {
+            let mut pending = pending();
+            let path = temporary.into_temp_path();
+            pending.retain(|waiting| waiting.as_path() != <TempPath as AsRef<Path>>::as_ref(&path));
+            path.persist(&target)
+                .map_err(|error| error.error)
+                .with_context(|| format!("cannot write {}", target.display()))?;
+        }
+        Ok(())
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Nowhere => Ok(bytes.len()),
+            // A reader that has gone away must not keep the command from finishing.
+            Self::Stdout => match io::stdout().write(bytes) {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+                other => other,
+            },
+            Self::Device(device, _) => device.write(bytes),
+            Self::File { temporary, .. } => temporary.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Nowhere => Ok(()),
+            Self::Stdout => console::unless_closed(io::stdout().flush()),
+            Self::Device(device, _) => device.flush(),
+            Self::File { temporary, .. } => temporary.flush(),
+        }
+    }
+}
+
+/// Writes a whole file by rename.
+///
+/// # Errors
+/// When it can't be written; the old file, if there is one, is unharmed.
+pub(super) fn write(name: &Path, inputs: &[Identity], bytes: &[u8]) -> Result<()> {
+    Output::create(name, inputs)?.finish_with(bytes)
+}
+
+/// Temporary files that an interrupt has to remove.
+fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+    static PENDING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+    PENDING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From now on SIGINT and SIGTERM remove the temporary files and end the program.
+fn clean_up_when_interrupted() {
+    static ONCE: OnceLock<()> = OnceLock::new();
+    ONCE.get_or_init(|| {
+        let installed = ctrlc::set_handler(|| {
+            // Held until the end: no rename and no new file in between.
+            let pending = pending();
+            for path in pending.iter() {
+                drop(fs::remove_file(path));
+            }
+            std::process::exit(exit::INTERRUPTED);
+        });
+        // Without a handler an interrupt leaves a hidden file behind, which is better than not working at all.
+        drop(installed);
+    });
+}
+
+/// Whether a name has this extension, whatever its case.
+pub(super) fn has_extension(name: &Path, extension: &str) -> bool {
+    name.extension().and_then(OsStr::to_str).is_some_and(|found| found.eq_ignore_ascii_case(extension))
+}

@@ -1,0 +1,204 @@
+//! The check report for people: the verdict first, then what leads to it.
+use super::{
+    super::{
+        describe::step_error,
+        number::{count, general},
+        style::{Look, Style},
+        table::{Align, Cell, Table},
+    },
+    Check, divergence,
+};
+use crate::judge::{Detail, Finding, Outcome, Overall, Stop, Unreadable};
+
+pub(super) fn render(check: &Check<'_>, style: Style) -> String {
+    let outcome = check.outcome;
+    let mut parts = vec![head(check, style)];
+    parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
+    parts.push(residuals(outcome, style));
+    if outcome.counts.total() > 0 {
+        parts.push(findings(outcome, style));
+    }
+    if let Some(first) = &outcome.first_divergence {
+        parts.push(divergence::render(first, outcome.steps, style));
+        parts.push(advice(first, style));
+    }
+    parts.extend(notes(check, style));
+    parts.join("\n")
+}
+
+fn head(check: &Check<'_>, style: Style) -> String {
+    let outcome = check.outcome;
+    let look = if check.accepted() { Look::Good } else { Look::Bad };
+    let verdict = style.paint(look, &check.verdict().to_uppercase());
+    let steps = count(u64::from(outcome.steps));
+    let summary = match outcome.overall {
+        Overall::Passed if outcome.steps == 0 => "the scene has no step; there is nothing to get wrong".to_owned(),
+        Overall::Passed => format!("all {steps} steps are right by the original's rules"),
+        Overall::Failed if outcome.wrong_steps == 0 => {
+            format!("no single step of {steps} is wrong, but a residual is above its tolerance")
+        }
+        Overall::Failed => {
+            let first = outcome.first_divergence.map_or(0, |finding| finding.step);
+            let (verb, wrong) = (if outcome.wrong_steps == 1 { "is" } else { "are" }, count(outcome.wrong_steps));
+            format!("{wrong} of {steps} steps {verb} wrong, the first is step {first}")
+        }
+        Overall::None => {
+            let judged = count(u64::from(outcome.steps_judged));
+            format!("judged {judged} of {steps} steps, then the trace could not be followed")
+        }
+    };
+    format!("{verdict}: {summary}\n  scene {}\n  trace {}\n", check.scene, check.trace)
+}
+
+fn problem(stop: &Stop, outcome: &Outcome, style: Style) -> String {
+    let (place, message, advice) = match stop {
+        Stop::Trace { frame, step, cause, offset, message } => {
+            let advice = match cause {
+                Unreadable::Io => "the file could not be read on; check the disk, or who else writes to it",
+                Unreadable::Memory => {
+                    "the trace is damaged, or was made for another scene: compare the scene's number of particles \
+                     and its collision type with those of the run"
+                }
+                Unreadable::State | Unreadable::Impulses if outcome.steps_judged == 0 => {
+                    "was the trace made for this scene, and did the program that wrote it run at all?"
+                }
+                Unreadable::State | Unreadable::Impulses => {
+                    "did the program that wrote the trace crash, or was it stopped, before its last step?"
+                }
+            };
+            let place = if *step == 0 {
+                format!("the initial record, byte {offset}")
+            } else {
+                format!("step {step} of {}, frame {frame}, byte {offset}", outcome.steps)
+            };
+            (place, message.clone(), advice)
+        }
+        Stop::Step(error) => {
+            let (step, message) = step_error(error);
+            let advice = "the trace's own positions and velocities lead here; look for values that are not finite or \
+                          absurdly large in the steps before";
+            (format!("step {step} of {}", outcome.steps), message, advice)
+        }
+    };
+    format!("{} {place}\n  {message}\n  {advice}\n", style.paint(Look::Strong, "Stopped at"))
+}
+
+fn residuals(outcome: &Outcome, style: Style) -> String {
+    let names = ["accumulated position", "accumulated velocity", "maximum position", "maximum velocity"];
+    let judged = outcome.overall != Overall::None;
+    let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
+    table.heading(["residual", "value", "tolerance", "used", ""]);
+    for (name, (value, bound)) in names.into_iter().zip(outcome.residuals.with_bounds()) {
+        let verdict = if judged { passed(value < bound) } else { "".into() };
+        table.row([name.into(), general(value).into(), general(bound).into(), used(value, bound).into(), verdict]);
+    }
+    let collisions = outcome.collisions_passed.map_or_else(|| "".into(), passed);
+    let wrong = count(outcome.counts.collisions());
+    table.row(["collisions, polynomials".into(), wrong.into(), "0".into(), "".into(), collisions]);
+    format!("{}\n{}", style.paint(Look::Strong, "Rules of the original (parity)"), table.render(style))
+}
+
+fn passed(yes: bool) -> Cell {
+    if yes { Cell::looking(Look::Good, "passed") } else { Cell::looking(Look::Bad, "failed") }
+}
+
+/// Which share of its tolerance a residual uses.
+fn used(value: f64, bound: f64) -> String {
+    let share = value / bound;
+    if share.is_nan() {
+        "-".to_owned()
+    } else if value == 0.0 {
+        "0 %".to_owned()
+    } else if share < 0.0001 {
+        "< 0.01 %".to_owned()
+    } else if share < 1.0 {
+        format!("{:.2} %", 100.0 * share)
+    } else if share < 1000.0 {
+        format!("{share:.2} times")
+    } else {
+        format!("{share:.2e} times")
+    }
+}
+
+fn findings(outcome: &Outcome, style: Style) -> String {
+    let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
+    table.heading(["kind", "count", "first example"]);
+    for example in &outcome.examples {
+        let kind = example.kind();
+        table.row([kind.to_string().into(), count(outcome.counts.get(kind)).into(), example.to_string().into()]);
+    }
+    let plural = if outcome.wrong_steps == 1 { "step" } else { "steps" };
+    let heading = format!("Findings: {} in {} {plural}", count(outcome.counts.total()), count(outcome.wrong_steps));
+    format!("{}\n{}", style.paint(Look::Strong, &heading), table.render(style))
+}
+
+/// What to look at, by the kind of the first finding: what comes later often follows from it.
+fn advice(finding: &Finding, style: Style) -> String {
+    let words: &[&str] = match finding.detail {
+        Detail::MissedCollision { .. } => &[
+            "the detection of this pair: the trace's own state at the start of the step leads to this impact",
+            "do its polynomials agree? then the choice of the time of impact, or the test of the normal, is wrong",
+        ],
+        Detail::SuperfluousCollision { .. } => &[
+            "the detection of this pair: from the trace's own state at the start of the step it does not collide",
+            "are the objects approaching, and is the time of impact inside the step?",
+        ],
+        Detail::WrongNormal { .. } => &[
+            "the contact normal: from the first object to the second, at the time of impact, not normalised",
+            "is it taken from the positions at that time, and not from those at the end of the step?",
+        ],
+        Detail::PolynomialCount { expected, actual, .. } if actual > expected => &[
+            "the loop over detection passes: it runs too often, or looks at pairs that the reference leaves out",
+            "an earlier response of this step that differs also makes the loop go on",
+        ],
+        Detail::PolynomialCount { .. } => &[
+            "the loop over detection passes: it ends too early, or leaves out pairs",
+            "an earlier response of this step that differs also makes the loop end",
+        ],
+        Detail::PolynomialDegree { .. } => &[
+            "the leading coefficients of this polynomial: those below 1e-12 in size are dropped, others are kept",
+            "a factor on all coefficients moves them across that bound",
+        ],
+        Detail::VanishingPolynomial { .. } => {
+            &["the inputs of this polynomial: for the reference the two objects do not move relative to each other"]
+        }
+        Detail::Coefficient { .. } => &[
+            "the formula of this polynomial; coefficients are compared after rescaling to the trace's magnitude",
+            "in a later detection pass of the step, a wrong response before it changes the coefficients, too",
+        ],
+        Detail::Position { .. } | Detail::Velocity { .. } => {
+            &["the integrator, the forces, or the response: the step starts from the trace's own state, so errors of \
+             earlier steps are not to blame"]
+        }
+    };
+    let mut text = style.paint(Look::Strong, "What to look at") + "\n";
+    for line in words {
+        text += &format!("  - {line}\n");
+    }
+    text
+}
+
+fn notes(check: &Check<'_>, style: Style) -> Option<String> {
+    let outcome = check.outcome;
+    let mut notes = Vec::new();
+    if let Some(damage) = &outcome.damage {
+        notes.push(format!(
+            "frame {} (step {}), byte {}: {}; the original reads over this in silence",
+            damage.frame, damage.step, damage.offset, damage.message
+        ));
+    }
+    if outcome.trailing_bytes {
+        notes.push("bytes follow the last record; the original never looks at them".to_owned());
+    }
+    if check.audit {
+        let searches = outcome.searches;
+        let (calls, searched) = (count(searches.calls), count(searches.searched));
+        let (excluded, disagreements) = (count(searches.excluded), count(searches.disagreements));
+        notes.push(format!(
+            "audit: {calls} detection calls, {searched} root searches, {excluded} excluded by a certificate, \
+             {disagreements} disagreements"
+        ));
+    }
+    let lines: String = notes.iter().map(|note| format!("  - {note}\n")).collect();
+    (!notes.is_empty()).then(|| format!("{}\n{lines}", style.paint(Look::Strong, "Notes")))
+}

@@ -1,0 +1,42 @@
+//! Decoration for terminals: colours on top of text that makes sense without them.
+
+/// Whether a report is decorated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Style {
+    /// Plain text, for files, pipes and whoever asks for no colour.
+    #[default]
+    Plain,
+    /// Colour codes, for terminals.
+    Colour,
+}
+
+/// What a piece of text is to look like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// A verdict or value that is right.
+    Good,
+    /// A verdict or value that is wrong.
+    Bad,
+    /// A warning.
+    Notice,
+    /// A heading.
+    Strong,
+    /// Of lesser importance.
+    Faint,
+}
+
+impl Style {
+    /// The text, decorated. Padding has to be done before.
+    #[must_use]
+    pub fn paint(self, look: Look, text: &str) -> String {
+        let code = match (self, look) {
+            (Self::Plain, _) => return text.to_owned(),
+            (Self::Colour, Look::Good) => "1;32",
+            (Self::Colour, Look::Bad) => "1;31",
+            (Self::Colour, Look::Notice) => "33",
+            (Self::Colour, Look::Strong) => "1",
+            (Self::Colour, Look::Faint) => "2",
+        };
+        format!("\x1b[{code}m{text}\x1b[0m")
+    }
+}

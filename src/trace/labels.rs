@@ -1,0 +1,74 @@
+//! Which detection call logs which polynomial of a step.
+//!
+//! A trace does not say it. The step is simulated again from the state before it, and the calls are counted.
+use crate::{
+    scene::Scene,
+    sim::{Detection, Observer, Pair, Pass, RootSearch, Simulation, Stage, State},
+};
+
+/// Where a polynomial of a step's end record comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Label {
+    /// The detection pass.
+    pub pass: Pass,
+    /// The pair.
+    pub pair: Pair,
+    /// Number of the polynomial within its call, from 0.
+    pub number: usize,
+}
+
+/// The labels of the polynomials that the reference logs in the step after `before`, in the order of the trace. A
+/// submission's list has the same labels as long as it has the same length. Empty when the step has no result, or when
+/// `before` has another number of particles than the scene.
+#[must_use]
+pub fn labels(scene: &Scene, before: &State) -> Vec<Label> {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let state = simulation.state_mut();
+    if state.positions.len() != before.positions.len() || state.velocities.len() != before.velocities.len() {
+        return Vec::new();
+    }
+    state.clone_from(before);
+    let mut labels = Labels { pass: Pass { stage: Stage::Simple, index: 0 }, list: Vec::new() };
+    match simulation.step(&mut labels) {
+        Ok(()) => labels.list,
+        Err(_) => Vec::new(),
+    }
+}
+
+struct Labels {
+    pass: Pass,
+    list: Vec<Label>,
+}
+
+impl Observer for Labels {
+    fn begin_pass(&mut self, pass: Pass) {
+        self.pass = pass;
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let (pass, pair) = (self.pass, detection.pair);
+        self.list.extend((0..detection.polynomials.len()).map(|number| Label { pass, pair, number }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{scene::original, sim::PairKind};
+
+    #[test]
+    fn each_call_labels_its_polynomials() {
+        let xml = br#"<scene><duration time="0.1"/><integrator type="explicit-euler" dt="0.1"/>
+            <collision type="continuous-time"/><particle m="1" px="0" py="0" vx="0" vy="0" fixed="0"/>
+            <particle m="1" px="5" py="0" vx="0" vy="0" fixed="0"/><particle m="1" px="9" py="0" vx="0" vy="0" fixed="0"/>
+            <edge i="0" j="1"/></scene>"#;
+        let scene = original::read(xml).unwrap().scene;
+        let before = Simulation::new(&scene, RootSearch::WhereNeeded).state().clone();
+        let labels = labels(&scene, &before);
+        // Three pairs of particles with two polynomials each, one particle beside the edge with four.
+        assert_eq!(labels.len(), 10);
+        let edge: Vec<_> = labels.iter().filter(|label| label.pair.kind == PairKind::ParticleEdge).collect();
+        assert_eq!(edge.iter().map(|label| label.number).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert_eq!(super::labels(&scene, &State::default()), []);
+    }
+}

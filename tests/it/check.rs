@@ -1,0 +1,336 @@
+//! `check`: reports on right, wrong and damaged traces.
+use super::workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace, finish, trace_of};
+use fosssim_oracle::{
+    scene,
+    trace::{Frame, Layout, Reader, Writer},
+};
+use serde_json::Value;
+use std::{
+    fs::File,
+    io::{Read, Seek, SeekFrom, Write},
+    process::Stdio,
+};
+
+/// The report of `trace` for `scene`, as text and, checked against its schema, as JSON.
+fn reports(scene: &str, trace: &[u8]) -> (Run, Value) {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", scene);
+    workspace.write("trace.bin", trace);
+    let text = workspace.run(["check", "scene.xml", "trace.bin"]);
+    let json = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json"]);
+    assert_eq!(text.code, json.code);
+    let value: Value = serde_json::from_slice(&json.stdout).unwrap();
+    let schema: Value = serde_json::from_str(include_str!("../../schemas/check.schema.json")).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<_> =
+        validator.iter_errors(&value).map(|error| format!("{}: {error}", error.instance_path())).collect();
+    assert!(errors.is_empty(), "{errors:#?}\n{value:#}");
+    (text, value)
+}
+
+/// The reference trace of a scene with changed frames.
+fn changed(scene: &str, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
+    let layout = Layout::of(&scene::read("scene", scene.as_bytes()).unwrap().scene);
+    let trace = trace_of(scene);
+    let mut reader = Reader::of_slice(&trace, layout);
+    let mut frames = Vec::new();
+    let mut frame = Frame::default();
+    while reader.next(&mut frame).unwrap() {
+        frames.push(frame.clone());
+    }
+    change(&mut frames);
+    let mut writer = Writer::new(Vec::new(), layout);
+    frames.iter().for_each(|frame| writer.frame(frame));
+    writer.finish().unwrap().0
+}
+
+/// Changes the first coefficient of polynomial `index`.
+fn scale(frame: &mut Frame, index: usize, factor: f64) {
+    let log = std::mem::take(&mut frame.polynomials);
+    for (number, coefficients) in log.iter().enumerate() {
+        let mut coefficients = coefficients.to_vec();
+        if number == index {
+            coefficients[0] *= factor;
+        }
+        frame.polynomials.push(&coefficients);
+    }
+}
+
+#[test]
+fn a_right_trace_is_accepted() {
+    let (text, json) = reports(BOUNCE, &trace_of(BOUNCE));
+    insta::assert_snapshot!("accepted", text.shown());
+    insta::assert_snapshot!("accepted_json", format!("{json:#}"));
+}
+
+#[test]
+fn a_wrong_coefficient_is_shown_side_by_side() {
+    let trace = changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0));
+    let (text, json) = reports(BOUNCE, &trace);
+    insta::assert_snapshot!("wrong_coefficient", text.shown());
+    insta::assert_snapshot!("wrong_coefficient_json", format!("{json:#}"));
+}
+
+#[test]
+fn collisions_that_do_not_match_are_told_apart() {
+    let missed = changed(BOUNCE, |frames| frames[2].impulses.clear());
+    insta::assert_snapshot!("missed_collision", reports(BOUNCE, &missed).0.shown());
+    let superfluous = changed(BOUNCE, |frames| {
+        let mut impulse = frames[2].impulses[0];
+        impulse.kind = 1;
+        frames[2].impulses.push(impulse);
+        impulse.kind = 77;
+        frames[2].impulses.push(impulse);
+    });
+    insta::assert_snapshot!("superfluous_collision", reports(BOUNCE, &superfluous).0.shown());
+    let normal = changed(BOUNCE, |frames| frames[2].impulses[0].normal.x = 0.125);
+    insta::assert_snapshot!("wrong_normal", reports(BOUNCE, &normal).0.shown());
+}
+
+#[test]
+fn polynomials_of_another_number_or_size_are_told_apart() {
+    let fewer = changed(BEAM, |frames| frames[2].polynomials.clear());
+    insta::assert_snapshot!("too_few_polynomials", reports(BEAM, &fewer).0.shown());
+    let more = changed(BEAM, |frames| {
+        for polynomial in frames[2].polynomials.clone().iter() {
+            frames[2].polynomials.push(polynomial);
+        }
+    });
+    insta::assert_snapshot!("too_many_polynomials", reports(BEAM, &more).0.shown());
+    let degree = changed(BOUNCE, |frames| {
+        frames[2].polynomials.clear();
+        frames[2].polynomials.push(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        frames[2].polynomials.push(&[-0.25, 0.25]);
+    });
+    insta::assert_snapshot!("wrong_degree", reports(BOUNCE, &degree).0.shown());
+}
+
+#[test]
+fn states_that_differ_raise_residuals() {
+    let trace = changed(DRIFT, |frames| {
+        frames[3].state.positions[0] += 1e-3;
+        frames[3].state.velocities[1] = -0.5;
+    });
+    let (text, json) = reports(DRIFT, &trace);
+    insta::assert_snapshot!("wrong_state", text.shown());
+    insta::assert_snapshot!("wrong_state_json", format!("{json:#}"));
+}
+
+#[test]
+fn not_a_number_is_written_as_a_string() {
+    let trace = changed(DRIFT, |frames| frames[4].state.positions[0] = f64::NAN);
+    let (text, json) = reports(DRIFT, &trace);
+    assert_eq!(text.code, Some(1));
+    assert!(matches!(json["parity"]["accumulated_position_residual"].as_str(), Some("nan" | "-nan")), "{json:#}");
+}
+
+#[test]
+fn damaged_traces_are_bad_traces_with_a_position() {
+    let trace = trace_of(BOUNCE);
+    let cut = |length: usize| trace[..length].to_vec();
+    let with = |at: usize, bytes: &[u8]| {
+        let mut trace = trace.clone();
+        trace[at..at + bytes.len()].copy_from_slice(bytes);
+        trace
+    };
+    for (name, damaged) in [
+        ("empty", cut(0)),
+        ("cut_in_initial_state", cut(20)),
+        ("cut_in_state", cut(50)),
+        ("cut_before_record", cut(164)),
+        ("cut_in_impulses", cut(100)),
+        ("huge_impulse_count", with(72, &i32::MAX.to_le_bytes())),
+        ("huge_polynomial_count", with(112, &i32::MAX.to_le_bytes())),
+    ] {
+        let (text, json) = reports(BOUNCE, &damaged);
+        assert_eq!((text.code, json["verdict"].as_str()), (Some(1), Some("bad trace")), "{name}");
+        insta::assert_snapshot!(name, text.shown());
+    }
+}
+
+#[test]
+fn what_the_original_reads_over_is_noted() {
+    let trace = trace_of(BOUNCE);
+    let trailing = [&trace[..], b"more"].concat();
+    insta::assert_snapshot!("trailing_bytes", reports(BOUNCE, &trailing).0.shown());
+    // The last polynomial's coefficients share their last byte, so the original does not notice either.
+    let shorter = &trace[..trace.len() - 1];
+    insta::assert_snapshot!("last_byte_missing", reports(BOUNCE, shorter).0.shown());
+    let mut negative = trace;
+    negative[36..40].copy_from_slice(&(-5_i32).to_le_bytes());
+    insta::assert_snapshot!("negative_count", reports(BOUNCE, &negative).0.shown());
+}
+
+#[test]
+fn every_cut_ends_with_a_report() {
+    let trace = trace_of(BOUNCE);
+    for length in 0..trace.len() {
+        let workspace = Workspace::new();
+        workspace.write("scene.xml", BOUNCE);
+        workspace.write("trace.bin", &trace[..length]);
+        let run = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json"]);
+        let json: Value = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{length}: {}", run.shown()));
+        let placed = json["problem"]["offset"].is_u64() || json["damage"]["offset"].is_u64();
+        assert!(placed && run.err().is_empty(), "{length}: {}", run.shown());
+    }
+}
+
+#[test]
+fn another_scenes_trace_is_not_accepted() {
+    for (scene, trace) in [(BOUNCE, BEAM), (BEAM, BOUNCE), (BOUNCE, DRIFT), (DRIFT, BOUNCE), (BEAM, DRIFT)] {
+        let (text, json) = reports(scene, &trace_of(trace));
+        assert_eq!(text.code, Some(1), "{json:#}");
+    }
+}
+
+#[test]
+fn inputs_that_cannot_be_used_are_our_side_of_the_counter() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    workspace.write("folder/inside", "");
+    for (name, arguments) in [
+        ("missing_scene", ["check", "nowhere.xml", "trace.bin"]),
+        ("missing_trace", ["check", "scene.xml", "nowhere.bin"]),
+        ("scene_is_a_folder", ["check", "folder", "trace.bin"]),
+        ("trace_is_a_folder", ["check", "scene.xml", "folder"]),
+        ("unknown_asset", ["check", "asset:Nowhere/nothing", "trace.bin"]),
+        ("not_a_scene", ["check", "trace.bin", "trace.bin"]),
+    ] {
+        let run = workspace.run(arguments);
+        assert_eq!((run.code, run.stdout.len()), (Some(2), 0), "{name}");
+        insta::assert_snapshot!(name, run.shown());
+    }
+}
+
+#[test]
+fn all_errors_of_a_scene_are_reported_at_once() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    let scene = "<scene>\n\t<duration time=\"abc\"/>\n  <integrator type=\"explicit\" dt=\"0\"/>\n  <collision \
+                 type=\"none\" COR=\"x\"/>\n  <particle m=\"-1\" px=\"0\"/>\n <edge i=\"0\" j=\"9\"/><foo/>\n\
+                 <halfplane px=\"0\" py=\"0\" nx=\"0\" ny=\"0\"/>\n</scene>\n";
+    workspace.write("bad.xml", scene);
+    insta::assert_snapshot!("scene_errors", workspace.run(["check", "bad.xml", "trace.bin"]).shown());
+    workspace.write("broken.xml", "<scene>\n  <duration time=\"1\"\n  <integrator/>\n</scene>");
+    insta::assert_snapshot!("scene_syntax_error", workspace.run(["check", "broken.xml", "trace.bin"]).shown());
+    workspace.write("empty.xml", "");
+    insta::assert_snapshot!("scene_empty", workspace.run(["check", "empty.xml", "trace.bin"]).shown());
+}
+
+#[test]
+fn a_pipe_that_nobody_writes_to_is_refused() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    assert!(std::process::Command::new("mkfifo").arg(workspace.path("pipe")).status().unwrap().success());
+    let run = workspace.run(["check", "scene.xml", "pipe"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("it is a pipe that nobody has written to"), "{}", run.err());
+    let run = workspace.run(["check", "scene.xml", "trace.bin", "--output", "pipe"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("it is a pipe, socket or block device"), "{}", run.err());
+}
+
+#[test]
+fn a_pipe_with_a_writer_is_read() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    assert!(std::process::Command::new("mkfifo").arg(workspace.path("pipe")).status().unwrap().success());
+    let pipe = workspace.path("pipe");
+    let trace = workspace.read("trace.bin");
+    let run = std::thread::scope(|scope| {
+        scope.spawn(move || File::options().write(true).open(pipe).unwrap().write_all(&trace).unwrap());
+        workspace.run(["check", "scene.xml", "pipe"])
+    });
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    let run = workspace.run_with_input(["check", "scene.xml", "-"], &workspace.read("trace.bin"));
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+}
+
+#[test]
+fn a_sparse_file_of_ten_gigabytes_costs_no_more_than_its_records() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    let mut file = File::create(workspace.path("sparse.bin")).unwrap();
+    file.seek(SeekFrom::Start(10_000_000_000)).unwrap();
+    file.write_all(&[0]).unwrap();
+    let run = workspace.run(["check", "scene.xml", "sparse.bin", "--format", "json"]);
+    let json: Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!((run.code, &json["trailing_bytes"]), (Some(1), &Value::Bool(true)), "{}", run.shown());
+}
+
+#[test]
+fn compressed_traces_are_unpacked() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    let packed = zstd::encode_all(&workspace.read("trace.bin")[..], 3).unwrap();
+    workspace.write("trace.bin.zst", &packed);
+    workspace.write("nameless", &packed);
+    for name in ["trace.bin.zst", "nameless"] {
+        assert_eq!(workspace.run(["check", "scene.xml", name]).code, Some(0), "{name}");
+    }
+    workspace.write("cut.zst", &packed[..packed.len() - 5]);
+    let cut = workspace.run(["check", "scene.xml", "cut.zst"]);
+    assert_eq!(cut.code, Some(1));
+    assert!(cut.out().contains("the zstd data is cut short"), "{}", cut.shown());
+    let mut damaged = packed;
+    let middle = damaged.len() / 2;
+    damaged[middle] ^= 0xff;
+    workspace.write("damaged.zst", &damaged);
+    assert_eq!(workspace.run(["check", "scene.xml", "damaged.zst"]).code, Some(1));
+    workspace.write("plain.zst", workspace.read("trace.bin"));
+    let plain = workspace.run(["check", "scene.xml", "plain.zst"]);
+    assert_eq!(plain.code, Some(2));
+    assert!(plain.err().contains("it is not zstd data"), "{}", plain.err());
+}
+
+#[test]
+fn the_report_goes_where_it_is_asked_to_go() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    let printed = workspace.run(["check", "scene.xml", "trace.bin"]);
+    let run = workspace.run(["check", "scene.xml", "trace.bin", "--output", "report.txt"]);
+    assert_eq!((run.code, run.stdout.len()), (Some(0), 0));
+    assert_eq!(workspace.read("report.txt"), printed.stdout);
+    assert_eq!(workspace.list(), ["report.txt", "scene.xml", "trace.bin"]);
+    for input in ["trace.bin", "scene.xml"] {
+        let before = workspace.read(input);
+        let run = workspace.run(["check", "scene.xml", "trace.bin", "--output", input]);
+        assert_eq!(run.code, Some(2));
+        assert!(run.err().contains("it is also an input"), "{}", run.err());
+        assert_eq!(workspace.read(input), before);
+    }
+    let run = workspace.run(["check", "scene.xml", "trace.bin", "--output", "no/such/folder"]);
+    assert_eq!(run.code, Some(2));
+}
+
+#[test]
+fn nobody_listening_does_not_change_the_verdict() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    workspace.write("wrong.bin", changed(BOUNCE, |frames| frames[2].impulses.clear()));
+    for (trace, code) in [("trace.bin", 0), ("wrong.bin", 1)] {
+        let mut child = workspace.command().args(["check", "scene.xml", trace]).spawn().unwrap();
+        drop(child.stdout.take());
+        assert_eq!(child.wait().unwrap().code(), Some(code), "{trace}");
+    }
+    // A full disk is our fault, not the trace's.
+    let full = File::options().write(true).open("/dev/full").unwrap();
+    let run = finish(workspace.command().args(["check", "scene.xml", "trace.bin"]).stdout(Stdio::from(full)));
+    assert_eq!(run.code, Some(2));
+}
+
+#[test]
+fn an_audit_finds_no_disagreement() {
+    for scene in [BOUNCE, BEAM] {
+        let workspace = Workspace::with_trace(scene);
+        let run = workspace.run(["check", "scene.xml", "trace.bin", "--audit", "--format", "json"]);
+        let json: Value = serde_json::from_slice(&run.stdout).unwrap();
+        let searches = &json["root_searches"];
+        assert_eq!(searches["disagreements"], 0);
+        assert!(searches["calls"].as_u64().unwrap() > 0 && searches["searched"] == searches["calls"], "{json:#}");
+        assert!(workspace.run(["check", "scene.xml", "trace.bin", "--audit"]).out().contains(" 0 disagreements"));
+    }
+}
+
+#[test]
+fn an_endless_input_is_read_no_further_than_the_scene_asks() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    let run = workspace.run(["check", "scene.xml", "/dev/zero", "--format", "json"]);
+    let mut zeros = Vec::new();
+    File::open("/dev/zero").unwrap().take(4096).read_to_end(&mut zeros).unwrap();
+    workspace.write("zeros.bin", zeros);
+    let finite = workspace.run(["check", "scene.xml", "zeros.bin", "--format", "json"]);
+    assert_eq!(run.out().replace("/dev/zero", "zeros.bin"), finite.out());
+}

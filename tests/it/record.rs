@@ -1,0 +1,80 @@
+//! `record`: recordings, their check, and the embedded ones.
+use super::workspace::{BEAM, BOUNCE, Workspace, trace_of};
+
+fn assets() -> Workspace {
+    let workspace = Workspace::new();
+    workspace.write("assets/Balls/bounce.xml", BOUNCE);
+    workspace.write("assets/Beams/beam.xml", BEAM);
+    workspace.write("assets/README.md", "not a scene");
+    workspace
+}
+
+#[test]
+fn recordings_are_written_and_found_the_same() {
+    let workspace = assets();
+    let run = workspace.run(["record"]);
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    let packed = workspace.read("references/Balls/bounce.bin.zst");
+    assert_eq!(zstd::decode_all(&packed[..]).unwrap(), trace_of(BOUNCE));
+    let manifest = String::from_utf8(workspace.read("references/manifest.txt")).unwrap();
+    let steps = String::from_utf8(workspace.read("references/Balls/bounce.steps")).unwrap();
+    insta::assert_snapshot!("recording", format!("{manifest}\n{steps}"));
+    let check = workspace.run(["record", "--check"]);
+    assert_eq!((check.code, check.out().as_str()), (Some(0), "2 recordings, 5 steps: all the same\n"));
+    // Recording again changes nothing.
+    assert_eq!(workspace.run(["record"]).code, Some(0));
+    assert_eq!(workspace.read("references/Balls/bounce.bin.zst"), packed);
+}
+
+#[test]
+fn a_byte_that_differs_fails_the_check_with_a_diff() {
+    let workspace = assets();
+    workspace.run(["record"]);
+    workspace.write("assets/Balls/bounce.xml", BOUNCE.replace(r#"vy="-1""#, r#"vy="-1.5""#));
+    workspace.write("assets/Balls/new.xml", BOUNCE);
+    std::fs::remove_file(workspace.path("assets/Beams/beam.xml")).unwrap();
+    let before = workspace.read("references/manifest.txt");
+    let run = workspace.run(["record", "--check"]);
+    assert_eq!(run.code, Some(1));
+    insta::assert_snapshot!("recording_differs", run.shown());
+    assert_eq!(workspace.read("references/manifest.txt"), before, "a check writes nothing");
+    // Recording again makes it right, and removes what has no scene any more.
+    assert_eq!(workspace.run(["record"]).code, Some(0));
+    assert_eq!(workspace.run(["record", "--check"]).code, Some(0));
+    assert!(!workspace.exists("references/Beams/beam.bin.zst") && !workspace.exists("references/Beams/beam.steps"));
+}
+
+#[test]
+fn scenes_that_cannot_be_recorded_are_named() {
+    let workspace = Workspace::new();
+    let run = workspace.run(["record"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("cannot read the scenes in assets"), "{}", run.err());
+    workspace.write("assets/README.md", "not a scene");
+    assert!(workspace.run(["record"]).err().contains("there is no scene in assets"));
+    workspace.write("assets/Bad/bad.xml", "<scene/>");
+    let run = workspace.run(["record"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("cannot record Bad/bad: the scene has errors"), "{}", run.err());
+    assert!(!workspace.exists("references"));
+}
+
+#[test]
+fn the_embedded_recordings_are_what_is_simulated_now() {
+    // Nothing of the checkout is in this folder, so the embedded scenes are checked.
+    let run = Workspace::new().run(["record", "--check"]);
+    assert_eq!(run.code, Some(0), "{}", run.shown().chars().take(4000).collect::<String>());
+}
+
+#[test]
+fn every_embedded_scene_is_accepted_with_its_recording() {
+    let workspace = Workspace::new();
+    let mut scenes = 0;
+    for name in fosssim_oracle::suite::library::names() {
+        let asset = format!("asset:{name}");
+        let run = workspace.run(["check", &asset, &asset]);
+        assert_eq!((run.code, run.err().as_str()), (Some(0), ""), "{name}: {}", run.shown());
+        scenes += 1;
+    }
+    assert!(scenes >= 48, "{scenes} scenes");
+}

@@ -1,0 +1,154 @@
+//! `simulate`: traces and summaries, and outputs that appear whole or not at all.
+use super::workspace::{BEAM, BOUNCE, Workspace, finish, trace_of};
+use std::{os::unix::fs::symlink, process::Command};
+
+#[test]
+fn the_summary_says_what_happened() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BEAM);
+    let run = workspace.run(["simulate", "scene.xml", "--output", "trace.bin"]);
+    insta::assert_snapshot!("summary", run.shown());
+    assert_eq!(workspace.read("trace.bin"), trace_of(BEAM));
+    let run = workspace.run(["simulate", "scene.xml", "-o", "trace.bin", "--format", "json", "--audit"]);
+    insta::assert_snapshot!("summary_json", run.shown());
+    insta::assert_snapshot!("summary_without_trace", workspace.run(["simulate", "scene.xml"]).shown());
+}
+
+#[test]
+fn the_trace_may_go_to_standard_output() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BOUNCE);
+    for name in ["-", "/dev/stdout"] {
+        let run = workspace.run(["simulate", "scene.xml", "--output", name]);
+        assert_eq!((run.code, &run.stdout), (Some(0), &trace_of(BOUNCE)));
+        assert!(run.err().starts_with("Simulated scene.xml"), "{}", run.err());
+    }
+    assert_eq!(workspace.run(["simulate", "scene.xml", "--output", "/dev/null"]).code, Some(0));
+    let mut child = workspace.command().args(["simulate", "scene.xml", "-o", "-"]).spawn().unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn a_link_is_followed_and_the_mode_is_kept() {
+    use std::os::unix::fs::PermissionsExt;
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BOUNCE);
+    workspace.write("real.bin", "old");
+    std::fs::set_permissions(workspace.path("real.bin"), std::fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("real.bin", workspace.path("link.bin")).unwrap();
+    assert_eq!(workspace.run(["simulate", "scene.xml", "--output", "link.bin"]).code, Some(0));
+    assert_eq!(workspace.read("real.bin"), trace_of(BOUNCE));
+    assert!(workspace.path("link.bin").symlink_metadata().unwrap().is_symlink());
+    assert_eq!(workspace.path("real.bin").metadata().unwrap().permissions().mode() & 0o777, 0o640);
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_refused() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BOUNCE);
+    workspace.write("folder/inside", "");
+    symlink("nowhere", workspace.path("dangling")).unwrap();
+    for (output, says) in [
+        ("scene.xml", "it is also an input"),
+        ("folder", "it is a directory"),
+        ("new/", "it names a directory"),
+        ("nowhere/trace.bin", "no file can be made in nowhere"),
+        ("dangling", "a symbolic link to a file that does not exist"),
+    ] {
+        let run = workspace.run(["simulate", "scene.xml", "--output", output]);
+        assert_eq!(run.code, Some(2), "{output}");
+        assert!(run.err().contains(says), "{output}: {}", run.err());
+    }
+    assert_eq!(workspace.read("scene.xml"), BOUNCE.as_bytes());
+    assert_eq!(workspace.list(), ["dangling", "folder", "scene.xml"]);
+}
+
+#[test]
+fn a_simulation_that_fails_leaves_the_old_trace_alone() {
+    let workspace = Workspace::new();
+    // Two particles in one place: their distance has no direction, and Newton's method gets nowhere.
+    let scene = r#"<scene><duration time="1"/><integrator type="implicit-euler" dt="0.1"/>
+        <collision type="penalty" k="1e9" thickness="0.5"/>
+        <particle m="1" px="0" py="0" vx="1" vy="0" fixed="0" radius="1"/>
+        <particle m="1" px="1" py="0.001" vx="-1" vy="0" fixed="0" radius="1"/></scene>"#;
+    workspace.write("scene.xml", scene);
+    workspace.write("trace.bin", "old");
+    let run = workspace.run(["simulate", "scene.xml", "--output", "trace.bin"]);
+    assert_eq!(run.code, Some(2), "{}", run.shown());
+    assert!(run.err().contains("has no result"), "{}", run.err());
+    assert_eq!(workspace.read("trace.bin"), b"old");
+    assert_eq!(workspace.list(), ["scene.xml", "trace.bin"]);
+}
+
+#[test]
+fn an_interrupt_leaves_nothing_behind() {
+    for signal in ["-TERM", "-INT"] {
+        let workspace = Workspace::new();
+        // Ten million steps take long enough to be interrupted.
+        let scene = BOUNCE.replace(r#"time="1""#, r#"time="5000000""#);
+        workspace.write("scene.xml", scene);
+        let mut child = workspace.command().args(["simulate", "scene.xml", "-o", "trace.bin"]).spawn().unwrap();
+        while workspace.list().len() < 2 {
+            assert!(child.try_wait().unwrap().is_none(), "it ended before it was interrupted");
+            std::thread::yield_now();
+        }
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        assert_eq!(workspace.list(), ["scene.xml"]);
+    }
+}
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    let workspace = Workspace::new();
+    insta::assert_snapshot!("help", workspace.run(["--help"]).shown());
+    for command in [
+        &["simulate"][..],
+        &["check"],
+        &["trace"],
+        &["trace", "info"],
+        &["trace", "show"],
+        &["trace", "diff"],
+        &["record"],
+        &["completions"],
+        &["man"],
+    ] {
+        let run = workspace.run(command.iter().chain(&["--help"]));
+        assert_eq!(run.code, Some(0));
+        assert!(run.out().contains("Example:\n  fosssim-oracle "), "{command:?}");
+        insta::assert_snapshot!(format!("help_{}", command.join("_")), run.shown());
+    }
+    let original = workspace.run(["help", "original"]);
+    assert!(original.out().contains("Example:\n  fosssim-oracle original -s"), "{}", original.shown());
+}
+
+#[test]
+fn wrong_usage_is_told_apart_from_a_wrong_trace() {
+    let workspace = Workspace::new();
+    for arguments in
+        [&[][..], &["grade"], &["check"], &["check", "a", "b", "--threads", "0"], &["check", "a", "b", "c"]]
+    {
+        let run = workspace.run(arguments);
+        assert_eq!((run.code, run.stdout.len()), (Some(2), 0), "{arguments:?}");
+    }
+    let run = workspace.run(["--version"]);
+    assert_eq!(run.out(), format!("fosssim-oracle {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn completions_and_the_manual_page_know_every_command() {
+    let workspace = Workspace::new();
+    let scripts = ["bash", "zsh", "fish"].map(|shell| workspace.run(["completions", shell]));
+    let manual = workspace.run(["man"]);
+    for run in scripts.iter().chain([&manual]) {
+        assert_eq!(run.code, Some(0));
+        for command in ["simulate", "check", "trace", "record", "original"] {
+            assert!(run.out().contains(command), "{command}");
+        }
+    }
+    let mut child = workspace.command().arg("man").spawn().unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    assert!(finish(workspace.command().args(["completions", "tcsh-for-kids"])).code == Some(2));
+}

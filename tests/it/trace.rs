@@ -1,0 +1,57 @@
+//! `trace info`, `trace show`, `trace diff`.
+use super::workspace::{BEAM, BOUNCE, Workspace};
+use serde_json::Value;
+
+#[test]
+fn info_says_what_a_trace_holds() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    insta::assert_snapshot!("info", workspace.run(["trace", "info", "scene.xml", "trace.bin"]).shown());
+    let run = workspace.run(["trace", "info", "scene.xml", "trace.bin", "--format", "json"]);
+    insta::assert_snapshot!("info_json", run.shown());
+    let trace = workspace.read("trace.bin");
+    workspace.write("cut.bin", &trace[..trace.len() - 9]);
+    insta::assert_snapshot!("info_cut", workspace.run(["trace", "info", "scene.xml", "cut.bin"]).shown());
+}
+
+#[test]
+fn show_puts_one_step_into_words() {
+    let workspace = Workspace::with_trace(BEAM);
+    let show = |step: &str, format: &str| {
+        workspace.run(["trace", "show", "scene.xml", "trace.bin", "--step", step, "--format", format])
+    };
+    insta::assert_snapshot!("show_initial", show("0", "text").shown());
+    insta::assert_snapshot!("show_step", show("2", "text").shown());
+    let json: Value = serde_json::from_slice(&show("2", "json").stdout).unwrap();
+    assert_eq!(json["records"].as_array().unwrap().len(), 2);
+    assert_eq!(json["records"][1]["polynomials"][0]["role"], "overlap");
+    let run = show("4", "text");
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("has 3 steps; there is no step 4"), "{}", run.err());
+    let trace = workspace.read("trace.bin");
+    workspace.write("cut.bin", &trace[..trace.len() - 9]);
+    let run = workspace.run(["trace", "show", "scene.xml", "cut.bin", "--step", "3"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("cannot show step 3 of the trace cut.bin: byte "), "{}", run.err());
+}
+
+#[test]
+fn diff_shows_the_first_difference_first() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    let trace = workspace.read("trace.bin");
+    let mut other = trace.clone();
+    other[40] ^= 1;
+    other[90] ^= 1;
+    workspace.write("other.bin", &other);
+    workspace.write("longer.bin", [&trace[..], b"x"].concat());
+    workspace.write("cut.bin", &trace[..200]);
+    let diff = |right: &str, format: &str| {
+        workspace.run(["trace", "diff", "scene.xml", "trace.bin", right, "--format", format])
+    };
+    insta::assert_snapshot!("diff_same", diff("trace.bin", "text").shown());
+    insta::assert_snapshot!("diff_other", diff("other.bin", "text").shown());
+    insta::assert_snapshot!("diff_other_json", diff("other.bin", "json").shown());
+    insta::assert_snapshot!("diff_longer", diff("longer.bin", "text").shown());
+    insta::assert_snapshot!("diff_cut", diff("cut.bin", "text").shown());
+    let run = diff("nowhere.bin", "text");
+    assert_eq!(run.code, Some(2), "a trace that is not there is no difference");
+}
