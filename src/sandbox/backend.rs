@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use super::fake::FakeRun;
 use super::job::{Job, Policy};
-use super::layers::{self, LayerReport};
+use super::layers::{self, Layer, LayerReport};
 use super::program;
 use super::running::Running;
 use super::supervisor::{MODE_PROBE, MODE_RUN};
@@ -161,6 +161,23 @@ impl Backend {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
         Ok(Self { kind: Kind::Launcher { supervisor, walls }, layers: reports.into() })
+    }
+
+    /// The same without one of its walls, to prove what the others hold alone. Reports state it.
+    ///
+    /// # Errors
+    ///
+    /// [`SandboxError::Missing`] when the wall is required on this host.
+    pub fn without(&self, layer: Layer) -> Result<Self, SandboxError> {
+        let reports = layers::without(&self.layers, layer);
+        let kind = match &self.kind {
+            Kind::Launcher { supervisor, .. } => {
+                let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
+                Kind::Launcher { supervisor: supervisor.clone(), walls }
+            }
+            Kind::Fake(script) => Kind::Fake(script.clone()),
+        };
+        Ok(Self { kind, layers: reports.into() })
     }
 
     /// No walls at all: limits, clocks and the kill of everything only. For `--unsafe-no-sandbox`; every report states

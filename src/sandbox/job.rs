@@ -22,7 +22,7 @@ pub struct Limits {
     pub cpu: Duration,
     /// Time on the clock, from the start to the end.
     pub wall: Duration,
-    /// Resident memory in bytes, of all processes together.
+    /// Resident memory in bytes, of all processes together. The stack of the main thread ends at 8 MiB in any case.
     pub memory: u64,
     /// Bytes of standard output, and separately of standard error.
     pub output_bytes: u64,

@@ -175,6 +175,19 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     ]
 }
 
+/// The same reports with one wall taken away, and with it what stands on it.
+pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport> {
+    let mut reports = reports.to_vec();
+    for report in &mut reports {
+        if report.layer == layer || (layer == Layer::FileRules && report.layer == Layer::Scopes) {
+            report.active = false;
+            report.detail = "switched off on request".into();
+            report.remedy = None;
+        }
+    }
+    reports
+}
+
 /// The walls that the supervisor puts up, given the reports; `None` without the required set, with what is missing.
 pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
     let missing: Vec<String> = reports
@@ -242,6 +255,15 @@ mod tests {
     fn root_that_cannot_change_its_user_is_refused() {
         let bound = Probe { own_user: Some("invalid argument".into()), ..healthy(true) };
         assert!(walls(&reports(&bound)).unwrap_err().contains("ordinary user"));
+    }
+
+    #[test]
+    fn a_required_wall_cannot_be_taken_away() {
+        let healthy = |root| reports(&healthy(root));
+        assert!(walls(&without(&healthy(true), Layer::CallFilter)).is_err());
+        assert!(walls(&without(&healthy(false), Layer::FileRules)).is_err());
+        let walls = walls(&without(&healthy(true), Layer::FileRules)).unwrap();
+        assert!(!walls.landlock && !walls.scopes && walls.seccomp);
     }
 
     #[test]

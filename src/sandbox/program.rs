@@ -53,11 +53,8 @@ pub(super) fn examine(path: &Path) -> Result<Program, StartProblem> {
     if metadata.permissions().mode() & 0o111 == 0 {
         return Err(StartProblem::NotExecutable);
     }
-    let mut file = match File::open(path) {
-        Ok(file) => file,
-        // A program may be executable and not readable; then the kernel has to judge it.
-        Err(_) => return Ok(Program::default()),
-    };
+    // A program that may be executed and not read would also be closed to the supervisor's looks.
+    let mut file = File::open(path).map_err(|_| StartProblem::NotPermitted)?;
     let start = read_at(&mut file, 0, 256).unwrap_or_default();
     if start.starts_with(ELF_MAGIC) {
         elf(&mut file, &start)

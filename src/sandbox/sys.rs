@@ -105,6 +105,21 @@ pub(super) fn switch_user(id: u32) -> io::Result<()> {
     check(i64::from(unsafe { libc::setresuid(id, id, id) })).map(drop)
 }
 
+/// Does something with the file permissions of another user, as who root may look into that user's `/proc` entries even
+/// without the capability to trace. Only the supervisor's single thread does this, and it always comes back.
+pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) -> T {
+    let Some(user) = user else { return action() };
+    // SAFETY: integers only; both answer the previous id and change nothing where it is not allowed.
+    let (old_group, old_user) = unsafe { (libc::setfsgid(user), libc::setfsuid(user)) };
+    let result = action();
+    // SAFETY: as above.
+    unsafe {
+        libc::setfsuid(old_user.cast_unsigned());
+        libc::setfsgid(old_group.cast_unsigned());
+    }
+    result
+}
+
 /// Makes `new` a copy of the descriptor `old`, which stays open across `execve`.
 pub(super) fn duplicate_to(old: RawFd, new: RawFd) -> io::Result<()> {
     // SAFETY: integers only; the caller owns what lies at `new` (the standard streams of a fresh child).

@@ -1,5 +1,6 @@
 // promise: Files in memory do not exist for a program.
 // expect: exited 0
+// needs: file rules
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

@@ -2,30 +2,86 @@
 
 use std::path::Path;
 
-use fosssim_oracle::sandbox::selftest::{self, Verdict};
+use fosssim_oracle::sandbox::selftest::{self, PromiseTable, Verdict};
+use fosssim_oracle::sandbox::{Backend, Ended, Job, Layer, Supervisor};
 
 use crate::sandbox::backend;
 
-#[test]
-fn every_promise_of_the_sandbox_holds() {
-    let Some(backend) = backend() else { return };
+/// Runs the suite; `None` (said in a line) without a C compiler.
+fn attacked(backend: &Backend) -> Option<PromiseTable> {
     let cc = Path::new("cc");
     if std::process::Command::new(cc).arg("--version").output().is_err() {
         eprintln!("skipped: there is no C compiler (cc)");
-        return;
+        return None;
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("attacks");
     std::fs::create_dir_all(&folder).unwrap();
     let table = selftest::run(backend, cc, &folder, |promise| match &promise.verdict {
         Verdict::Held => {}
         verdict => eprintln!("{}: {verdict:?}", promise.attack),
-    })
-    .unwrap();
+    });
+    Some(table.unwrap())
+}
+
+fn assert_all_held(table: &PromiseTable, at_least: usize) {
     let broken: Vec<_> = table.broken().map(|promise| &promise.attack).collect();
     assert!(broken.is_empty(), "broken promises: {broken:?}");
-    let faults = table.promises.iter().filter(
-        |promise| matches!(&promise.verdict, Verdict::NotTested(why) if why.contains("failed") || why.contains("compile")),
-    );
+    let fault = |why: &str| why.contains("test itself") || why.contains("compile");
+    let faults =
+        table.promises.iter().filter(|promise| matches!(&promise.verdict, Verdict::NotTested(why) if fault(why)));
     assert_eq!(faults.count(), 0);
-    assert!(table.held() >= 40, "only {} promises were tried", table.held());
+    assert!(table.held() >= at_least, "only {} promises were tried", table.held());
+}
+
+#[test]
+fn every_promise_of_the_sandbox_holds() {
+    let Some(backend) = backend() else { return };
+    let Some(table) = attacked(backend) else { return };
+    assert_all_held(&table, 60);
+}
+
+#[test]
+fn older_kernels_without_announcements_hold_the_promises_too() {
+    let Some(backend) = backend() else { return };
+    let Ok(backend) = backend.without(Layer::NamedCalls) else { return };
+    let Some(table) = attacked(&backend) else { return };
+    assert_all_held(&table, 60);
+}
+
+#[test]
+fn a_user_per_program_holds_what_it_can_where_there_is_no_landlock() {
+    let Some(backend) = backend() else { return };
+    let Ok(backend) = backend.without(Layer::FileRules) else {
+        eprintln!("skipped: only root may do without file rules");
+        return;
+    };
+    let Some(table) = attacked(&backend) else { return };
+    assert_all_held(&table, 40);
+}
+
+#[test]
+fn attacks_are_never_run_without_walls() {
+    let backend = Backend::unsandboxed(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle")));
+    let folder = tempfile::tempdir().unwrap();
+    let refusal = selftest::run(&backend, Path::new("cc"), folder.path(), |_| {});
+    assert!(refusal.unwrap_err().to_string().contains("inside the sandbox only"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is built");
+}
+
+#[test]
+fn an_attack_refuses_by_itself_outside_the_sandbox() {
+    // The one that does nothing but print.
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/attacks/forged_verdict.c");
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("program");
+    let built = std::process::Command::new("cc").args(["-w", "-o"]).args([&program, &source]).status();
+    if !built.is_ok_and(|status| status.success()) {
+        eprintln!("skipped: there is no C compiler (cc)");
+        return;
+    }
+    let backend = Backend::unsandboxed(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle")));
+    let job = Job::new(&program, folder.path()).arguments(["1", "2", "3", "4"]).environment([("FOSSSIM_ATTACK", "1")]);
+    let outcome = backend.start(&job).unwrap().wait().unwrap();
+    assert_eq!(outcome.ended, Ended::Exited(98));
+    assert!(outcome.stdout.bytes.is_empty());
 }

@@ -198,6 +198,19 @@ fn a_submission_starts_no_process_and_no_second_program() {
 }
 
 #[test]
+fn a_script_in_another_language_runs_as_one_program() {
+    let Some(bench) = Bench::new() else { return };
+    if !Path::new("/usr/bin/python3").exists() {
+        eprintln!("skipped: there is no python3");
+        return;
+    }
+    let program = bench.script("#!/usr/bin/env python3\nprint(6 * 7)\n");
+    let outcome = bench.run(&program, &[]);
+    assert_eq!(outcome.ended, Ended::Exited(0), "{}", text(&outcome.stderr.bytes));
+    assert_eq!(text(&outcome.stdout.bytes), "42\n");
+}
+
+#[test]
 fn readable_paths_are_readable_and_others_are_not() {
     let Some(bench) = Bench::new() else { return };
     let outside = tempfile::tempdir().unwrap();
@@ -411,6 +424,11 @@ fn without_walls_the_limits_still_hold() {
     let outcome = backend.start(&job).unwrap().wait().unwrap();
     assert_eq!(outcome.ended, Ended::WallLimit);
     assert!(outcome.layers.iter().any(|report| report.layer == Layer::CallFilter && !report.active));
+    // Eight sleepers where four processes are allowed.
+    let script = "for i in 1 2 3 4 5 6 7 8; do sleep 1000 & done; wait";
+    let limits = Limits { processes: 4, ..small() };
+    let job = Job::new("/bin/sh", bench_folder.path()).arguments(["-c", script]).limits(limits);
+    assert_eq!(backend.start(&job).unwrap().wait().unwrap().ended, Ended::ProcessLimit);
 }
 
 #[test]

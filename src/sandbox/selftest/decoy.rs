@@ -68,6 +68,13 @@ impl Decoy {
         Ok(Self { root: root.into(), work, scene, secret: secret.to_string(), victim })
     }
 
+    /// Copies the program beside the decoys.
+    pub(super) fn bring(&self, program: &Path) -> io::Result<PathBuf> {
+        let own = self.root.join("program");
+        std::fs::copy(program, &own)?;
+        Ok(own)
+    }
+
     /// What the program is told: secrets, victim, scene, neighbour.
     pub(super) fn arguments(&self) -> [OsString; 4] {
         [

@@ -81,13 +81,18 @@ impl PromiseTable {
 ///
 /// # Errors
 ///
-/// When `folder` cannot be used or the supervisor fails. A promise that does not hold is no error.
+/// [`SandboxError::Missing`] when the backend does not filter system calls: the attacks are never run without walls.
+/// Also when `folder` cannot be used. A promise that does not hold is no error.
 pub fn run(
     backend: &Backend,
     cc: &Path,
     folder: &Path,
     mut report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
+    let filtered = backend.layers().iter().any(|report| report.layer == Layer::CallFilter && report.active);
+    if !filtered {
+        return Err(SandboxError::Missing { missing: "the attacks run inside the sandbox only".into() });
+    }
     let folder_error = |source: std::io::Error| SandboxError::Folder { folder: folder.display().to_string(), source };
     let folder = folder.canonicalize().map_err(folder_error)?;
     let sources = folder.join("sources");
@@ -97,7 +102,7 @@ pub fn run(
     }
     let attacks = attacks();
     let header = SOURCES.get_file("attack.h").map(|file| file.contents()).unwrap_or_default();
-    std::fs::write(sources.join("attack.h"), header).map_err(folder_error)?;
+    put(&sources.join("attack.h"), header).map_err(folder_error)?;
 
     let next = AtomicUsize::new(0);
     let done = Mutex::new((Vec::new(), &mut report));
@@ -146,10 +151,13 @@ impl Place<'_> {
         if let Some(need) = attack.needs.iter().find(|need| !self.offers(**need)) {
             return Ok(Verdict::NotTested(format!("this machine lacks: {}", need.name())));
         }
-        let program = self.build(attack).map_err(Verdict::NotTested)?;
+        let built = self.build(attack).map_err(Verdict::NotTested)?;
         let broken = |text: String| Verdict::Broken(text);
         let fault = |error: &dyn std::fmt::Display| Verdict::NotTested(format!("the test itself failed: {error}"));
-        let mut decoy = Decoy::set_up(&self.folder.join(format!("run-{}", attack.name))).map_err(|e| fault(&e))?;
+        let mut decoy =
+            Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique()))).map_err(|e| fault(&e))?;
+        // A program of its own for every run, so that survivors are known by it.
+        let program = decoy.bring(&built).map_err(|e| fault(&e))?;
         let before = decoy.state().map_err(|e| fault(&e))?;
         let job = Job::new(&program, &decoy.work)
             .arguments(decoy.arguments())
@@ -197,7 +205,7 @@ impl Place<'_> {
         let active = |layer| self.backend.layers().iter().any(|report| report.layer == layer && report.active);
         match need {
             Need::FileRules => active(Layer::FileRules),
-            Need::SignalScope => active(Layer::Scopes),
+            Need::SignalScope => active(Layer::Scopes) || active(Layer::OwnUser),
             Need::NamedCalls => active(Layer::NamedCalls),
             Need::X86 => cfg!(target_arch = "x86_64"),
         }
@@ -220,9 +228,9 @@ impl Place<'_> {
         }
         let said = |error: std::io::Error| format!("{}: {error}", self.cc.display());
         let path = self.sources.join(format!("{}.c", attack.name));
-        std::fs::write(&path, source.contents()).map_err(said)?;
+        put(&path, source.contents()).map_err(said)?;
         // Built under another name, so that a half-built program is never taken for a whole one.
-        let fresh = self.programs.join(format!("{}-{}", attack.name, std::process::id()));
+        let fresh = self.programs.join(format!("{}-{}", attack.name, unique()));
         let output = Command::new(self.cc).args(FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
@@ -231,6 +239,19 @@ impl Place<'_> {
         std::fs::rename(&fresh, &program).map_err(said)?;
         Ok(program)
     }
+}
+
+/// A suffix that nobody else uses: other self-tests may work in the same folder at the same time.
+fn unique() -> String {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    format!("{}.{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
+}
+
+/// Writes a file whole or not at all, because others may be reading it.
+fn put(path: &Path, contents: &[u8]) -> std::io::Result<()> {
+    let fresh = path.with_extension(unique());
+    std::fs::write(&fresh, contents)?;
+    std::fs::rename(&fresh, path)
 }
 
 /// Small limits, so that the suite is short and harms nobody even where a wall is missing.

@@ -4,9 +4,12 @@
 //! socket, which closes by itself when the program has started.
 
 use std::ffi::CString;
+use std::fs::{File, Permissions};
 use std::io::{self, Write};
-use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, AsRawFd, OwnedFd};
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::UnixStream;
+use std::path::Path;
 
 use landlock::RulesetCreated;
 
@@ -25,7 +28,7 @@ pub(super) struct Plan {
     pub(super) supervisor: u32,
     pub(super) folder: OwnedFd,
     /// The program, opened while we could still reach it, for a user who cannot.
-    pub(super) opened: Option<OwnedFd>,
+    pub(super) opened: Option<Opened>,
     pub(super) rules: Option<RulesetCreated>,
     pub(super) user: Option<u32>,
     pub(super) input: OwnedFd,
@@ -38,7 +41,7 @@ pub(super) struct Plan {
 pub(super) fn become_program(mut plan: Plan) -> ! {
     // Written as a file, because the filter knows no socket calls.
     let mut status = match plan.status.as_fd().try_clone_to_owned() {
-        Ok(status) => std::fs::File::from(status),
+        Ok(status) => File::from(status),
         Err(_) => sys::exit_now(125),
     };
     let failure = match prepare(&mut plan) {
@@ -79,7 +82,8 @@ fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
     };
     for raw in &plan.order.readable {
         if !c_string(raw).is_ok_and(|path| sys::accessible(&path, libc::R_OK)) {
-            let stage = format!("let the program read {}", wire::path(raw).display());
+            let stage =
+                format!("let the program read {}, which every user must be able to reach", wire::path(raw).display());
             return Err(Failure { stage, errno: libc::EACCES });
         }
     }
@@ -97,6 +101,8 @@ fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
 
 /// The resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
 fn limits(order: &Order, own_user: bool) -> io::Result<()> {
+    // What Linux gives by default, so that a deep recursion ends alike on every grading host.
+    const STACK: u64 = 8 << 20;
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
     const SPARE_PROCESSES: u64 = 16;
@@ -105,6 +111,7 @@ fn limits(order: &Order, own_user: bool) -> io::Result<()> {
     sys::limit(libc::RLIMIT_FSIZE, order.folder_bytes)?;
     sys::limit(libc::RLIMIT_NOFILE, u64::from(order.open_files))?;
     sys::limit(libc::RLIMIT_CPU, order.cpu_micros.div_ceil(1_000_000) + SPARE_SECONDS)?;
+    sys::limit(libc::RLIMIT_STACK, STACK)?;
     sys::limit(libc::RLIMIT_MEMLOCK, 64 << 10)?;
     sys::limit(libc::RLIMIT_MSGQUEUE, 0)?;
     if !order.sanitised {
@@ -141,12 +148,16 @@ fn filter_calls(plan: &Plan) -> io::Result<()> {
 /// the error.
 fn execute(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
     let Ok(path) = c_string(&plan.order.program) else { return io::Error::from_raw_os_error(libc::EINVAL) };
-    let error = sys::execute(&path, arguments, environment);
+    let open = |opened: &Opened| sys::execute_open(opened.file.as_fd(), arguments, environment);
     match &plan.opened {
-        Some(file) if error.raw_os_error() == Some(libc::EACCES) => {
-            sys::execute_open(file.as_fd(), arguments, environment)
+        Some(opened) if opened.copied => open(opened),
+        opened => {
+            let error = sys::execute(&path, arguments, environment);
+            match opened {
+                Some(opened) if error.raw_os_error() == Some(libc::EACCES) => open(opened),
+                _ => error,
+            }
         }
-        _ => error,
     }
 }
 
@@ -180,22 +191,26 @@ fn c_string(raw: &Raw) -> io::Result<CString> {
     CString::new(raw.as_slice()).map_err(io::Error::other)
 }
 
-/// A copy of the program that any user may execute: the open file itself, or one in memory when its permission bits
-/// are for the owner only.
-pub(super) fn executable_copy(program: std::fs::File) -> io::Result<OwnedFd> {
-    use std::os::unix::fs::PermissionsExt;
-    if program.metadata()?.permissions().mode() & 0o001 != 0 {
-        return Ok(program.into());
-    }
-    let memory = sys::memory_file()?;
-    let mut copy = std::fs::File::from(memory);
-    io::copy(&mut io::BufReader::new(program), &mut copy)?;
-    copy.set_permissions(std::fs::Permissions::from_mode(0o555))?;
-    // A file that is open for writing cannot be executed: open it again for reading only.
-    let again = std::fs::File::open(self_descriptor(copy.as_fd()))?;
-    Ok(again.into())
+/// The program as an open file that any user may execute.
+pub(super) struct Opened {
+    file: OwnedFd,
+    copied: bool,
 }
 
-fn self_descriptor(fd: BorrowedFd<'_>) -> String {
-    format!("/proc/self/fd/{}", fd.as_raw_fd())
+impl Opened {
+    /// Opens the program: the file itself, or a copy in memory when its permission bits are for the owner only. A
+    /// program that its user may not read would be closed to the supervisor's looks as well.
+    pub(super) fn new(path: &Path) -> io::Result<Self> {
+        const READ_AND_EXECUTE: u32 = 0o005;
+        let program = File::open(path)?;
+        if program.metadata()?.permissions().mode() & READ_AND_EXECUTE == READ_AND_EXECUTE {
+            return Ok(Self { file: program.into(), copied: false });
+        }
+        let mut copy = File::from(sys::memory_file()?);
+        io::copy(&mut io::BufReader::new(program), &mut copy)?;
+        copy.set_permissions(Permissions::from_mode(0o555))?;
+        // A file that is open for writing cannot be executed: open it again for reading only.
+        let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;
+        Ok(Self { file: again.into(), copied: true })
+    }
 }

@@ -8,7 +8,7 @@ use std::os::unix::net::UnixStream;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use super::child::{self, Plan};
+use super::child::{self, Opened, Plan};
 use super::folder::{self, Contents};
 use super::streams::Capture;
 use super::{calls, modes, processes, slot, walls};
@@ -105,8 +105,7 @@ impl Run {
         status.set_nonblocking(true).map_err(stage("make a socket"))?;
         let opened = match &slot {
             Some(_) if !order.script => {
-                let copy = File::open(wire::path(&order.program)).and_then(child::executable_copy);
-                Some(copy.map_err(stage("open the program"))?)
+                Some(Opened::new(&wire::path(&order.program)).map_err(stage("open the program"))?)
             }
             _ => None,
         };
@@ -342,7 +341,9 @@ impl Run {
         if self.main_status.is_some() {
             return;
         }
-        let usage = processes::usage(self.child, self.order.tools);
+        // Without the filter anybody can start processes, so that all of them count.
+        let tree = self.order.tools || !self.order.walls.seccomp;
+        let usage = processes::usage(self.child, tree);
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         self.peak_memory = self.peak_memory.max(usage.memory);
         self.blame_if(usage.memory > self.order.memory, Cause::Memory);
@@ -354,7 +355,8 @@ impl Run {
     /// Looks at the working folder and at removed files that are still being written.
     fn look_at_folder(&mut self) {
         let mut contents = folder::measure(self.folder.as_fd(), self.order.folder_bytes, self.order.folder_files);
-        contents.bytes += folder::nameless_bytes(self.child);
+        let user = self.slot.as_ref().map(|(slot, _)| slot.user);
+        contents.bytes += sys::with_files_of(user, || folder::nameless_bytes(self.child));
         self.blame_if(self.over(&contents), Cause::Folder);
     }
 
