@@ -219,10 +219,13 @@ struct Motion {
     radius: f64,
 }
 
+/// A distribution of motions.
+type Make = fn(&mut Random) -> Motion;
+
 /// Draws a detection: pair type, name of the distribution, polynomials.
 fn draw(random: &mut Random) -> (usize, &'static str, Vec<Polynomial>) {
     let pair = [0, 1, 1, 2][random.below(4) as usize];
-    let kinds: [(&str, fn(&mut Random) -> Motion); 8] = [
+    let kinds: [(&str, Make); 8] = [
         ("wide", wide),
         ("grid", grid),
         ("near-rigid", near_rigid),

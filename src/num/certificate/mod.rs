@@ -5,15 +5,15 @@
 //! where the polynomials *are* positive but where the original's root finder *says* so: it samples each gap between
 //! the zeros once, and rounding may decide a sample.
 //!
-//! What suffices: the answer exceeds 1 if no time of `[0, 1]` lies in the computed positive sets of all polynomials,
-//! in particular if one computed set has no interval with `hi > 0` and `lo <= 1`; and if no search hangs.
+//! What suffices: the answer exceeds 1 if the computed positive set of *one* polynomial has no interval with `hi > 0`
+//! and `lo <= 1`, and if no search hangs. Combining several polynomials would decide next to nothing more in scenes.
 //!
 //! What is proved and what is measured:
 //!
 //! * **Constants, `c z^m`, lines: exact.** The root finder's own few operations, or a bound on their rounding.
 //! * **Parabolas: proved.** The closed form's zeros are those of a polynomial whose coefficients differ by a few units
 //!   in the last place of the largest, far less than the margin; the samples' values exceed their rounding because
-//!   the zeros are near (see `closed_form`). The last resort runs the closed form itself and is exact.
+//!   the zeros are near (see `closed_form`).
 //! * **Degree three and above: measured.** A negative polynomial with margin, zeros near and moderate coefficients
 //!   leave the root finder no known way to be wrong but three: it gives up early (seen only with coefficients near
 //!   5e-324, excluded here); deflation spoils the zeros by more than the margin; or a sample falls exactly on a
@@ -24,8 +24,6 @@ mod bernstein;
 mod closed_form;
 
 use super::{
-    first_time::positive_set,
-    interval::{Interval, Intervals},
     polynomial::Polynomial,
     tolerances::{SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT},
 };
@@ -41,16 +39,11 @@ pub enum Level {
     Parabola,
     /// A polynomial of degree three or more whose Bernstein coefficients are all negative.
     Bernstein,
-    /// The positive times of lines and parabolas, by the root finder's closed forms, do not meet within the step.
-    ClosedForms,
-    /// Wherever lines and parabolas are positive, one of the others is negative.
-    Windows,
 }
 
 impl Level {
     /// All levels, in the order in which they are tried.
-    pub const ALL: [Self; 6] =
-        [Self::Vanishing, Self::Line, Self::Parabola, Self::Bernstein, Self::ClosedForms, Self::Windows];
+    pub const ALL: [Self; 4] = [Self::Vanishing, Self::Line, Self::Parabola, Self::Bernstein];
 }
 
 /// Whether [`first_time`](super::first_time::first_time) of these polynomials is certainly greater than 1 (or
@@ -90,15 +83,7 @@ fn with_search(polynomials: &[Polynomial], known: Option<Level>) -> Option<Level
     if known.is_some() {
         return known;
     }
-    if searched.any(|list| nowhere_positive(list) || bernstein::never_positive(list)) {
-        return Some(Level::Bernstein);
-    }
-    let windows = windows_of_closed_forms(polynomials);
-    if windows.as_slice().is_empty() {
-        return Some(Level::ClosedForms);
-    }
-    let excluded = windows.as_slice().iter().all(|&window| bernstein::negative_in_window(polynomials, window));
-    excluded.then_some(Level::Windows)
+    searched.any(|list| nowhere_positive(list) || bernstein::never_positive(list)).then_some(Level::Bernstein)
 }
 
 /// Whether the root finder rejects the polynomial and its only sample, at 0, is not positive: a leading zero (in the
@@ -116,29 +101,6 @@ fn search_ends(coefficients: &[f64]) -> bool {
         let modulus = coefficient.abs();
         modulus == 0.0 || (SEARCH_SMALLEST_COEFFICIENT..=SEARCH_LARGEST_COEFFICIENT).contains(&modulus)
     })
-}
-
-/// The windows that two parabolas leave open, and some more.
-type Windows = Intervals<8>;
-
-/// The times of `[0, 1]` at which all lines and parabolas are positive, exactly as the root finder computes them.
-fn windows_of_closed_forms(polynomials: &[Polynomial]) -> Windows {
-    let mut windows = Windows::new();
-    windows.push(Interval { lo: 0.0, hi: 1.0 });
-    for list in polynomials.iter().map(Polynomial::coefficients).filter(|list| list.len() <= 3) {
-        // Closed forms always return.
-        if let Ok(set) = positive_set(list) {
-            windows = windows.intersection(&set);
-        }
-    }
-    // An interval that ends at 0 does not count for the original.
-    let mut counted = Windows::new();
-    for &window in windows.as_slice() {
-        if window.hi > 0.0 {
-            counted.push(window);
-        }
-    }
-    counted
 }
 
 #[cfg(test)]
