@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release --example audit -- [detections] [seed]` draws that many detections (default: a million) of
 //! the three pair types from wide and nasty distributions. Wherever the certificate says that nothing happens within
-//! the step, the search has to say so, too. It prints how many detections each level decided, how many the search
+//! the step, the search has to say so, too: for the list, and for each polynomial by itself, where no other one hides
+//! a mistake. A fourth kind are products of linear factors whose zeros are as awkward as can be. It prints how many detections each level decided, how many the search
 //! alone could decide, and the first disagreement; there must be none. The draws depend on the seed only, not on the
 //! number of processors.
 use std::{
@@ -54,15 +55,15 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(total.disagreements > 0))
 }
 
-/// The three pair types, in the order of collisions.md 1.
-const PAIRS: [&str; 3] = ["particle-particle", "particle-edge", "particle-half-plane"];
+/// The three pair types, in the order of collisions.md 1, and bare products.
+const PAIRS: [&str; 4] = ["particle-particle", "particle-edge", "particle-half-plane", "product"];
 
 /// Counts per pair type; the last entry of a row counts what no level decided.
 #[derive(Default)]
 struct Tally {
-    decided: [[u64; Level::ALL.len() + 1]; 3],
-    needless: [u64; 3],
-    endless: [u64; 3],
+    decided: [[u64; Level::ALL.len() + 1]; PAIRS.len()],
+    needless: [u64; PAIRS.len()],
+    endless: [u64; PAIRS.len()],
     disagreements: u64,
     first: Option<(u64, String)>,
 }
@@ -77,7 +78,11 @@ impl Tally {
         self.endless[pair] += u64::from(time.is_err());
         let never = time.is_ok_and(|time| time > 1.0);
         self.needless[pair] += u64::from(never && level.is_none());
-        if level.is_some() && !never {
+        let alone = |polynomial: &Polynomial| {
+            let alone = std::slice::from_ref(polynomial);
+            exclusion(alone).is_some() && !first_time(alone).is_ok_and(|time| time > 1.0)
+        };
+        if (level.is_some() && !never) || polynomials.iter().any(alone) {
             self.disagreements += 1;
             if self.first.as_ref().is_none_or(|&(first, _)| index < first) {
                 let lists: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
@@ -224,7 +229,10 @@ type Make = fn(&mut Random) -> Motion;
 
 /// Draws a detection: pair type, name of the distribution, polynomials.
 fn draw(random: &mut Random) -> (usize, &'static str, Vec<Polynomial>) {
-    let pair = [0, 1, 1, 2][random.below(4) as usize];
+    let pair = [0, 1, 1, 2, 3][random.below(5) as usize];
+    if pair == 3 {
+        return (pair, "zeros on a grid", vec![product(random)]);
+    }
     let kinds: [(&str, Make); 8] = [
         ("wide", wide),
         ("grid", grid),
@@ -247,6 +255,33 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Polynomial>) {
         _ => particle_half_plane(&motion),
     };
     (pair, name, lists)
+}
+
+/// A polynomial of degree three to five with zeros on a coarse grid, some of them multiple or nearly so, that is
+/// often negative within the step.
+fn product(random: &mut Random) -> Polynomial {
+    let unit = [1.0, 0.5, 0.25, 0.1][random.below(4) as usize];
+    let degree = 3 + random.below(3) as usize;
+    let noise = if random.chance(2) { 0.0 } else { random.log(-16.0, -3.0) };
+    let mut coefficients = [0.0; 6];
+    coefficients[0] = random.uniform(-1.0, 1.0).signum() * random.log(-6.0, 3.0);
+    let mut count = 0;
+    while count < degree {
+        // The step itself is left out most of the time.
+        let place = (random.below(33) as f64 - 16.0) * unit;
+        if (0.0..=1.0).contains(&place) && !random.chance(16) {
+            continue;
+        }
+        let repeat = if random.chance(2) { 2.min(degree - count) } else { 1 };
+        for _ in 0..repeat {
+            let zero = place + noise * random.uniform(-1.0, 1.0);
+            count += 1;
+            for i in (1..=count).rev() {
+                coefficients[i] -= zero * coefficients[i - 1];
+            }
+        }
+    }
+    Polynomial::trimmed(&coefficients[..=degree])
 }
 
 /// Every object has its own scale and speed.

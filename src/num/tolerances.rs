@@ -48,9 +48,13 @@ pub const PARABOLA_COMPLEX: f64 = 1.0 - 1.0 / (1_u64 << 20) as f64;
 /// [`IMAGINARY_PART`]: with [`PARABOLA_COMPLEX`] they exceed 2^-10 times the root of this.
 pub const PARABOLA_ROOM: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Certificate: as [`PARABOLA_NEAR`], for degrees three to five. With five zeros of this modulus in one place, rounding
-/// just does not decide a sample.
-pub const BERNSTEIN_NEAR: f64 = (1_u64 << 12) as f64;
+/// Certificate: as [`PARABOLA_NEAR`], for degrees three to five whose zeros are apart ([`DISCRIMINANT_MARGIN`]). Sixteen
+/// times as much has shown no disagreement either.
+pub const BERNSTEIN_NEAR: f64 = (1_u64 << 24) as f64;
+
+/// Certificate: zeros are apart when no relative change of this size of the coefficients makes two of them coincide. It
+/// has to exceed the rounding of a sample's value (some 2^-48 of the terms) clearly.
+pub const DISCRIMINANT_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Certificate: as [`PARABOLA_MARGIN`], for degrees three to five. It has to cover what deflation does to the zeros, which
 /// is measured, not proved.

@@ -9,6 +9,7 @@ mod layers;
 mod parity;
 mod record;
 mod recordings;
+mod root_props;
 mod root_vectors;
 mod samples;
 mod sandbox;

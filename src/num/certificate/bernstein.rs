@@ -2,9 +2,12 @@
 //!
 //! On an interval a polynomial lies between the least and the greatest of its Bernstein coefficients (for instance
 //! Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012). All of them negative with
-//! margin, and the zeros near (a bound after Fujiwara, 1916), has been enough for the root finder; see the header of
-//! [`super`] for what is only measured.
-use super::super::tolerances::{BERNSTEIN_MARGIN, BERNSTEIN_NEAR};
+//! margin, the zeros near (a bound after Fujiwara, 1916) and apart, has been enough for the root finder; see the header
+//! of [`super`] for what is only measured.
+use super::{
+    super::tolerances::{BERNSTEIN_MARGIN, BERNSTEIN_NEAR},
+    separated::zeros_are_separated,
+};
 
 /// Whether a polynomial of degree three to five is certainly not positive in `[0, 1]`. NaN gives `false`.
 #[inline]
@@ -12,21 +15,21 @@ pub(super) fn never_positive(coefficients: &[f64]) -> bool {
     match *coefficients {
         // The value at 0 is the cheapest test; it fails for most that are positive somewhere.
         [.., last] if last >= 0.0 => false,
-        [a, b, c, d] => negative(&[d, c, b, a], &[1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
-        [a, b, c, d, e] => negative(&[e, d, c, b, a], &[1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
-        [a, b, c, d, e, f] => negative(&[f, e, d, c, b, a], &[1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
+        [a, b, c, d] => negative(&[a, b, c, d], &[1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
+        [a, b, c, d, e] => negative(&[a, b, c, d, e], &[1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
+        [a, b, c, d, e, f] => negative(&[a, b, c, d, e, f], &[1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
         _ => false,
     }
 }
 
-/// Whether all Bernstein coefficients are negative with margin, and the zeros near. From coefficients, lowest power
-/// first, and the reciprocals of the binomial coefficients.
+/// Whether all Bernstein coefficients are negative with margin, and the zeros near and apart. From coefficients,
+/// highest power first, and the reciprocals of the binomial coefficients.
 #[inline(always)]
-fn negative<const LENGTH: usize>(ascending: &[f64; LENGTH], reciprocals: &[f64; LENGTH]) -> bool {
-    let mut near = ascending[LENGTH - 1].abs();
+fn negative<const LENGTH: usize>(coefficients: &[f64; LENGTH], reciprocals: &[f64; LENGTH]) -> bool {
+    let mut near = coefficients[0].abs();
     let mut size = near;
     let mut zeros_are_near = true;
-    for coefficient in ascending[..LENGTH - 1].iter().rev() {
+    for coefficient in &coefficients[1..] {
         near *= BERNSTEIN_NEAR;
         let modulus = coefficient.abs();
         size += modulus;
@@ -34,7 +37,7 @@ fn negative<const LENGTH: usize>(ascending: &[f64; LENGTH], reciprocals: &[f64; 
     }
     let mut control = [0.0; LENGTH];
     for i in 0..LENGTH {
-        control[i] = ascending[i] * reciprocals[i];
+        control[i] = coefficients[LENGTH - 1 - i] * reciprocals[i];
     }
     // Pascal's triangle: entry k becomes the sum of (k over i) times entry i.
     for row in 1..LENGTH {
@@ -43,5 +46,5 @@ fn negative<const LENGTH: usize>(ascending: &[f64; LENGTH], reciprocals: &[f64; 
         }
     }
     let below = -BERNSTEIN_MARGIN * size;
-    zeros_are_near && control.iter().all(|&value| value < below)
+    zeros_are_near && control.iter().all(|&value| value < below) && zeros_are_separated(coefficients)
 }

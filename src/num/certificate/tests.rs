@@ -12,7 +12,7 @@ fn list(lists: &[&[f64]]) -> Vec<Polynomial> {
 #[test]
 fn each_level_decides_what_it_is_made_for() {
     let far: &[f64] = &[1.0, 2.0, 3.0, 4.0, 5.0];
-    let cases: [(&[&[f64]], Option<Level>); 12] = [
+    let cases: [(&[&[f64]], Option<Level>); 13] = [
         (&[&[1e-13, 0.0], far], Some(Level::Vanishing)),
         (&[&[2.0, 0.0], far], Some(Level::Vanishing)),
         (&[&[-1.0], &[1.0, 2.0]], Some(Level::Vanishing)),
@@ -26,7 +26,9 @@ fn each_level_decides_what_it_is_made_for() {
         (&[&[1.0, 1.0, 1.0, 1.0, -5.0], &[1.0, 2.0]], Some(Level::Bernstein)),
         (&[&[1.0, 1.0, 1.0, 1.0, -5.0], &[1e-9, 1.0, 1.0, 1.0, 1.0]], Some(Level::Bernstein)),
         // Far zeros: the leading coefficient is too small beside the others.
-        (&[&[1e-12, 0.0, 0.0, -1e9]], None),
+        (&[&[1e-12, 0.0, 0.1, -1e15]], None),
+        // The original samples the gap after its first zero, -5.5, at the double zero -4.5, where rounding decides.
+        (&[&[-4.0, -58.0, -279.0, -445.5]], None),
     ];
     for (lists, expected) in cases {
         let polynomials = list(lists);
