@@ -1,4 +1,5 @@
 //! The command line as typed. What it means is decided by the commands.
+use super::grading::{Demo, Doctor, Grade, Selftest, Suite};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
@@ -27,6 +28,12 @@ pub(super) enum Command {
     #[command(subcommand)]
     Trace(Trace),
     Record(Record),
+    Grade(Grade),
+    #[command(subcommand)]
+    Suite(Suite),
+    Demo(Demo),
+    Doctor(Doctor),
+    Selftest(Selftest),
     Original(Original),
     Completions(Completions),
     Man(Man),

@@ -7,4 +7,4 @@ pub const NOT_ACCEPTED: u8 = 1;
 /// Wrong usage, an input that can't be used, or our own fault. Never a verdict on a submission.
 pub const FAULT: u8 = 2;
 /// Ended by SIGINT or SIGTERM; no output is left half-written.
-pub const INTERRUPTED: i32 = 130;
+pub const INTERRUPTED: u8 = 130;

@@ -4,6 +4,7 @@ mod arguments;
 mod commands;
 mod console;
 pub mod exit;
+mod grading;
 mod input;
 mod original;
 mod output;

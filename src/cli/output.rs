@@ -173,7 +173,7 @@ fn clean_up_when_interrupted() {
             for path in pending.iter() {
                 drop(fs::remove_file(path));
             }
-            std::process::exit(exit::INTERRUPTED);
+            std::process::exit(exit::INTERRUPTED.into());
         });
         // Without a handler an interrupt leaves a hidden file behind, which is better than not working at all.
         drop(installed);

@@ -8,6 +8,7 @@
 mod finding;
 mod outcome;
 pub mod parity;
+pub mod recorded;
 mod replay;
 mod tally;
 mod words;

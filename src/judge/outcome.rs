@@ -156,3 +156,48 @@ pub struct Outcome {
     /// Root searches of the reference.
     pub searches: SearchCounts,
 }
+
+impl Outcome {
+    /// Nothing judged yet.
+    pub(super) fn empty(steps: u32) -> Self {
+        Self {
+            overall: Overall::None,
+            residuals: Residuals::default(),
+            collisions_passed: None,
+            counts: Counts::default(),
+            wrong_steps: 0,
+            examples: Vec::new(),
+            first_divergence: None,
+            steps_judged: 0,
+            steps,
+            stop: None,
+            damage: None,
+            trailing_bytes: false,
+            searches: SearchCounts::default(),
+        }
+    }
+
+    /// Keeps a finding if it is the first, or the first of its kind.
+    pub(super) fn keep_first(&mut self, first: &Finding) {
+        if self.first_divergence.is_none() {
+            self.first_divergence = Some(*first);
+        }
+        if !self.examples.iter().any(|example| example.kind() == first.kind()) {
+            self.examples.push(*first);
+        }
+    }
+
+    /// Draws the verdict, when nothing stopped judging (oracle-behaviour.md 6).
+    pub(super) fn conclude(&mut self) {
+        self.examples.sort_by_key(Finding::kind);
+        if self.stop.is_some() {
+            return;
+        }
+        let passed = self.counts.collisions() == 0;
+        self.collisions_passed = Some(passed);
+        // Strict, and NaN fails.
+        let residuals_pass = self.residuals.with_bounds().iter().all(|(residual, bound)| residual < bound);
+        let complete = self.steps_judged == self.steps;
+        self.overall = if passed && residuals_pass && complete { Overall::Passed } else { Overall::Failed };
+    }
+}

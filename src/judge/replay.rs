@@ -4,8 +4,7 @@
 //! own state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
 //! reported, and in which order, does not depend on the number of threads.
 use super::{
-    finding::Finding,
-    outcome::{Counts, Damage, Outcome, Overall, Residuals, Stop, Unreadable},
+    outcome::{Damage, Outcome, Stop, Unreadable},
     parity::{Options, Progress},
     tally::{self, Buffers, StepResult, Tally},
 };
@@ -122,7 +121,8 @@ pub(super) fn judge<R: Read + Send>(
         std::mem::swap(&mut current, &mut next);
     }
     replay.outcome.searches = sum_of_searches(&workers);
-    replay.conclude()
+    replay.outcome.conclude();
+    replay.outcome
 }
 
 /// Which parts of a step are compared.
@@ -154,21 +154,7 @@ impl<R: Read> Replay<R> {
             state: State::default(),
             steps_read: 0,
             damage: None,
-            outcome: Outcome {
-                overall: Overall::None,
-                residuals: Residuals::default(),
-                collisions_passed: None,
-                counts: Counts::default(),
-                wrong_steps: 0,
-                examples: Vec::new(),
-                first_divergence: None,
-                steps_judged: 0,
-                steps: layout.steps,
-                stop: None,
-                damage: None,
-                trailing_bytes: false,
-                searches: SearchCounts::default(),
-            },
+            outcome: Outcome::empty(layout.steps),
         }
     }
 
@@ -267,7 +253,7 @@ impl<R: Read> Replay<R> {
             tally::accumulate(&mut outcome.residuals, &slot.result.residuals);
             outcome.counts += slot.result.counts;
             for first in &slot.result.firsts {
-                keep_first(outcome, first);
+                outcome.keep_first(first);
             }
             outcome.steps_judged += 1;
             progress.step_judged(slot.step, &slot.result.remarks);
@@ -279,20 +265,6 @@ impl<R: Read> Replay<R> {
             }
         }
         false
-    }
-
-    fn conclude(mut self) -> Outcome {
-        let outcome = &mut self.outcome;
-        outcome.examples.sort_by_key(Finding::kind);
-        if outcome.stop.is_none() {
-            let passed = outcome.counts.collisions() == 0;
-            outcome.collisions_passed = Some(passed);
-            // Strict, and NaN fails.
-            let residuals_pass = outcome.residuals.with_bounds().iter().all(|(residual, bound)| residual < bound);
-            let complete = outcome.steps_judged == outcome.steps;
-            outcome.overall = if passed && residuals_pass && complete { Overall::Passed } else { Overall::Failed };
-        }
-        self.outcome
     }
 }
 
@@ -342,15 +314,6 @@ fn sum_of_searches(workers: &[Worker]) -> SearchCounts {
         sum.disagreements += counts.disagreements;
     }
     sum
-}
-
-fn keep_first(outcome: &mut Outcome, first: &Finding) {
-    if outcome.first_divergence.is_none() {
-        outcome.first_divergence = Some(*first);
-    }
-    if !outcome.examples.iter().any(|example| example.kind() == first.kind()) {
-        outcome.examples.push(*first);
-    }
 }
 
 fn copy_state(target: &mut State, source: &State) {

@@ -130,6 +130,19 @@ impl<'a> Tally<'a> {
         }
     }
 
+    /// The next polynomial of the reference; `place` says where it belongs, should that be needed.
+    #[inline]
+    pub(super) fn expect_polynomial(&mut self, expected: &Polynomial, place: impl FnOnce() -> PolynomialPlace) {
+        let index = self.polynomials;
+        self.polynomials += 1;
+        if index < self.frame.polynomials.len() {
+            let actual = self.frame.polynomials.get(index);
+            if !equal_and_safe(expected.coefficients(), actual) {
+                self.compare_closely(place(), expected, actual);
+            }
+        }
+    }
+
     /// Ends the step: compares impulses, the number of polynomials, and the states, in the original's order.
     pub(super) fn finish(mut self, reference: &State, has_impulses: bool, has_polynomials: bool) {
         if has_impulses {
@@ -267,22 +280,13 @@ impl Observer for Tally<'_> {
 
     #[inline]
     fn detection(&mut self, detection: &Detection<'_>) {
+        let pass = self.pass;
         for (number, expected) in detection.polynomials.iter().enumerate() {
             let index = self.polynomials;
-            self.polynomials += 1;
-            if index >= self.frame.polynomials.len() {
-                continue;
-            }
-            let actual = self.frame.polynomials.get(index);
-            if equal_and_safe(expected.coefficients(), actual) {
-                continue;
-            }
-            let role = Role::of(detection.pair.kind, number);
-            self.compare_closely(
-                PolynomialPlace { pass: self.pass, pair: detection.pair, role, index },
-                expected,
-                actual,
-            );
+            self.expect_polynomial(expected, || {
+                let role = Role::of(detection.pair.kind, number);
+                PolynomialPlace { pass, pair: detection.pair, role, index }
+            });
         }
     }
 

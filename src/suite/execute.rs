@@ -6,7 +6,11 @@ use super::{
     verdict::Verdict,
 };
 use crate::{
-    judge::parity::{self, Options, Progress, Remark},
+    judge::{
+        Outcome,
+        parity::{self, Options, Progress, Remark},
+        recorded::{self, RecordingError},
+    },
     sandbox::{Backend, Canceller, Job, Limits, Policy, SandboxError},
     scene::Scene,
 };
@@ -36,6 +40,8 @@ pub struct SceneTask {
     pub xml: Vec<u8>,
     /// The scene itself.
     pub scene: Scene,
+    /// Its recorded trace, compressed with zstd, when there is one.
+    pub recording: Option<&'static [u8]>,
 }
 
 /// How scenes are run.
@@ -51,6 +57,8 @@ pub struct Runner<'a> {
     pub hints: Hints,
     /// Whether a run is cut short at its first wrong step.
     pub fail_fast: bool,
+    /// Whether traces are judged against the recordings instead of the reference simulator.
+    pub recorded: bool,
     /// Stops everything from outside.
     pub cancellation: &'a Cancellation,
 }
@@ -101,7 +109,7 @@ impl Runner<'_> {
         let judged = match running.trace() {
             Some(inner) => {
                 let mut trace = Counted { inner, bytes: &bytes };
-                let judged = parity::judge(&task.scene, &mut trace, &options, &mut watch);
+                let judged = self.judge(task, &mut trace, &options, &mut watch)?;
                 cut_short = self.fail_fast && judged.wrong_steps > 0 && judged.steps_judged < judged.steps;
                 if cut_short {
                     canceller.cancel();
@@ -111,10 +119,25 @@ impl Runner<'_> {
                 let _ = io::copy(&mut trace, &mut io::sink());
                 judged
             }
-            None => parity::judge(&task.scene, io::empty(), &options, &mut watch),
+            None => self.judge(task, io::empty(), &options, &mut watch)?,
         };
         let outcome = running.wait()?;
         Ok(conclude(&task.name, &outcome, &judged, bytes.load(Ordering::Relaxed), cut_short, self.hints))
+    }
+
+    fn judge(
+        &self,
+        task: &SceneTask,
+        trace: impl Read + Send,
+        options: &Options,
+        watch: &mut Watch<'_>,
+    ) -> Result<Outcome, ExecuteError> {
+        if !self.recorded {
+            return Ok(parity::judge(&task.scene, trace, options, watch));
+        }
+        let packed = task.recording.ok_or_else(|| ExecuteError::NoRecording(task.name.clone()))?;
+        let recording = zstd::Decoder::with_buffer(packed).map_err(ExecuteError::Recording)?;
+        Ok(recorded::judge(&task.scene, trace, recording, watch)?)
     }
 
     fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
@@ -171,6 +194,12 @@ pub fn not_run(scene: &str, steps: u32, verdict: Verdict, summary: String) -> Sc
 enum ExecuteError {
     #[error("no working folder for a run: {0}")]
     Folder(io::Error),
+    #[error("there is no recording of {0}: judge it without --recorded")]
+    NoRecording(String),
+    #[error("a recording can't be unpacked: {0}")]
+    Recording(io::Error),
+    #[error(transparent)]
+    Damaged(#[from] RecordingError),
     #[error(transparent)]
     Sandbox(#[from] SandboxError),
 }

@@ -86,7 +86,12 @@ pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
                                 problems.push((position, format!("scene {name} is in group \"{other}\" already")));
                             }
                             None => match scene::read(&name, &xml) {
-                                Ok(loaded) => scenes.push(SceneTask { name, xml, scene: loaded.scene }),
+                                Ok(loaded) => {
+                                    // A file of an embedded scene's name has a recording only if it is that scene.
+                                    let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
+                                    let recording = known.then(|| library::recording(&name)).flatten();
+                                    scenes.push(SceneTask { name, xml, scene: loaded.scene, recording });
+                                }
                                 Err(error) => problems.push((position, format!("scene {name} is not sound:\n{error}"))),
                             },
                         }

@@ -1,9 +1,14 @@
 //! The commands: each reads its inputs, lets the rooms below do the work, and prints what a renderer makes of it.
 
 mod check;
+mod display;
+mod grade;
+mod host;
 mod record;
 mod shell;
 mod simulate;
+mod submissions;
+mod suite;
 mod trace;
 
 use super::arguments::{Command, Trace};
@@ -21,6 +26,11 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Trace(Trace::Show(arguments)) => trace::show(arguments),
         Command::Trace(Trace::Diff(arguments)) => trace::diff(arguments),
         Command::Record(arguments) => record::run(arguments),
+        Command::Grade(arguments) => grade::run(arguments),
+        Command::Suite(arguments) => suite::run(arguments),
+        Command::Demo(arguments) => host::demo(arguments),
+        Command::Doctor(_) => host::doctor(),
+        Command::Selftest(arguments) => host::selftest(arguments),
         Command::Completions(arguments) => shell::completions(arguments),
         Command::Man(_) => shell::manual(),
         // Its words never get here: they are not read by this parser.

@@ -38,6 +38,8 @@ pub struct BatchOptions {
     pub jobs: usize,
     /// Whether a run is cut short at its first wrong step.
     pub fail_fast: bool,
+    /// Whether traces are judged against the recordings instead of the reference simulator.
+    pub recorded: bool,
 }
 
 /// What happens during a grading.
@@ -138,6 +140,7 @@ pub fn run(
                     limits: &plan.limits,
                     hints: plan.hints,
                     fail_fast: options.fail_fast,
+                    recorded: options.recorded,
                     cancellation,
                 };
                 loop {
@@ -163,8 +166,10 @@ pub fn run(
                             (not_run(&scene.name, steps, verdict, "the sources do not build".to_owned()), None)
                         }
                         Ok(staged) => {
-                            let words: Vec<&str> =
-                                words.iter().map(String::as_str).chain([scene.name.as_str()]).collect();
+                            // A program may behave as it is called, so its name belongs to what is graded.
+                            let called = staged.program.file_name().unwrap_or_default().to_string_lossy();
+                            let own = [scene.name.as_str(), &called];
+                            let words: Vec<&str> = words.iter().map(String::as_str).chain(own).collect();
                             let key = Key::of(&staged.digest, &scene.xml, &words);
                             match found.get(&key) {
                                 Some(grade) => (SceneGrade { cached: true, ..grade.clone() }, None),
@@ -230,7 +235,7 @@ fn plan_words(plan: &Plan, options: BatchOptions) -> Vec<String> {
         plan.run.join("\u{1f}"),
         format!("{:?}", plan.limits),
         format!("{:?}", plan.hints),
-        format!("fail_fast={}", options.fail_fast),
+        format!("fail_fast={} recorded={}", options.fail_fast, options.recorded),
     ]
 }
 

@@ -80,7 +80,8 @@ impl Stage {
     }
 
     fn grade(&self, names: &[&str]) -> Vec<Grade> {
-        let (options, cancellation) = (BatchOptions { jobs: 2, fail_fast: false }, Cancellation::default());
+        let (options, cancellation) =
+            (BatchOptions { jobs: 2, fail_fast: false, recorded: false }, Cancellation::default());
         run(&small_plan(), &self.submissions(names), &self.backend, None, options, &cancellation, &mut |_| {})
             .expect("no fault")
     }
@@ -118,7 +119,7 @@ fn an_interrupted_grading_goes_on_where_it_stopped_and_ends_the_same() {
     let stage = Stage::new();
     let (plan, names) = (small_plan(), ["right", "wrong", "half", "slow"]);
     let submissions = stage.submissions(&names);
-    let options = BatchOptions { jobs: 2, fail_fast: false };
+    let options = BatchOptions { jobs: 2, fail_fast: false, recorded: false };
     let results = tempfile::tempdir().expect("folder");
     for stop_after in [3, 9] {
         let mut journal = Journal::open(results.path(), false).expect("journal");
@@ -156,7 +157,7 @@ fn an_interrupted_grading_goes_on_where_it_stopped_and_ends_the_same() {
 #[test]
 fn a_changed_program_is_graded_anew() {
     let stage = Stage::new();
-    let (plan, options) = (small_plan(), BatchOptions { jobs: 1, fail_fast: false });
+    let (plan, options) = (small_plan(), BatchOptions { jobs: 1, fail_fast: false, recorded: false });
     let results = tempfile::tempdir().expect("folder");
     let grade = |submissions: &[Submission]| {
         let mut journal = Journal::open(results.path(), false).expect("journal");

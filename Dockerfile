@@ -1,0 +1,18 @@
+# An image that grades programs:
+#   docker build -t fosssim-oracle .
+#   docker run --rm -v "$PWD/submissions:/submissions:ro" -v "$PWD/grades:/grades" \
+#       fosssim-oracle grade /submissions --output /grades
+# Docker's default seccomp profile is enough; no privileges are needed.
+FROM rust:1-slim-bookworm AS build
+RUN apt-get update && apt-get install -y --no-install-recommends build-essential && rm -rf /var/lib/apt/lists/*
+WORKDIR /source
+COPY . .
+RUN cargo build --release --locked
+
+FROM debian:bookworm-slim
+RUN apt-get update \
+    && apt-get install -y --no-install-recommends build-essential freeglut3-dev libpng-dev \
+    && rm -rf /var/lib/apt/lists/*
+COPY --from=build /source/target/release/fosssim-oracle /source/target/release/fosssim-sample /usr/local/bin/
+ENTRYPOINT ["fosssim-oracle"]
+CMD ["--help"]

@@ -1,0 +1,102 @@
+//! How a grading goes, on standard error: bars on a terminal, otherwise a line per finished submission.
+use crate::{
+    report::grade::{one_line, points},
+    suite::{
+        Verdict,
+        batch::{Event, Submission},
+        plan::Plan,
+    },
+};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use std::{collections::BTreeMap, io::IsTerminal};
+
+/// The display of one grading; it goes away when dropped.
+pub(super) struct Display<'a> {
+    plan: &'a Plan,
+    submissions: &'a [Submission],
+    bars: Option<Bars>,
+    graded: usize,
+}
+
+struct Bars {
+    all: MultiProgress,
+    overall: ProgressBar,
+    running: BTreeMap<(usize, usize), ProgressBar>,
+}
+
+impl<'a> Display<'a> {
+    /// A display for these submissions.
+    pub(super) fn new(plan: &'a Plan, submissions: &'a [Submission]) -> Self {
+        let bars = std::io::stderr().is_terminal().then(|| {
+            let all = MultiProgress::new();
+            let runs = submissions.len() * plan.scenes().count();
+            let overall = all.add(ProgressBar::new(runs as u64));
+            if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len} runs, {eta} left") {
+                overall.set_style(style);
+            }
+            Bars { all, overall, running: BTreeMap::new() }
+        });
+        Self { plan, submissions, bars, graded: 0 }
+    }
+
+    /// Shows what happened.
+    pub(super) fn event(&mut self, event: &Event<'_>) {
+        match *event {
+            Event::SceneBegins { submission, scene } => self.begin(submission, scene),
+            Event::Step { submission, scene, step } => {
+                if let Some(bar) = self.bars.as_ref().and_then(|bars| bars.running.get(&(submission, scene))) {
+                    bar.set_position(u64::from(step));
+                }
+            }
+            Event::SceneDone { submission, scene, .. } => {
+                if let Some(bars) = &mut self.bars {
+                    if let Some(bar) = bars.running.remove(&(submission, scene)) {
+                        bar.finish_and_clear();
+                    }
+                    bars.overall.inc(1);
+                }
+            }
+            Event::Graded { grade, .. } => {
+                self.graded += 1;
+                if self.submissions.len() == 1 {
+                    return;
+                }
+                let reached = grade.points.map_or_else(|| "no points".to_owned(), points);
+                let not_run = grade.count(Verdict::NotRun);
+                let rest = if not_run > 0 { format!(", {not_run} scenes not run") } else { String::new() };
+                let line = format!(
+                    "[{}/{}] {}: {}, {reached} of {}{rest}",
+                    self.graded,
+                    self.submissions.len(),
+                    one_line(&grade.submission),
+                    grade.verdict,
+                    points(grade.max_points),
+                );
+                match &self.bars {
+                    Some(bars) => drop(bars.all.println(line)),
+                    None => crate::cli::console::complain(format!("{line}\n").as_bytes()),
+                }
+            }
+        }
+    }
+
+    fn begin(&mut self, submission: usize, scene: usize) {
+        let Some(bars) = &mut self.bars else { return };
+        let Some(task) = self.plan.scenes().nth(scene) else { return };
+        let bar = bars.all.add(ProgressBar::new(u64::from(task.scene.steps())));
+        if let Ok(style) = ProgressStyle::with_template("  {msg:<60!} step {pos} of {len}") {
+            bar.set_style(style);
+        }
+        bar.set_message(format!("{} {}", one_line(&self.submissions[submission].name), task.name));
+        bars.running.insert((submission, scene), bar);
+    }
+}
+
+impl Drop for Display<'_> {
+    fn drop(&mut self) {
+        if let Some(bars) = &self.bars {
+            bars.overall.finish_and_clear();
+            drop(bars.all.clear());
+        }
+    }
+}

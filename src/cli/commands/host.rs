@@ -1,0 +1,125 @@
+//! `doctor`, `selftest` and `demo`: what this machine can do.
+use super::grade::{backend, cancelled_by_signals};
+use crate::{
+    cli::{
+        console, exit,
+        grading::{Demo, Selftest},
+    },
+    report::grade::Format,
+    sandbox::{self, selftest},
+    suite::{
+        Verdict,
+        batch::{self, BatchOptions, Submission},
+        plan,
+    },
+};
+use anyhow::{Context, Result, bail};
+use std::{
+    fmt::Write,
+    fs::{self, Permissions},
+    num::NonZeroUsize,
+    os::unix::fs::PermissionsExt,
+    path::Path,
+};
+
+/// What the wrong sample of the demo gets wrong, unless told otherwise.
+const DEMO_MISTAKE: &str = "pe-square-no-eh";
+
+/// The demo's suite: few scenes, all kinds of collisions.
+const DEMO_SUITE: &str = include_str!("demo.toml");
+
+pub(super) fn doctor() -> Result<u8> {
+    let reports = sandbox::doctor();
+    let mut text = String::new();
+    for report in &reports {
+        let state = match (report.active, report.required) {
+            (true, _) => "holds",
+            (false, true) => "MISSING",
+            (false, false) => "missing",
+        };
+        let _ = writeln!(text, "{state:<8} {:<24} {}", report.layer.name(), report.detail);
+        if let Some(remedy) = report.remedy {
+            let _ = writeln!(text, "{:<33} to do: {remedy}", "");
+        }
+    }
+    let safe = reports.iter().all(|report| report.active || !report.required);
+    text += if safe {
+        "\nPrograms can be graded safely on this machine.\n"
+    } else {
+        "\nA required layer is missing: `grade` refuses unless --unsafe-no-sandbox is given.\n"
+    };
+    console::print(text.as_bytes())?;
+    Ok(if safe { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}
+
+pub(super) fn demo(arguments: &Demo) -> Result<u8> {
+    let sample = match &arguments.sample {
+        Some(sample) => sample.clone(),
+        None => std::env::current_exe().context("where is this program?")?.with_file_name("fosssim-sample"),
+    };
+    if !sample.is_file() {
+        bail!(
+            "no sample program at {}: build it with `cargo build --release`, or name it with --sample",
+            sample.display()
+        );
+    }
+    let plan = plan::load(DEMO_SUITE, Path::new(".")).context("the demo's suite")?;
+    let mistake = arguments.mistake.as_deref().unwrap_or(DEMO_MISTAKE);
+    let backend = backend(false)?;
+    let cancellation = cancelled_by_signals();
+    let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let mut verdicts = Vec::new();
+    for (name, run) in [
+        ("right sample".to_owned(), plan.run.clone()),
+        (
+            format!("sample with mistake {mistake}"),
+            [&plan.run[..], &["--mistake".to_owned(), mistake.to_owned()]].concat(),
+        ),
+    ] {
+        let plan = plan::Plan { run, ..plan.clone() };
+        let submission = Submission { name, path: sample.clone() };
+        let options = BatchOptions { jobs, fail_fast: false, recorded: false };
+        let grades = batch::run(&plan, &[submission], &backend, None, options, &cancellation, &mut |_| {})?;
+        console::print(Format::Text.render(&grades).as_bytes())?;
+        if cancellation.is_cancelled() {
+            return Ok(exit::INTERRUPTED);
+        }
+        verdicts.push(grades.iter().map(|grade| grade.verdict).max());
+    }
+    if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
+        console::print(b"The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
+        Ok(exit::ACCEPTED)
+    } else {
+        bail!("the demo did not end as it should: the right sample must be accepted and the wrong one must not")
+    }
+}
+
+pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {
+    let backend = backend(false)?;
+    let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
+    // The programs run as another user when this is root, who has to reach them.
+    fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
+    let mut done = 0;
+    let table = selftest::run(&backend, Path::new(&arguments.compiler), folder.path(), |promise| {
+        done += 1;
+        if let selftest::Verdict::Broken(how) = &promise.verdict {
+            console::complain(format!("not held: {}: {how}\n", promise.attack).as_bytes());
+        } else if done % 20 == 0 {
+            console::complain(format!("{done} attacks so far\n").as_bytes());
+        }
+    })?;
+    let mut text = String::new();
+    for promise in &table.promises {
+        let (state, why) = match &promise.verdict {
+            selftest::Verdict::Held => ("held", String::new()),
+            selftest::Verdict::Broken(how) => ("NOT HELD", format!(" [{how}]")),
+            selftest::Verdict::NotTested(why) => ("not tested", format!(" [{why}]")),
+        };
+        let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
+    }
+    let broken = table.broken().count();
+    let untested = table.promises.len() - table.held() - broken;
+    let _ = writeln!(text, "\n{} promises held, {broken} not held, {untested} not tested here", table.held());
+    console::print(text.as_bytes())?;
+    Ok(if broken == 0 && table.held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}

@@ -1,0 +1,127 @@
+//! Arguments of the commands that run programs, as typed.
+use clap::{Args, Subcommand};
+use std::{num::NonZeroUsize, path::PathBuf};
+
+/// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  fosssim-oracle grade ./FOSSSim
+  fosssim-oracle grade submissions/ --suite course.toml --output grades
+  fosssim-oracle grade ./FOSSSim --format text --format gradescope=results.json
+
+A folder holds one submission per entry: a program, or a folder with a program of the name that --program gives; with
+--single the folder itself is one submission. When the suite has a [build] table, folders are built first.
+
+With --output (for several submissions always; fosssim-grades by default) results are kept as they come: an
+interrupted grading goes on where it stopped, and nothing is run twice unless the program, the scene or the rules
+changed. The folder gets grades.csv, grades.jsonl, scenes.csv and a log per run.")]
+pub(super) struct Grade {
+    /// Programs, or folders of submissions.
+    #[arg(required = true)]
+    pub(super) programs: Vec<PathBuf>,
+    /// The suite: a file, or one that comes with the program (t2m2, earlier).
+    #[arg(long, value_name = "SUITE", default_value = "t2m2")]
+    pub(super) suite: String,
+    /// The folder for results, logs and the journal.
+    #[arg(short, long, value_name = "DIR")]
+    pub(super) output: Option<PathBuf>,
+    /// A report: text, json, junit, gradescope, prairielearn, github, markdown or csv; with =FILE into a file.
+    #[arg(long, value_name = "FORMAT[=FILE]")]
+    pub(super) format: Vec<String>,
+    /// Runs at one time. One per core by default.
+    #[arg(short, long, value_name = "N")]
+    pub(super) jobs: Option<NonZeroUsize>,
+    /// The program's name in the folder of a submission.
+    #[arg(long, value_name = "NAME", default_value = "FOSSSim")]
+    pub(super) program: String,
+    /// A folder is one submission, not a folder of submissions.
+    #[arg(long)]
+    pub(super) single: bool,
+    /// Forget earlier results.
+    #[arg(long)]
+    pub(super) fresh: bool,
+    /// Stop a run at its first wrong step.
+    #[arg(long)]
+    pub(super) fail_fast: bool,
+    /// Judge against the recorded traces instead of the reference simulator: nothing is taken over from the submission,
+    /// so that everything after its first divergence differs.
+    #[arg(long)]
+    pub(super) recorded: bool,
+    /// Grade again whenever the program changes, until interrupted.
+    #[arg(long)]
+    pub(super) watch: bool,
+    /// Run programs without a sandbox, when this machine lacks one. Every report says so.
+    #[arg(long)]
+    pub(super) unsafe_no_sandbox: bool,
+}
+
+/// Writes and explains suites: what is graded, with what limits and points.
+#[derive(Debug, Subcommand)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle suite init > course.toml && fosssim-oracle suite check course.toml")]
+pub(super) enum Suite {
+    Init(SuiteInit),
+    Check(SuiteCheck),
+    Scenes(SuiteScenes),
+}
+
+/// Prints a commented suite to start from.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle suite init > course.toml")]
+pub(super) struct SuiteInit {
+    /// A suite that comes with the program (t2m2, earlier), instead of the commented template.
+    pub(super) name: Option<String>,
+}
+
+/// Finds the faults of a suite, and says what it would grade.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle suite check course.toml")]
+pub(super) struct SuiteCheck {
+    /// The suite: a file, or one that comes with the program.
+    pub(super) suite: String,
+}
+
+/// Lists the scenes that come with the program.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle suite scenes")]
+pub(super) struct SuiteScenes {}
+
+/// Shows the whole thing: grades a right and a wrong sample program in the sandbox.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle demo")]
+pub(super) struct Demo {
+    /// The sample program; by default fosssim-sample beside this program.
+    #[arg(long, value_name = "PROGRAM")]
+    pub(super) sample: Option<PathBuf>,
+    /// The mistake of the wrong one; fosssim-sample --list lists them.
+    #[arg(long, value_name = "ID")]
+    pub(super) mistake: Option<String>,
+}
+
+/// Says which layers of the sandbox hold on this machine, and what to install.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle doctor")]
+pub(super) struct Doctor {}
+
+/// Runs the suite of hostile programs on this machine, and prints which promises hold.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle selftest")]
+pub(super) struct Selftest {
+    /// The C compiler that builds the hostile programs.
+    #[arg(long, value_name = "PROGRAM", default_value = "cc")]
+    pub(super) compiler: String,
+}

@@ -1,0 +1,303 @@
+//! Grading programs as a user does: real processes in the real sandbox.
+//!
+//! The submissions are `fosssim-sample` under links that name their mistakes. Where the sandbox can't be had, the tests
+//! say so and are skipped.
+use crate::workspace::{Workspace, finish};
+use std::{
+    os::unix::fs::symlink,
+    path::Path,
+    process::{Command, Stdio},
+    time::Duration,
+};
+
+const SUITE: &str = "schema = 1\nname = \"test\"\n[limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
+                     [[group]]\nname = \"Impulses\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\ncredit = \"steps\"\n\
+                     [[group]]\nname = \"Zones\"\nscenes = [\"asset:GeometricTests/ball-*\"]\npoints = 10\n";
+
+/// A workspace with a suite, or nothing where programs can't be run safely.
+fn workspace() -> Option<Workspace> {
+    let workspace = Workspace::new();
+    workspace.write("suite.toml", SUITE);
+    let doctor = workspace.run(["doctor"]);
+    if doctor.code == Some(0) {
+        Some(workspace)
+    } else {
+        eprintln!("skipped: no sandbox here\n{}", doctor.out());
+        None
+    }
+}
+
+/// Puts sample submissions into `submissions/`; an empty name is the correct one.
+fn submit(workspace: &Workspace, mistakes: &[&str]) {
+    std::fs::create_dir_all(workspace.path("submissions")).expect("a folder");
+    for mistake in mistakes {
+        let name = if mistake.is_empty() { "fosssim-sample".to_owned() } else { format!("fosssim-sample.{mistake}") };
+        symlink(env!("CARGO_BIN_EXE_fosssim-sample"), workspace.path("submissions").join(name)).expect("a link");
+    }
+}
+
+/// Submission, verdict and points of every row of a grades.csv.
+fn rows(csv: &[u8]) -> Vec<(String, String, String)> {
+    let mut reader = csv::Reader::from_reader(csv);
+    let row = |record: csv::StringRecord| (record[0].to_owned(), record[1].to_owned(), record[2].to_owned());
+    reader.records().map(|record| row(record.expect("a row"))).collect()
+}
+
+#[test]
+fn a_right_and_a_wrong_program_get_their_reports() {
+    let Some(workspace) = workspace() else { return };
+    submit(&workspace, &["", "pe-square-no-eh"]);
+    let run = workspace.run(["grade", "submissions/fosssim-sample", "--suite", "suite.toml", "--format", "csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    assert!(run.out().lines().skip(1).all(|line| line.contains(",AC,")), "{}", run.shown());
+    let run = workspace.run([
+        "grade",
+        "submissions/fosssim-sample.pe-square-no-eh",
+        "--suite",
+        "suite.toml",
+        "--format=gradescope=results.json",
+        "--format=junit=junit.xml",
+        "--format=text",
+    ]);
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    assert!(run.out().contains("overlap polynomial of particle"), "{}", run.shown());
+    assert!(run.out().contains("coefficient of t^2"), "{}", run.shown());
+    let results: serde_json::Value = serde_json::from_slice(&workspace.read("results.json")).expect("JSON");
+    assert!(results["score"].as_f64().expect("a score") < 20.0);
+    assert!(String::from_utf8(workspace.read("junit.xml")).expect("text").contains("<failure"));
+    assert!(!workspace.exists("fosssim-grades"), "one program leaves nothing behind");
+}
+
+#[test]
+fn against_recordings_the_right_program_passes_too() {
+    let Some(workspace) = workspace() else { return };
+    submit(&workspace, &["", "response-half-plane-spares-fixed"]);
+    let right = workspace.run(["grade", "submissions/fosssim-sample", "--suite", "suite.toml", "--recorded"]);
+    assert_eq!(right.code, Some(0), "{}", right.shown());
+}
+
+#[test]
+fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() {
+    let Some(workspace) = workspace() else { return };
+    let cast = [
+        ("", "accepted"),
+        ("crash-midway", "run-time error"),
+        ("endless-loop", "time limit"),
+        ("escape-codes", "accepted"),
+        ("exit-one", "run-time error"),
+        ("flood-stdout", "output limit"),
+        ("forged-verdict", "wrong answer"),
+        ("huge-counts", "bad trace"),
+        ("leaves-children", "sandbox violation"),
+        ("no-output", "no output"),
+        ("sleep-forever", "time limit"),
+        ("trailing-bytes", "accepted"),
+        ("truncated-trace", "bad trace"),
+    ];
+    submit(&workspace, &cast.map(|(mistake, _)| mistake));
+    let whole = workspace.run(["grade", "submissions", "--suite", "suite.toml", "--output", "whole"]);
+    assert_eq!(whole.code, Some(1), "{}", whole.shown());
+    let verdicts: Vec<_> =
+        rows(&workspace.read("whole/grades.csv")).into_iter().map(|(_, verdict, _)| verdict).collect();
+    assert_eq!(verdicts, cast.map(|(_, verdict)| verdict), "{}", whole.shown());
+    assert!(!whole.out().contains('\u{1b}') && !whole.err().contains('\u{1b}'), "no escape code gets through");
+    let log = workspace.read("whole/logs/fosssim-sample.escape-codes/ImpulsesTests_off-centre-on-turning-edge.log");
+    assert!(!log.contains(&0x1b), "{}", String::from_utf8_lossy(&log));
+
+    // Interrupted as soon as the first results are kept, twice, then to its end.
+    for kept in [3, 12] {
+        let mut child = workspace
+            .command()
+            .args(["grade", "submissions", "--suite", "suite.toml", "--output", "parts"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("started");
+        let lines = || {
+            let journal = std::fs::read(workspace.path("parts/journal.jsonl")).unwrap_or_default();
+            journal.iter().filter(|byte| **byte == b'\n').count()
+        };
+        while lines() < kept && child.try_wait().expect("a state").is_none() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let stopped = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+        assert!(stopped.success());
+        assert_eq!(child.wait().expect("ended").code(), Some(130));
+    }
+    let resumed = workspace.run(["grade", "submissions", "--suite", "suite.toml", "--output", "parts"]);
+    assert_eq!(resumed.code, Some(1), "{}", resumed.shown());
+    let mut resumed = rows(&workspace.read("parts/grades.csv"));
+    let mut whole = rows(&workspace.read("whole/grades.csv"));
+    // How far a program that is killed came with its first scene may differ; verdicts may not, nor whole points.
+    for row in resumed.iter_mut().chain(&mut whole) {
+        row.2 = row.2.split('.').next().unwrap_or_default().to_owned();
+    }
+    assert_eq!(resumed, whole);
+    let journal = String::from_utf8(workspace.read("parts/journal.jsonl")).expect("text");
+    let mut keys: Vec<_> =
+        journal.lines().map(|line| line.split("\"key\":\"").nth(1).expect("a key")[..32].to_owned()).collect();
+    let lines = keys.len();
+    keys.sort();
+    keys.dedup();
+    assert_eq!(keys.len(), lines, "nothing was run twice");
+}
+
+#[test]
+fn what_can_not_be_run_is_explained() {
+    let Some(workspace) = workspace() else { return };
+    workspace.write("text", "no program");
+    workspace.write("script", "#!/no/such/interpreter\n");
+    for name in ["text", "script"] {
+        let path = workspace.path(name);
+        std::fs::set_permissions(path, std::os::unix::fs::PermissionsExt::from_mode(0o755)).expect("a mode");
+    }
+    workspace.write("not-executable", "#!/bin/sh\n");
+    std::fs::create_dir(workspace.path("empty")).expect("a folder");
+    for (program, words) in [
+        ("text", "not a program"),
+        ("script", "interpreter /no/such/interpreter"),
+        ("not-executable", "not executable"),
+    ] {
+        let run = workspace.run(["grade", program, "--suite", "suite.toml"]);
+        assert_eq!(run.code, Some(1), "{}", run.shown());
+        assert!(run.out().contains("RTE") && run.out().contains(words), "{program}: {}", run.shown());
+    }
+    for (words, arguments) in [
+        ("no submission at missing", vec!["grade", "missing"]),
+        ("holds no submission", vec!["grade", "empty"]),
+        ("no suite nowhere.toml", vec!["grade", "text", "--suite", "nowhere.toml"]),
+        ("no format yaml", vec!["grade", "text", "--format", "yaml"]),
+        ("only one format can go to standard output", vec!["grade", "text", "--format", "text", "--format", "csv"]),
+    ] {
+        let run = workspace.run(&arguments);
+        assert_eq!(run.code, Some(2), "{}", run.shown());
+        assert!(run.err().contains(words), "{}", run.shown());
+    }
+    workspace.write("broken.toml", "schema = 1\nname = \"x\"\n[[group]]\nname = \"g\"\nscenes = [\"asset:No/*\"]\n");
+    let run = workspace.run(["suite", "check", "broken.toml"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("broken.toml:5:11: no embedded scene matches asset:No/*"), "{}", run.shown());
+}
+
+#[test]
+fn sources_are_built_in_the_sandbox_and_a_failed_build_is_a_compile_error() {
+    let Some(workspace) = workspace() else { return };
+    if !Path::new("/usr/bin/cc").exists() {
+        eprintln!("skipped: no C compiler");
+        return;
+    }
+    let build = "[build]\ncommand = [\"cc\", \"-o\", \"FOSSSim\", \"main.c\"]\nprogram = \"FOSSSim\"\n[[group]]";
+    workspace.write("build.toml", SUITE.replacen("[[group]]", build, 1));
+    workspace.write("class/broken/main.c", "int main() { return undeclared; }\n");
+    workspace.write("class/lazy/main.c", "int main() { return 0; }\n");
+    let run = workspace.run(["grade", "class", "--suite", "build.toml", "--output", "out"]);
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    let verdicts: Vec<_> = rows(&workspace.read("out/grades.csv")).into_iter().map(|(_, verdict, _)| verdict).collect();
+    assert_eq!(verdicts, ["compile error", "no output"], "{}", run.shown());
+    assert!(run.out().contains("undeclared"), "the compiler's words are shown: {}", run.shown());
+    assert!(!workspace.exists("class/lazy/FOSSSim"), "the submission is not changed");
+}
+
+#[test]
+fn two_graders_do_not_share_a_folder() {
+    let Some(workspace) = workspace() else { return };
+    submit(&workspace, &[""]);
+    std::fs::create_dir(workspace.path("out")).expect("a folder");
+    let _held = fosssim_oracle::suite::journal::Journal::open(&workspace.path("out"), false).expect("a journal");
+    let run = workspace.run(["grade", "submissions/fosssim-sample", "--suite", "suite.toml", "--output", "out"]);
+    assert_eq!(run.code, Some(2), "{}", run.shown());
+    assert!(run.err().contains("another grader works in out"), "{}", run.shown());
+}
+
+#[test]
+fn suites_are_written_checked_and_explained() {
+    let workspace = Workspace::new();
+    let template = workspace.run(["suite", "init"]);
+    workspace.write("course.toml", &template.stdout);
+    let check = workspace.run(["suite", "check", "course.toml"]);
+    assert_eq!(check.code, Some(0), "{}", check.shown());
+    assert!(check.out().contains("Continuous-time detection: 40 points"), "{}", check.out());
+    let scenes = workspace.run(["suite", "scenes"]);
+    assert!(scenes.out().lines().count() >= 48 && scenes.out().starts_with("asset:"), "{}", scenes.out());
+}
+
+#[test]
+fn the_demo_ends_well() {
+    let Some(workspace) = workspace() else { return };
+    let sample = env!("CARGO_BIN_EXE_fosssim-sample");
+    let run = workspace.run(["demo", "--sample", sample]);
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    assert!(run.out().ends_with("everything works on this machine.\n"), "{}", run.out());
+}
+
+#[test]
+fn the_gradescope_zip_works_in_its_layout() {
+    let Some(workspace) = workspace() else { return };
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    if Command::new("python3").arg("--version").output().is_err() {
+        eprintln!("skipped: no python3");
+        return;
+    }
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let mut build = Command::new(root.join("scripts/gradescope/build"));
+    build.arg(workspace.path("autograder.zip")).args(["--binary", env!("CARGO_BIN_EXE_fosssim-oracle")]);
+    build.args(["--suite".as_ref(), workspace.path("suite.toml").as_os_str()]);
+    let built = finish(build.env_clear().env("PATH", &path));
+    assert_eq!(built.code, Some(0), "{}", built.shown());
+    let layout = workspace.path("autograder");
+    for folder in ["source", "submission", "results"] {
+        std::fs::create_dir_all(layout.join(folder)).expect("a folder");
+    }
+    let mut unzip = Command::new("python3");
+    unzip.args(["-m", "zipfile", "-e"]).arg(workspace.path("autograder.zip")).arg(layout.join("source"));
+    assert!(unzip.status().expect("python3").success());
+    let run_autograder = || {
+        let mut run = Command::new("bash");
+        run.arg(layout.join("source/run_autograder")).env_clear().env("PATH", &path).env("AUTOGRADER_ROOT", &layout);
+        let run = finish(run.current_dir(&layout));
+        let results = std::fs::read(layout.join("results/results.json")).expect("results whatever happens");
+        (run, serde_json::from_slice::<serde_json::Value>(&results).expect("JSON"))
+    };
+    // `unzip` of Python keeps no permission bits; Gradescope does.
+    let program = layout.join("source/fosssim-oracle");
+    std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).expect("a mode");
+
+    let (run, results) = run_autograder();
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    assert_eq!(results["score"], 0.0, "no program was submitted: {results}");
+    std::fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), layout.join("submission/FOSSSim")).expect("a submission");
+    let (run, results) = run_autograder();
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    assert_eq!(results["score"], 20.0, "{results}");
+    std::fs::write(layout.join("source/suite/suite.toml"), "nonsense").expect("a broken suite");
+    let (run, results) = run_autograder();
+    assert_eq!(run.code, Some(1), "our own fault is no grading");
+    assert!(results.get("score").is_none(), "{results}");
+}
+
+#[test]
+fn a_course_script_counts_with_the_drop_in() {
+    let workspace = Workspace::new();
+    if Command::new("python3").arg("--version").output().is_err() {
+        eprintln!("skipped: no python3");
+        return;
+    }
+    for name in ["SimpleTests/two-balls-overlap-at-step-end", "ContinuousTimeTests/spinning-edge-sweeps-balls"] {
+        let scene = fosssim_oracle::suite::library::scene(name).expect("an embedded scene");
+        workspace.write(format!("scenes/{name}.xml"), scene);
+    }
+    symlink(env!("CARGO_BIN_EXE_fosssim-oracle"), workspace.path("FOSSSimOracle")).expect("a link");
+    let count = |program: &Path| {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/course/run_tests.py");
+        let mut run = Command::new("python3");
+        run.arg(script).arg("--program").arg(program).arg("--oracle").arg(workspace.path("FOSSSimOracle"));
+        run.arg(workspace.path("scenes")).stdout(Stdio::piped());
+        finish(&mut run)
+    };
+    let right = count(Path::new(env!("CARGO_BIN_EXE_fosssim-sample")));
+    assert!(right.out().ends_with("2 passed, 0 failed\n"), "{}", right.shown());
+    let wrong = workspace.path("fosssim-sample.pe-square-no-eh");
+    symlink(env!("CARGO_BIN_EXE_fosssim-sample"), &wrong).expect("a link");
+    let wrong = count(&wrong);
+    assert!(wrong.out().ends_with("1 passed, 1 failed\n"), "{}", wrong.shown());
+}

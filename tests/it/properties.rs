@@ -1,0 +1,91 @@
+//! Properties of judging that hold for every scene and every damage.
+use fosssim_oracle::{
+    judge::{
+        Outcome, Overall, Stop,
+        parity::{self, Options},
+    },
+    scene::{self, Scene},
+    sim::{RootSearch, Simulation},
+    suite::library,
+    trace::{Layout, Recorder},
+};
+use proptest::prelude::*;
+
+fn embedded(name: &str) -> Scene {
+    scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene
+}
+
+fn simulate(scene: &Scene) -> Vec<u8> {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut recorder).expect("a step");
+    }
+    recorder.finish().expect("memory").0
+}
+
+fn judge(scene: &Scene, trace: &[u8], threads: usize, root_search: RootSearch) -> Outcome {
+    parity::judge(scene, trace, &Options { threads, root_search, stop_at_first: false }, &mut ())
+}
+
+#[test]
+fn what_is_simulated_passes_and_the_audit_agrees() {
+    let mut searched = 0;
+    for name in library::names() {
+        let scene = embedded(name);
+        let trace = simulate(&scene);
+        let outcome = judge(&scene, &trace, 2, RootSearch::Audit);
+        assert_eq!(outcome.overall, Overall::Passed, "{name}: {:?} {:?}", outcome.first_divergence, outcome.stop);
+        assert_eq!(outcome.searches.disagreements, 0, "{name}");
+        assert!(!outcome.trailing_bytes && outcome.damage.is_none());
+        searched += outcome.searches.searched;
+    }
+    assert!(searched > 10_000, "the audit searched {searched} times only");
+}
+
+#[test]
+fn a_run_can_be_cut_short_at_its_first_wrong_step() {
+    let scene = embedded(library::names().find(|name| name.starts_with("SimpleTests/")).expect("a scene"));
+    let mut trace = simulate(&scene);
+    trace[..8].copy_from_slice(&1e3_f64.to_le_bytes());
+    let options = Options { threads: 1, root_search: RootSearch::WhereNeeded, stop_at_first: true };
+    let outcome = parity::judge(&scene, &trace[..], &options, &mut ());
+    assert_eq!((outcome.steps_judged, outcome.wrong_steps, outcome.overall), (1, 1, Overall::Failed));
+}
+
+/// Everything that a report shows; NaN is compared as text.
+fn told(outcome: &Outcome) -> String {
+    let mut text = format!("{outcome:?}");
+    let searches = text.rfind("searches").expect("the last field");
+    text.truncate(searches);
+    text
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    /// Whatever bytes change: no panic, no endless loop, and every number of threads says the same.
+    #[test]
+    fn damaged_traces_are_judged_alike_on_all_threads(
+        which in 0_usize..1000,
+        changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20),
+        cut in proptest::option::of(any::<prop::sample::Index>()),
+    ) {
+        let names: Vec<_> = library::names().collect();
+        let scene = embedded(names[which % names.len()]);
+        let mut trace = simulate(&scene);
+        for (place, byte) in changes {
+            let place = place.index(trace.len());
+            trace[place] ^= byte;
+        }
+        if let Some(cut) = cut {
+            trace.truncate(cut.index(trace.len()));
+        }
+        let one = judge(&scene, &trace, 1, RootSearch::WhereNeeded);
+        let many = judge(&scene, &trace, 3, RootSearch::Always);
+        prop_assert_eq!(told(&one), told(&many));
+        if let Some(Stop::Trace { frame, .. }) = one.stop {
+            prop_assert!(frame <= Layout::of(&scene).records());
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Judging against a recording instead of the simulator.
+use fosssim_oracle::{
+    judge::{Detail, Overall, Stop, parity, recorded},
+    scene::{self, Collision, Scene},
+    sim::{RootSearch, Simulation},
+    suite::library,
+    trace::{Layout, Recorder},
+};
+
+fn embedded(name: &str) -> Scene {
+    scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene
+}
+
+fn simulate(scene: &Scene) -> Vec<u8> {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut recorder).expect("a step");
+    }
+    recorder.finish().expect("memory").0
+}
+
+#[test]
+fn the_recording_itself_passes_for_every_embedded_scene() {
+    for name in library::names() {
+        let scene = embedded(name);
+        let recording = zstd::decode_all(library::recording(name).expect("a recording")).expect("zstd");
+        let outcome = recorded::judge(&scene, &simulate(&scene)[..], &recording[..], &mut ()).expect("a recording");
+        assert_eq!(outcome.overall, Overall::Passed, "{name}: {:?}", outcome.first_divergence);
+        assert_eq!(outcome.steps_judged, scene.steps());
+    }
+}
+
+#[test]
+fn wrong_responses_that_lock_step_lets_pass_are_found_at_their_step() {
+    let name = "ContinuousTimeTests/head-on-equal-masses";
+    let scene = embedded(name);
+    let mut bouncy = scene.clone();
+    bouncy.collision = Collision::ContinuousTime { restitution: 0.25 };
+    let (right, wrong) = (simulate(&scene), simulate(&bouncy));
+    let lock_step = parity::judge(&scene, &wrong[..], &parity::Options::default(), &mut ());
+    assert_eq!(lock_step.overall, Overall::Passed, "the original never looks at responses here");
+    let outcome = recorded::judge(&scene, &wrong[..], &right[..], &mut ()).expect("a recording");
+    assert_eq!(outcome.overall, Overall::Failed);
+    let first = outcome.first_divergence.expect("a divergence");
+    assert!(matches!(first.detail, Detail::Position { .. } | Detail::Velocity { .. }), "{first}");
+    let layout = Layout::of(&scene);
+    let same = right.iter().zip(&wrong).take_while(|(one, other)| one == other).count();
+    // All frames before the first difference are as large as the initial one plus equal logs; the step must not come
+    // before the first differing byte's share of the trace, nor after it by more than one step.
+    let share = same as f64 / right.len() as f64 * f64::from(layout.steps);
+    assert!((f64::from(first.step) - share).abs() <= 2.0, "step {} at byte {same} of {}", first.step, right.len());
+}
+
+#[test]
+fn another_start_is_a_difference_of_step_0() {
+    let scene = embedded("ContinuousTimeTests/head-on-equal-masses");
+    let right = simulate(&scene);
+    let mut wrong = right.clone();
+    wrong[..8].copy_from_slice(&77.0_f64.to_le_bytes());
+    let outcome = recorded::judge(&scene, &wrong[..], &right[..], &mut ()).expect("a recording");
+    assert_eq!(outcome.first_divergence.expect("a divergence").step, 0);
+}
+
+#[test]
+fn cut_traces_have_no_verdict_and_cut_recordings_are_a_fault() {
+    let scene = embedded("ContinuousTimeTests/head-on-equal-masses");
+    let right = simulate(&scene);
+    let half = &right[..right.len() / 2];
+    let outcome = recorded::judge(&scene, half, &right[..], &mut ()).expect("a recording");
+    assert_eq!(outcome.overall, Overall::None);
+    assert!(matches!(outcome.stop, Some(Stop::Trace { .. })));
+    let error = recorded::judge(&scene, &right[..], half, &mut ()).expect_err("half a recording").to_string();
+    assert!(error.starts_with("the recording can't be used: frame ") && error.ends_with("record it again"), "{error}");
+}
