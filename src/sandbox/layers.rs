@@ -138,8 +138,8 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
             probe.notify.clone(),
             "a violation is reported with the call's name",
             false,
-            "use Linux 5.5 or newer; until then a violation is reported without its name, and a program may execute \
-             itself again",
+            "use Linux 5.5 or newer; until then a violation is reported without its name, a program may execute itself \
+             again, and an ordinary user's build steps cannot set permission bits",
         ),
         report(
             Layer::FileRules,

@@ -1,6 +1,7 @@
 // promise: A build step can change permission bits in its own folder only.
 // expect: exited 0
 // policy: tools
+// needs: named violations
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

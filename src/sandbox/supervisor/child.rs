@@ -10,6 +10,7 @@ use std::os::fd::{AsFd, AsRawFd, OwnedFd};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::UnixStream;
 use std::path::Path;
+use std::time::Duration;
 
 use landlock::RulesetCreated;
 
@@ -144,9 +145,25 @@ fn filter_calls(plan: &Plan) -> io::Result<()> {
     Ok(())
 }
 
-/// Executes the program by its path, or by the open file when the path is closed to the sandbox's user. Returns only
-/// the error.
+/// Executes the program; returns only the error.
+///
+/// A file that was just written can be busy for a moment: another thread of the grader may have forked while the file
+/// was open for writing, and its child holds a copy of the descriptor until it executes. So this is tried again.
 fn execute(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
+    const TRIES: u32 = 25;
+    const PAUSE: Duration = Duration::from_millis(20);
+    for _ in 1..TRIES {
+        let error = execute_once(plan, arguments, environment);
+        if error.raw_os_error() != Some(libc::ETXTBSY) {
+            return error;
+        }
+        std::thread::sleep(PAUSE);
+    }
+    execute_once(plan, arguments, environment)
+}
+
+/// Executes the program by its path, or by the open file when the path is closed to the sandbox's user.
+fn execute_once(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
     let Ok(path) = c_string(&plan.order.program) else { return io::Error::from_raw_os_error(libc::EINVAL) };
     let open = |opened: &Opened| sys::execute_open(opened.file.as_fd(), arguments, environment);
     match &plan.opened {
