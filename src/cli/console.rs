@@ -3,6 +3,7 @@ use crate::{
     judge::parity::{Progress, Remark},
     report::style::Style,
 };
+use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
     io::{self, IsTerminal, Write},
@@ -21,9 +22,9 @@ pub(super) fn style() -> Style {
 ///
 /// # Errors
 /// Anything else, such as a full disk.
-pub(super) fn print(text: &[u8]) -> io::Result<()> {
+pub(super) fn print(text: &[u8]) -> Result<()> {
     let mut stdout = io::stdout().lock();
-    unless_closed(stdout.write_all(text).and_then(|()| stdout.flush()))
+    unless_closed(stdout.write_all(text).and_then(|()| stdout.flush())).context("cannot write to standard output")
 }
 
 /// Prints to standard error; there is nowhere left to report a failure.

@@ -1,6 +1,8 @@
 //! `check`: reports on right, wrong and damaged traces.
 use super::workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace, finish, trace_of};
 use fosssim_oracle::{
+    judge::parity,
+    report::{check::Check, style::Style},
     scene,
     trace::{Frame, Layout, Reader, Writer},
 };
@@ -122,6 +124,34 @@ fn not_a_number_is_written_as_a_string() {
     let (text, json) = reports(DRIFT, &trace);
     assert_eq!(text.code, Some(1));
     assert!(matches!(json["parity"]["accumulated_position_residual"].as_str(), Some("nan" | "-nan")), "{json:#}");
+}
+
+#[test]
+fn a_state_that_leads_nowhere_ends_with_a_report() {
+    let trace = changed(BEAM, |frames| frames[0].state.positions[4] = f64::NAN);
+    let (text, json) = reports(BEAM, &trace);
+    assert_eq!((text.code, json["problem"]["kind"].as_str()), (Some(1), Some("step_without_result")), "{json:#}");
+    insta::assert_snapshot!("step_without_result", text.shown());
+}
+
+#[test]
+fn colours_only_decorate() {
+    let scene = scene::read("scene", BOUNCE.as_bytes()).unwrap().scene;
+    let trace = changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0));
+    let outcome = parity::judge(&scene, &trace[..], &parity::Options::default(), &mut ());
+    let check = Check { scene: "s", trace: "t", outcome: &outcome, audit: true };
+    let coloured = check.text(Style::Colour);
+    let mut plain = String::new();
+    for piece in coloured.split('\x1b') {
+        // The first piece has no code before it.
+        plain += if plain.is_empty() && !coloured.starts_with('\x1b') {
+            piece
+        } else {
+            piece.split_once('m').map_or("", |(_, text)| text)
+        };
+    }
+    assert_ne!(coloured, plain);
+    assert_eq!(check.text(Style::Plain), plain);
 }
 
 #[test]

@@ -108,6 +108,14 @@ fn what_makes_the_original_die_gets_a_clear_message() {
     workspace.write("huge.bin", huge);
     let run = workspace.original(["-s", "scene.xml", "-d", "0", "-i", "huge.bin"]);
     insta::assert_snapshot!("original_huge_count", run.shown());
+    // A state that is not a number leads the original's root finder into an endless loop.
+    let mut nan = trace_of(BEAM);
+    nan[32..40].copy_from_slice(&f64::NAN.to_le_bytes());
+    workspace.write("nan.bin", nan);
+    workspace.write("beam.xml", BEAM);
+    let run = workspace.original(["-s", "beam.xml", "-d", "0", "-i", "nan.bin"]);
+    insta::assert_snapshot!("original_endless_search", run.shown());
+    assert!(!workspace.exists("residual.txt"));
     workspace.write("broken.xml", "<scene><duration");
     let run = workspace.original(["-s", "broken.xml", "-d", "0", "-o", "x"]);
     insta::assert_snapshot!("original_broken_scene", run.shown());
@@ -163,6 +171,8 @@ fn names_and_descriptions_that_are_not_text_pass_through() {
     let name = OsStr::from_bytes(b"sc\xe8ne.xml");
     workspace.write(name, bytes);
     let trace = OsStr::from_bytes(b"tr\xe0ce.bin");
+    let missing = workspace.original([OsStr::new("-s"), OsStr::from_bytes(b"n\xf6.xml"), "-d".as_ref(), "0".as_ref()]);
+    assert!(missing.stderr.ends_with(b" XML scene file n\xf6.xml. Failed to read file.\n"), "{}", missing.err());
     let run = workspace.original([OsStr::new("-d"), "0".as_ref(), "-s".as_ref(), name, "-o".as_ref(), trace]);
     assert_eq!(run.code, Some(0), "{}", run.shown());
     let holds = |bytes: &[u8]| run.stdout.windows(bytes.len()).any(|window| window == bytes);

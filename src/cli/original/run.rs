@@ -78,7 +78,7 @@ fn complain(text: &str) -> u8 {
 /// Reads the scene as the original does. A directory opens and reads as empty text.
 fn load(arguments: &Arguments) -> Result<(OriginalScene, Option<Identity>), Refusal> {
     let name = Path::new(&arguments.scene);
-    let unreadable = || Refusal::unreadable(&arguments.scene.to_string_lossy());
+    let unreadable = || Refusal::unreadable(arguments.scene.as_bytes());
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name).map_err(|_| unreadable())?;
     let metadata = file.metadata().map_err(|_| unreadable())?;
     let bytes = if metadata.is_dir() {

@@ -61,12 +61,15 @@ pub enum RefusalKind {
 }
 
 impl Refusal {
-    /// The original's message about a scene file that cannot be opened (scene-format.md 1).
+    /// The original's message about a scene file that cannot be opened (scene-format.md 1). The name may hold any
+    /// bytes.
     #[must_use]
-    pub fn unreadable(name: &str) -> Self {
-        let text = format!("XML scene file {name}. Failed to read file.");
-        let stderr = format!("\x1b[31;1mERROR IN TWODSCENEXMLPARSER:\x1b[m {text}\n").into_bytes();
-        Self { kind: RefusalKind::Message, stderr, exit_code: 1, explanation: text }
+    pub fn unreadable(name: &[u8]) -> Self {
+        let stderr =
+            [&b"\x1b[31;1mERROR IN TWODSCENEXMLPARSER:\x1b[m XML scene file "[..], name, b". Failed to read file.\n"]
+                .concat();
+        let explanation = format!("XML scene file {}. Failed to read file.", String::from_utf8_lossy(name));
+        Self { kind: RefusalKind::Message, stderr, exit_code: 1, explanation }
     }
 
     /// A message of the scene parser. `text` may hold bytes of the scene that are not UTF-8.

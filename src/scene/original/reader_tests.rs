@@ -283,7 +283,7 @@ fn broken_xml_is_a_crash() {
 #[test]
 fn an_unreadable_file_has_its_own_message() {
     assert_eq!(
-        String::from_utf8_lossy(&Refusal::unreadable("a.xml").stderr),
+        String::from_utf8_lossy(&Refusal::unreadable(b"a.xml").stderr),
         "\u{1b}[31;1mERROR IN TWODSCENEXMLPARSER:\u{1b}[m XML scene file a.xml. Failed to read file.\n"
     );
 }
