@@ -19,6 +19,7 @@ mod sandbox;
 mod scenes_corpus;
 mod scenes_props;
 mod simulate;
+mod summaries;
 mod trace;
 mod trace_props;
 mod verdicts;

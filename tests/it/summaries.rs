@@ -1,0 +1,50 @@
+//! For every embedded scene a readable summary of what the reference does there, as a snapshot: a change of behaviour
+//! shows as a diff that `cargo insta review` accepts or rejects.
+use fosssim_oracle::{
+    scene,
+    sim::{RootSearch, Simulation},
+    suite::library,
+    trace::{Counts, Layout, Recorder, Summary},
+};
+
+#[test]
+fn summaries_of_all_embedded_scenes() {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("summaries");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    let mut scenes = 0;
+    for name in library::names() {
+        let scene = scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene;
+        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        let mut observers =
+            (Recorder::start(Vec::new(), Layout::of(&scene), simulation.state()), Counts::default());
+        for _ in 0..scene.steps() {
+            simulation.step(&mut observers).expect("a step");
+        }
+        let (recorder, counts) = observers;
+        let trace = recorder.finish().expect("memory").0;
+        let text = format!("{}{}", described(&counts), Summary::of(&scene, &trace[..]));
+        settings.bind(|| insta::assert_snapshot!(name.replace('/', "--"), text));
+        scenes += 1;
+    }
+    assert!(scenes >= 48, "{scenes} scenes");
+}
+
+fn described(counts: &Counts) -> String {
+    format!(
+        "passes         {} simple, {} continuous-time, {} impulse, {} geometric\n\
+         calls          {} particle-particle, {} particle-edge, {} particle-half-plane\n\
+         hits           {} particle-particle, {} particle-edge, {} particle-half-plane\n",
+        counts.simple_passes,
+        counts.continuous_time_passes,
+        counts.impulse_passes,
+        counts.geometric_passes,
+        counts.calls[0],
+        counts.calls[1],
+        counts.calls[2],
+        counts.hits[0],
+        counts.hits[1],
+        counts.hits[2],
+    )
+}
