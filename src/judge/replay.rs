@@ -68,7 +68,12 @@ pub(super) fn judge<R: Read + Send>(
     }
     replay.outcome.damage = replay.damage.take();
     progress.begins();
+    let (mut current, mut next) = (Batch::default(), Batch::default());
+    let mut stop = replay.read_batch(&mut current);
+    // A trace that fits into one batch is judged before threads have started, unless somebody asks for them.
+    let is_short = stop.is_some() || replay.complete();
     let threads = match options.threads {
+        0 if is_short => 1,
         0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
         given => given,
     }
@@ -77,8 +82,6 @@ pub(super) fn judge<R: Read + Send>(
         .map(|_| Worker { simulation: Simulation::new(scene, options.root_search), buffers: Buffers::default() })
         .collect();
     let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten();
-    let (mut current, mut next) = (Batch::default(), Batch::default());
-    let mut stop = replay.read_batch(&mut current);
     loop {
         let mut stop_after = None;
         match &pool {
