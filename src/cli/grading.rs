@@ -5,7 +5,7 @@ use std::{num::NonZeroUsize, path::PathBuf};
 /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Examples:
+Example:
   fosssim-oracle grade ./FOSSSim
   fosssim-oracle grade submissions/ --suite course.toml --output grades
   fosssim-oracle grade ./FOSSSim --format text --format gradescope=results.json

@@ -364,3 +364,17 @@ fn an_endless_input_is_read_no_further_than_the_scene_asks() {
     let finite = workspace.run(["check", "scene.xml", "zeros.bin", "--format", "json"]);
     assert_eq!(run.out().replace("/dev/zero", "zeros.bin"), finite.out());
 }
+
+#[test]
+fn the_bundled_trace_of_the_readme_shows_its_mistake() {
+    let workspace = Workspace::new();
+    let trace = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/traces/flawed.bin");
+    let run = workspace.run([
+        "check".as_ref(),
+        "asset:ContinuousTimeTests/spinning-edge-sweeps-balls".as_ref(),
+        trace.as_os_str(),
+    ]);
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    let out = run.out();
+    assert!(out.starts_with("WRONG ANSWER") && out.contains("coefficient of t^2"), "{out}");
+}

@@ -104,6 +104,14 @@ fn every_command_has_help_with_an_example() {
     let workspace = Workspace::new();
     insta::assert_snapshot!("help", workspace.run(["--help"]).shown());
     for command in [
+        &["grade"][..],
+        &["suite"],
+        &["suite", "init"],
+        &["suite", "check"],
+        &["suite", "scenes"],
+        &["demo"],
+        &["doctor"],
+        &["selftest"],
         &["simulate"][..],
         &["check"],
         &["trace"],
