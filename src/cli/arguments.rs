@@ -203,9 +203,15 @@ pub(super) struct Completions {
     pub(super) shell: Shell,
 }
 
-/// Prints the manual page.
+/// Prints the manual page, or that of a command.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  fosssim-oracle man | man -l -")]
-pub(super) struct Man {}
+  fosssim-oracle man | man -l -
+  fosssim-oracle man trace diff | man -l -
+
+The page refers to those of the commands: fosssim-oracle-trace-diff(1) is what man trace diff prints.")]
+pub(super) struct Man {
+    /// A command, such as check or trace diff. Without it the page is about the program.
+    pub(super) command: Vec<String>,
+}

@@ -33,7 +33,7 @@ impl Output {
     /// # Errors
     /// When the output can't be written, or is one of `inputs`.
     pub(super) fn create(name: &Path, inputs: &[Identity]) -> Result<Self> {
-        if name == Path::new("-") || name == Path::new("/dev/stdout") {
+        if ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].into_iter().any(|own| name == Path::new(own)) {
             return Ok(Self::Stdout);
         }
         Self::create_file(name, inputs).with_context(|| format!("cannot write {}", name.display()))
@@ -41,7 +41,7 @@ impl Output {
 
     fn create_file(name: &Path, inputs: &[Identity]) -> Result<Self> {
         let mut target = name.to_owned();
-        let mut mode = 0o666;
+        let mut mode = None;
         match fs::metadata(name) {
             Ok(existing) => {
                 let kind = existing.file_type();
@@ -50,8 +50,7 @@ impl Output {
                 } else if kind.is_dir() {
                     bail!("it is a directory; name a file inside");
                 } else if kind.is_char_device() {
-                    let device = OpenOptions::new().write(true).custom_flags(libc::O_NONBLOCK).open(name)?;
-                    return Ok(Self::Device(device, target));
+                    return Ok(Self::Device(open_for_writing(OpenOptions::new().write(true), name)?, target));
                 } else if !kind.is_file() {
                     bail!("it is a pipe, socket or block device; use `-` for standard output");
                 }
@@ -59,7 +58,7 @@ impl Output {
                 OpenOptions::new().write(true).open(name)?;
                 // Replaced is the file that a symbolic link points to, not the link.
                 target = name.canonicalize()?;
-                mode = existing.permissions().mode();
+                mode = Some(existing.permissions().mode() & 0o777);
             }
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 if name.symlink_metadata().is_ok() {
@@ -72,15 +71,24 @@ impl Output {
             Err(error) => return Err(error.into()),
         }
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if folder.symlink_metadata().is_err_and(|error| error.kind() == io::ErrorKind::NotFound) {
+            bail!("there is no folder {}; make it first", folder.display());
+        }
         clean_up_when_interrupted();
         let mut pending = pending();
         let temporary = tempfile::Builder::new()
             .prefix(".fosssim-oracle-")
-            .permissions(Permissions::from_mode(mode))
+            .permissions(Permissions::from_mode(mode.unwrap_or(0o666)))
             .tempfile_in(folder)
+            // The error itself would name the temporary file, which nobody has asked for.
+            .map_err(|error| io::Error::from(error.kind()))
             .with_context(|| format!("no file can be made in {}", folder.display()))?;
         pending.push(temporary.path().to_owned());
         drop(pending);
+        if let Some(mode) = mode {
+            // The mode of a new file loses what the umask forbids; that of a replaced one must stay as it was.
+            temporary.as_file().set_permissions(Permissions::from_mode(mode))?;
+        }
         Ok(Self::File { temporary, target })
     }
 
@@ -155,6 +163,21 @@ impl Write for Output {
 /// When it can't be written; the old file, if there is one, is unharmed.
 pub(super) fn write(name: &Path, inputs: &[Identity], bytes: &[u8]) -> Result<()> {
     Output::create(name, inputs)?.finish_with(bytes)
+}
+
+/// Opens for writing without waiting for a pipe's reader, whose absence is an error. What is opened waits, when it is
+/// written to, until there is room.
+///
+/// # Errors
+/// When it can't be opened.
+pub(super) fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> {
+    let first = options.clone().custom_flags(libc::O_NONBLOCK).open(name)?;
+    let kind = first.metadata()?.file_type();
+    if kind.is_fifo() || kind.is_char_device() {
+        // There is a reader. Through `first` a full pipe would be an error; through a second opening it is waited for.
+        return options.open(name);
+    }
+    Ok(first)
 }
 
 /// Temporary files that an interrupt has to remove.

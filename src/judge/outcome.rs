@@ -113,7 +113,8 @@ pub enum Unreadable {
     Io,
 }
 
-/// Damage that the original's reading passes over in silence.
+/// Damage that the original's reading passes over in silence; before a step without result also a number in the trace's
+/// state that is not finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Damage {
     /// The frame, from 0.
@@ -149,7 +150,7 @@ pub struct Outcome {
     pub steps: u32,
     /// Why grading stopped early.
     pub stop: Option<Stop>,
-    /// The first damage that the original's reading passes over in silence.
+    /// The first damage that the original's reading passes over in silence, see [`Damage`].
     pub damage: Option<Damage>,
     /// Whether bytes follow the last record; the original never looks at them.
     pub trailing_bytes: bool,

@@ -33,6 +33,8 @@ const MOST_THREADS: usize = 8;
 struct Slot {
     step: u32,
     before: State,
+    /// Byte offset of the record that `before` comes from.
+    before_at: u64,
     mid: State,
     end: LenientFrame,
     damage: Option<Damage>,
@@ -141,6 +143,8 @@ struct Replay<R> {
     shape: Shape,
     /// The end state of the last step that was read.
     state: State,
+    /// Byte offset of its record.
+    state_at: u64,
     steps_read: u32,
     /// Damage of the record that could not be read at last.
     damage: Option<Damage>,
@@ -155,6 +159,7 @@ impl<R: Read> Replay<R> {
             reader: Lenient::new(trace, layout),
             shape: Shape { layout, logs_impulses },
             state: State::default(),
+            state_at: 0,
             steps_read: 0,
             damage: None,
             outcome: Outcome::empty(layout.steps),
@@ -221,6 +226,7 @@ impl<R: Read> Replay<R> {
         slot.damage = None;
         slot.error = None;
         copy_state(&mut slot.before, &self.state);
+        slot.before_at = self.state_at;
         let mut damage = None;
         let mut read = Ok(());
         if self.shape.layout.polynomials {
@@ -236,6 +242,7 @@ impl<R: Read> Replay<R> {
         slot.damage = damage;
         read?;
         copy_state(&mut self.state, &slot.end.state);
+        self.state_at = self.reader.record_offset();
         self.steps_read += 1;
         Ok(())
     }
@@ -246,6 +253,9 @@ impl<R: Read> Replay<R> {
             let slot = lock(slot);
             progress.step_begins(slot.step);
             let outcome = &mut self.outcome;
+            if outcome.damage.is_none() && slot.error.is_some() {
+                outcome.damage = not_finite(slot, self.shape.layout);
+            }
             if outcome.damage.is_none() {
                 outcome.damage = slot.damage.take();
             }
@@ -269,6 +279,24 @@ impl<R: Read> Replay<R> {
         }
         false
     }
+}
+
+/// The first number that is not finite in the state that a step starts from, with its place in the trace.
+fn not_finite(slot: &Slot, layout: Layout) -> Option<Damage> {
+    let State { positions, velocities } = &slot.before;
+    let (index, value) = positions.iter().chain(velocities).enumerate().find(|(_, value)| !value.is_finite())?;
+    let (prefix, place) = match index.checked_sub(positions.len()) {
+        None => ("", index),
+        Some(place) => ("velocity ", place),
+    };
+    let axis = if place.is_multiple_of(2) { 'x' } else { 'y' };
+    let step = slot.step - 1;
+    Some(Damage {
+        frame: u64::from(step) * u64::from(layout.records_per_step()),
+        step,
+        offset: slot.before_at + 8 * index as u64,
+        message: format!("{prefix}{axis} of particle {} is {value}", place / 2),
+    })
 }
 
 /// Judges the steps of a batch, each by the next free worker.

@@ -4,6 +4,10 @@ use crate::scene::{Problem, Problems, Severity};
 /// At most this many characters of a source line are shown.
 const WIDEST: usize = 100;
 
+/// No more bytes than these on either side of a place can be shown: a character takes four at most. Lines may be
+/// megabytes long.
+const REACH: usize = 4 * WIDEST + 8;
+
 /// Everything that is wrong with a refused scene: a head line, then each problem with its source line.
 ///
 /// `name` is how messages call the scene, `source` its bytes.
@@ -39,12 +43,12 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     let warning = if problem.severity == Severity::Warning { "warning: " } else { "" };
     let mut text = format!("{name}:{line}:{column}: {warning}{message}\n");
     let start = span.start.min(source.len());
-    let line_start = source[..start].iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
-    let line_end = source[start..].iter().position(|&byte| byte == b'\n').map_or(source.len(), |at| start + at);
-    let end = span.end.clamp(start, line_end);
+    let from = start.saturating_sub(REACH);
+    let line_start = source[from..start].iter().rposition(|&byte| byte == b'\n').map_or(from, |at| from + at + 1);
+    let end = span.end.clamp(start, line_end(source, start));
     let before = shown(&source[line_start..start]);
     let marked = shown(&source[start..end]);
-    let after = shown(&source[end..line_end]);
+    let after = shown(&source[end..line_end(source, end)]);
     let advice = help.as_ref().map(|help| format!(" {help}")).unwrap_or_default();
     if before.is_empty() && marked.is_empty() && after.is_empty() {
         // There is nothing to point at: an empty file, or an empty line.
@@ -68,6 +72,12 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     text += &format!("  {line} | {dots}{before}{marked}{after}{more}\n");
     text += &format!("  {:width$} | {blanks}{carets}{advice}\n", "");
     text
+}
+
+/// The end of the line behind `at`, or of what can be shown of it.
+fn line_end(source: &[u8], at: usize) -> usize {
+    let to = source.len().min(at + REACH);
+    source[at..to].iter().position(|&byte| byte == b'\n').map_or(to, |found| at + found)
 }
 
 /// A piece of the source as a terminal may show it: one column per character, no control characters.
@@ -119,6 +129,18 @@ mod tests {
         let lines: Vec<_> = text.lines().collect();
         assert!(lines[1].len() < WIDEST + 15, "{text}");
         assert_eq!(lines[1].find("HERE"), lines[2].find("^^^^"), "{text}");
+    }
+
+    #[test]
+    fn a_very_long_line_is_cut_like_a_long_one() {
+        let around = |count: usize| {
+            let source = format!("{}HERE{}", "\u{1f600}".repeat(count), "\u{1f600}".repeat(count));
+            block("s", source.as_bytes(), &problem(&source, "HERE", 1, 9))
+        };
+        assert!(around(200).contains("...") && around(200).lines().nth(1).unwrap().ends_with("..."));
+        assert_eq!(around(100_001), around(200));
+        let marked = "x".repeat(100_000);
+        assert_eq!(block("s", marked.as_bytes(), &problem(&marked, &marked, 1, 1)).lines().nth(1).unwrap().len(), 109);
     }
 
     #[test]

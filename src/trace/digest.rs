@@ -2,7 +2,12 @@
 //!
 //! The digest of a step is the beginning of the SHA-256 of its records' bytes, so a listing shows at which step two
 //! traces part. The digest of the trace is the SHA-256 of all its bytes, trailing ones included: what `sha256sum` says.
-use super::{error::TraceError, frame::Frame, layout::Layout, reader::Reader};
+use super::{
+    error::{Malformation, TraceError},
+    frame::Frame,
+    layout::Layout,
+    reader::Reader,
+};
 use sha2::{Digest, Sha256};
 use std::{
     fmt,
@@ -74,6 +79,9 @@ pub struct Digests {
     pub records: u64,
     /// Bytes behind the last of them.
     pub trailing: u64,
+    /// Whether more bytes follow, which were not read ([`TRAILING_LIMIT`](super::TRAILING_LIMIT)). `bytes` and
+    /// `trailing` count only what was read, and the digest says nothing about the trace.
+    pub unread: bool,
     /// What ended the reading before the scene's last record.
     pub stopped: Option<TraceError>,
 }
@@ -84,8 +92,8 @@ impl Digests {
     pub fn of(stream: impl Read, layout: Layout) -> Self {
         let mut steps = Vec::new();
         let walked = walk(stream, layout, |_, _, _| {}, |_, digest| steps.push(digest));
-        let Walked { sha256, bytes, records, trailing, stopped } = walked;
-        Self { steps, sha256, bytes, records, trailing, stopped }
+        let Walked { sha256, bytes, records, trailing, unread, stopped } = walked;
+        Self { steps, sha256, bytes, records, trailing, unread, stopped }
     }
 }
 
@@ -97,6 +105,9 @@ impl fmt::Display for Digests {
         if let Some(error) = &self.stopped {
             writeln!(f, "{error}")?;
         }
+        if self.unread {
+            return writeln!(f, "more than {} bytes, {} records", self.bytes, self.records);
+        }
         writeln!(f, "{} bytes, {} records, sha256 {}", self.bytes, self.records, self.sha256)
     }
 }
@@ -107,6 +118,7 @@ pub(crate) struct Walked {
     pub(crate) bytes: u64,
     pub(crate) records: u64,
     pub(crate) trailing: u64,
+    pub(crate) unread: bool,
     pub(crate) stopped: Option<TraceError>,
 }
 
@@ -138,8 +150,12 @@ pub(crate) fn walk(
     let begin = if stopped.is_some() { reader.record_offset() } else { reader.offset() };
     let records = reader.records();
     let failed = reader.trailing().err();
+    let unread = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
+    let end = reader.offset();
     let Hashing { digest, bytes, .. } = all;
-    Walked { sha256: finish(digest), bytes, records, trailing: bytes - begin, stopped: stopped.or(failed) }
+    // The buffer may hold a few bytes more than were looked at; how many depends on the stream.
+    let bytes = if unread { end } else { bytes };
+    Walked { sha256: finish(digest), bytes, records, trailing: bytes - begin, unread, stopped: stopped.or(failed) }
 }
 
 /// A stream whose bytes are digested as they are read.

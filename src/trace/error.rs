@@ -123,7 +123,11 @@ pub enum Malformation {
         count: i32,
     },
     /// The bytes end inside a polynomial's coefficients.
-    #[error("polynomial {polynomial} claims {size} coefficients ({} bytes), but {left} bytes are left", 8 * i64::from(*.size))]
+    #[error(
+        "polynomial {polynomial} claims {size} coefficient{} ({} bytes), but {left} bytes are left",
+        if *.size == 1 { "" } else { "s" },
+        8 * i64::from(*.size)
+    )]
     SizeBeyondEnd {
         /// Number of the polynomial in the list, from 0.
         polynomial: u64,
@@ -171,6 +175,15 @@ pub enum Malformation {
     /// A record that does not fit into the memory set aside for one.
     #[error("the record needs more than {limit} bytes of memory; the trace is damaged or of another scene")]
     FrameTooLarge {
+        /// The limit in bytes.
+        limit: u64,
+    },
+    /// More bytes behind the last record than are read there.
+    #[error(
+        "more than {limit} bytes follow the last record; they were not all read; the trace is of another scene or \
+         never ends"
+    )]
+    Endless {
         /// The limit in bytes.
         limit: u64,
     },

@@ -32,7 +32,7 @@ pub use index::Indexed;
 pub use labels::{Label, labels};
 pub use layout::Layout;
 pub use lenient::{Cause, Lenient, LenientFrame, Stop};
-pub use reader::{FRAME_LIMIT, Reader};
+pub use reader::{FRAME_LIMIT, Reader, TRAILING_LIMIT};
 pub use recorder::Recorder;
 pub use summary::{StepView, Summary};
 pub use writer::{Writer, Written};

@@ -15,6 +15,9 @@ use std::io::{Read, Seek};
 /// Memory that one decoded frame may take, in bytes.
 pub const FRAME_LIMIT: u64 = 256 * 1024 * 1024;
 
+/// At most this many bytes behind the last record are read, 64 MiB: a stream need not have an end.
+pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
+
 /// At most this many notes are kept per record.
 const NOTES: usize = 16;
 
@@ -177,13 +180,19 @@ impl<R: Read> Reader<R> {
     /// Reads to the end of the stream, in bounded memory, and gives the number of bytes behind the last record read.
     ///
     /// # Errors
-    /// An error of the stream.
+    /// An error of the stream, or [`Malformation::Endless`] when more than [`TRAILING_LIMIT`] bytes follow.
     pub fn trailing(&mut self) -> Result<u64, TraceError> {
         let offset = self.source.offset();
-        let trailing = self.source.drain();
-        match self.io() {
-            Some(what) => Err(self.error(offset + trailing, what)),
-            None => Ok(trailing),
+        let drained = self.source.drain(TRAILING_LIMIT);
+        match (self.io(), drained) {
+            (Some(what), _) => Err(self.error(self.source.offset(), what)),
+            (None, None) => {
+                // The place is the end of the last record: there may be none that could come next.
+                let frame = self.record.saturating_sub(1);
+                let what = Malformation::Endless { limit: TRAILING_LIMIT };
+                Err(TraceError { offset, frame, step: self.layout.step_of(frame), what })
+            }
+            (None, Some(trailing)) => Ok(trailing),
         }
     }
 

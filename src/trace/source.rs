@@ -100,16 +100,22 @@ impl<R: Read> Source<R> {
         self.offset += count as u64;
     }
 
-    /// Consumes everything up to the end without keeping it and gives its length.
-    pub(crate) fn drain(&mut self) -> u64 {
-        let begin = self.offset;
+    /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Gives how many there were;
+    /// `None` when more follow.
+    pub(crate) fn drain(&mut self, limit: u64) -> Option<u64> {
+        let mut drained = 0;
         loop {
             let there = self.ensure(1);
             if there == 0 {
-                return self.offset - begin;
+                return Some(drained);
             }
-            self.start += there;
-            self.offset += there as u64;
+            let step = there.min(usize::try_from(limit - drained).unwrap_or(usize::MAX));
+            if step == 0 {
+                return None;
+            }
+            self.start += step;
+            self.offset += step as u64;
+            drained += step as u64;
         }
     }
 
@@ -190,7 +196,7 @@ mod tests {
         assert_eq!(source.ensure(200), 93);
         assert_eq!(source.window(), &bytes[7..]);
         assert_eq!(source.left(), Some(93));
-        assert_eq!(source.drain(), 93);
+        assert_eq!(source.drain(93), Some(93));
         assert_eq!(source.ensure(1), 0);
     }
 
@@ -199,7 +205,15 @@ mod tests {
         let mut source = Source::new(&[1_u8; 50][..], Some(20));
         assert_eq!(source.left(), Some(20));
         assert_eq!(source.ensure(30), 20);
-        assert_eq!(source.drain(), 20);
+        assert_eq!(source.drain(u64::MAX), Some(20));
+    }
+
+    #[test]
+    fn no_more_is_drained_than_allowed() {
+        let mut source = Source::new(io::repeat(0), None);
+        assert_eq!((source.drain(1_000_000), source.offset()), (None, 1_000_000));
+        let mut source = Source::new(&[1_u8; 50][..], None);
+        assert_eq!((source.drain(49), source.drain(1)), (None, Some(1)));
     }
 
     #[test]

@@ -83,6 +83,9 @@ pub struct Summary {
     pub records: u64,
     /// Bytes behind the last of them.
     pub trailing: u64,
+    /// Whether more bytes follow, which were not read. `bytes` and `trailing` count only what was read, and the digest
+    /// says nothing about the trace.
+    pub unread: bool,
     /// What ended the reading before the scene's last record.
     pub stopped: Option<TraceError>,
     /// Number of oddities that do not end the reading, and the first.
@@ -131,6 +134,7 @@ impl Summary {
             bytes: 0,
             records: 0,
             trailing: 0,
+            unread: false,
             stopped: None,
             notes: (0, None),
             impulses: Histogram::default(),
@@ -161,6 +165,7 @@ impl Summary {
             bytes: walked.bytes,
             records: walked.records,
             trailing: walked.trailing,
+            unread: walked.unread,
             stopped: walked.stopped,
             sha256: walked.sha256,
             ..summary
@@ -290,12 +295,13 @@ impl fmt::Display for Summary {
         let (edges, planes) = (number(self.edges as u64, "edge"), number(self.half_planes as u64, "half-plane"));
         writeln!(f, "scene          {}, {steps}, {particles}, {edges}, {planes}", self.collision)?;
         let bytes = number(self.bytes, "byte");
-        writeln!(f, "trace          {bytes}, {} of {}", self.records, number(self.layout.records(), "record"))?;
+        let more = if self.unread { "more than " } else { "" };
+        writeln!(f, "trace          {more}{bytes}, {} of {}", self.records, number(self.layout.records(), "record"))?;
         if let Some(error) = &self.stopped {
             writeln!(f, "damage         {error}")?;
         }
         if self.trailing > 0 {
-            writeln!(f, "trailing       {}", number(self.trailing, "byte"))?;
+            writeln!(f, "trailing       {more}{}", number(self.trailing, "byte"))?;
         }
         if let (count, Some(first)) = &self.notes {
             writeln!(f, "odd            {}, the first: {first}", number(*count, "value"))?;
@@ -318,6 +324,9 @@ impl fmt::Display for Summary {
         for (first, last, digest) in &self.digests {
             let steps = if first == last { format!("step {first}") } else { format!("steps {first}-{last}") };
             writeln!(f, "  {steps:<12} {digest}")?;
+        }
+        if self.unread {
+            return writeln!(f, "sha256         unknown, for not all bytes were read");
         }
         writeln!(f, "sha256         {}", self.sha256)
     }

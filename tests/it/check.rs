@@ -132,6 +132,17 @@ fn a_state_that_leads_nowhere_ends_with_a_report() {
     let (text, json) = reports(BEAM, &trace);
     assert_eq!((text.code, json["problem"]["kind"].as_str()), (Some(1), Some("step_without_result")), "{json:#}");
     insta::assert_snapshot!("step_without_result", text.shown());
+    // The number that leads there has a place: behind x and y of two particles.
+    let damage = &json["damage"];
+    assert_eq!((&damage["frame"], &damage["step"], &damage["offset"]), (&0.into(), &0.into(), &32.into()), "{json:#}");
+    assert_eq!(damage["message"], "x of particle 2 is NaN");
+    let trace = changed(BEAM, |frames| frames[2].state.velocities[5] = f64::INFINITY);
+    let (_, json) = reports(BEAM, &trace);
+    let damage = &json["damage"];
+    assert_eq!((&damage["frame"], &damage["step"]), (&2.into(), &1.into()), "{json:#}");
+    assert_eq!(damage["message"], "velocity y of particle 2 is inf");
+    let offset = usize::try_from(damage["offset"].as_u64().unwrap()).unwrap();
+    assert_eq!(trace[offset..offset + 8], f64::INFINITY.to_le_bytes());
 }
 
 #[test]
@@ -270,6 +281,10 @@ fn a_pipe_with_a_writer_is_read() {
     assert_eq!(run.code, Some(0), "{}", run.shown());
     let run = workspace.run_with_input(["check", "scene.xml", "-"], &workspace.read("trace.bin"));
     assert_eq!(run.code, Some(0), "{}", run.shown());
+    let folder = File::open(workspace.path("")).unwrap();
+    let run = finish(workspace.command().args(["check", "scene.xml", "-"]).stdin(folder));
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().starts_with("error: cannot read the trace from standard input: "), "{}", run.err());
 }
 
 #[test]
@@ -292,15 +307,36 @@ fn compressed_traces_are_unpacked() {
     for name in ["trace.bin.zst", "nameless"] {
         assert_eq!(workspace.run(["check", "scene.xml", name]).code, Some(0), "{name}");
     }
-    workspace.write("cut.zst", &packed[..packed.len() - 5]);
-    let cut = workspace.run(["check", "scene.xml", "cut.zst"]);
-    assert_eq!(cut.code, Some(1));
-    assert!(cut.out().contains("the zstd data is cut short"), "{}", cut.shown());
-    let mut damaged = packed;
+    let trace = workspace.read("trace.bin");
+    let two = [&packed[..], &zstd::encode_all(&b"more"[..], 3).unwrap()].concat();
+    workspace.write("two.zst", two);
+    let run = workspace.run(["check", "scene.xml", "two.zst"]);
+    assert!(run.out().contains("bytes follow the last record"), "{}", run.shown());
+    let mut damaged = packed.clone();
     let middle = damaged.len() / 2;
     damaged[middle] ^= 0xff;
-    workspace.write("damaged.zst", &damaged);
-    assert_eq!(workspace.run(["check", "scene.xml", "damaged.zst"]).code, Some(1));
+    let mut wide = zstd::stream::Encoder::new(Vec::new(), 3).unwrap();
+    wide.window_log(27).unwrap();
+    std::io::Write::write_all(&mut wide, &trace).unwrap();
+    let damage = "the zstd data is damaged; copy it again";
+    for (name, bytes, says) in [
+        ("cut.zst", packed[..packed.len() - 5].to_vec(), "the zstd data is cut short; copy it again"),
+        ("damaged.zst", damaged, damage),
+        ("garbage.zst", [&packed[..], b"garbage"].concat(), damage),
+        (
+            "wide.zst",
+            wide.finish().unwrap(),
+            "its zstd window is larger than 8 MiB; compress it again without --long or --ultra",
+        ),
+    ] {
+        workspace.write(name, bytes);
+        for command in [&["check"][..], &["trace", "info"]] {
+            let run = workspace.run(command.iter().copied().chain(["scene.xml", name]));
+            assert_eq!((run.code, run.out().as_str()), (Some(2), ""), "{name}: {}", run.err());
+            assert!(run.err().starts_with(&format!("error: cannot read the trace {name}")), "{}", run.err());
+            assert!(run.err().contains(says), "{name}: {}", run.err());
+        }
+    }
     workspace.write("plain.zst", workspace.read("trace.bin"));
     let plain = workspace.run(["check", "scene.xml", "plain.zst"]);
     assert_eq!(plain.code, Some(2));

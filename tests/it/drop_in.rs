@@ -213,6 +213,42 @@ fn outputs_that_cannot_be_opened_are_said_in_the_originals_words() {
     assert_eq!(workspace.read("scene.xml"), BOUNCE.as_bytes());
 }
 
+/// A scene whose trace is larger than a pipe's buffer of 64 KiB.
+fn long_drift() -> String {
+    DRIFT.replace(r#"time="1""#, r#"time="2000""#)
+}
+
+#[test]
+fn a_pipe_that_is_read_slowly_gets_the_whole_trace() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", long_drift());
+    assert!(Command::new("mkfifo").arg(workspace.path("pipe")).status().unwrap().success());
+    let pipe = workspace.path("pipe");
+    let mut reader =
+        Command::new("sh").args(["-c", "exec 3<\"$0\"; sleep 0.3; cat <&3 >\"$0.got\""]).arg(&pipe).spawn().unwrap();
+    let run = loop {
+        // Without a reader yet the pipe can't be opened.
+        let run = workspace.original(["-s", "scene.xml", "-d", "0", "-o", "pipe"]);
+        if run.code == Some(0) || !run.err().contains("Failed to open binary output file") {
+            break run;
+        }
+    };
+    assert_eq!((run.code, run.err().as_str()), (Some(0), ""));
+    assert!(reader.wait().unwrap().success());
+    let trace = trace_of(&long_drift());
+    assert!(trace.len() > 200_000);
+    assert!(workspace.read("pipe.got") == trace, "the trace is not whole");
+}
+
+#[test]
+fn standard_output_by_its_device_gets_the_whole_trace() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", long_drift());
+    let run = workspace.original(["-s", "scene.xml", "-d", "0", "-o", "/dev/stdout"]);
+    assert_eq!((run.code, run.err().as_str()), (Some(0), ""));
+    assert!(run.stdout.len() > trace_of(&long_drift()).len());
+}
+
 #[test]
 fn nobody_listening_changes_neither_exit_code_nor_files() {
     let workspace = Workspace::with_trace(BOUNCE);

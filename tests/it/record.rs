@@ -67,6 +67,17 @@ fn the_embedded_recordings_are_what_is_simulated_now() {
 }
 
 #[test]
+fn a_named_folder_is_meant_even_when_it_is_not_there() {
+    let run = Workspace::new().run(["record", "--check", "--references", "nope"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("cannot read the scenes in assets"), "{}", run.err());
+    let workspace = Workspace::new();
+    workspace.write("assets/Balls/bounce.xml", BOUNCE);
+    assert!(workspace.run(["record"]).out().starts_with("1 recording, "));
+    assert_eq!(workspace.run(["record", "--check"]).out(), "1 recording, 2 steps: all the same\n");
+}
+
+#[test]
 fn every_embedded_scene_is_accepted_with_its_recording() {
     let workspace = Workspace::new();
     let mut scenes = 0;

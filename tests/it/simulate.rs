@@ -18,7 +18,7 @@ fn the_summary_says_what_happened() {
 fn the_trace_may_go_to_standard_output() {
     let workspace = Workspace::new();
     workspace.write("scene.xml", BOUNCE);
-    for name in ["-", "/dev/stdout"] {
+    for name in ["-", "/dev/stdout", "/dev/fd/1"] {
         let run = workspace.run(["simulate", "scene.xml", "--output", name]);
         assert_eq!((run.code, &run.stdout), (Some(0), &trace_of(BOUNCE)));
         assert!(run.err().starts_with("Simulated scene.xml"), "{}", run.err());
@@ -41,6 +41,13 @@ fn a_link_is_followed_and_the_mode_is_kept() {
     assert_eq!(workspace.read("real.bin"), trace_of(BOUNCE));
     assert!(workspace.path("link.bin").symlink_metadata().unwrap().is_symlink());
     assert_eq!(workspace.path("real.bin").metadata().unwrap().permissions().mode() & 0o777, 0o640);
+    // Nor does the umask take anything away.
+    std::fs::set_permissions(workspace.path("real.bin"), std::fs::Permissions::from_mode(0o666)).unwrap();
+    let script = "umask 077; exec \"$0\" simulate scene.xml -o real.bin";
+    let mut shell = Command::new("sh");
+    shell.args(["-c", script, env!("CARGO_BIN_EXE_fosssim-oracle")]).current_dir(workspace.path(""));
+    assert_eq!(finish(&mut shell).code, Some(0));
+    assert_eq!(workspace.path("real.bin").metadata().unwrap().permissions().mode() & 0o777, 0o666);
 }
 
 #[test]
@@ -53,7 +60,7 @@ fn outputs_that_cannot_be_written_are_refused() {
         ("scene.xml", "it is also an input"),
         ("folder", "it is a directory"),
         ("new/", "it names a directory"),
-        ("nowhere/trace.bin", "no file can be made in nowhere"),
+        ("nowhere/trace.bin", "there is no folder nowhere; make it first"),
         ("dangling", "a symbolic link to a file that does not exist"),
     ] {
         let run = workspace.run(["simulate", "scene.xml", "--output", output]);
@@ -159,4 +166,34 @@ fn completions_and_the_manual_page_know_every_command() {
     drop(child.stdout.take());
     assert_eq!(child.wait().unwrap().code(), Some(0));
     assert!(finish(workspace.command().args(["completions", "tcsh-for-kids"])).code == Some(2));
+}
+
+#[test]
+fn every_command_that_the_manual_page_refers_to_has_a_page() {
+    let workspace = Workspace::new();
+    let page = workspace.run(["man", "trace", "diff"]);
+    assert_eq!(page.code, Some(0));
+    assert!(page.out().contains(".TH fosssim-oracle-trace-diff 1"), "{}", page.out());
+    let mut pages = 0;
+    let mut todo = vec![Vec::<String>::new()];
+    while let Some(command) = todo.pop() {
+        let page = workspace.run([&["man".to_owned()][..], &command].concat());
+        assert_eq!(page.code, Some(0), "{command:?}: {}", page.err());
+        let name = [&["fosssim-oracle".to_owned()][..], &command].concat().join("-");
+        assert!(page.out().contains(&format!(".TH {name} 1")), "{}", page.out());
+        let page = page.out().replace("\\-", "-");
+        for line in page.lines().filter(|line| line.ends_with("(1)")) {
+            let last = line.trim_end_matches("(1)").strip_prefix(&format!("{name}-")).unwrap();
+            todo.push([&command[..], &[last.to_owned()]].concat());
+        }
+        pages += 1;
+    }
+    assert!(pages > 15, "{pages} pages");
+    let run = workspace.run(["man", "trace", "nothing"]);
+    assert_eq!(run.code, Some(2));
+    assert!(
+        run.err().contains("fosssim-oracle trace has no command `nothing`; it has info, show, diff"),
+        "{}",
+        run.err()
+    );
 }

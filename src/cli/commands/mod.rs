@@ -32,7 +32,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Doctor(_) => host::doctor(),
         Command::Selftest(arguments) => host::selftest(arguments),
         Command::Completions(arguments) => shell::completions(arguments),
-        Command::Man(_) => shell::manual(),
+        Command::Man(arguments) => shell::manual(arguments),
         // Its words never get here: they are not read by this parser.
         Command::Original(_) => Ok(super::exit::FAULT),
     }

@@ -14,7 +14,9 @@ use std::{
 };
 
 pub(super) fn run(arguments: &Record) -> Result<u8> {
-    let embedded = arguments.check && !arguments.assets.is_dir() && arguments.assets == Path::new("assets");
+    // Whoever names a folder means that folder.
+    let defaults = arguments.assets == Path::new("assets") && arguments.references == Path::new("references");
+    let embedded = arguments.check && defaults && !arguments.assets.is_dir();
     let scenes = if embedded {
         library::names().filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec()))).collect()
     } else {
@@ -115,7 +117,8 @@ fn check(recordings: &[Recording], old: &dyn Old) -> Result<u8> {
     text += &recording::diff("manifest.txt", &String::from_utf8_lossy(&manifest), &recording::manifest(recordings));
     if text.is_empty() {
         let steps = recordings.iter().map(|recording| u64::from(recording.steps)).sum();
-        console::print(format!("{} recordings, {} steps: all the same\n", recordings.len(), count(steps)).as_bytes())?;
+        let (recordings, steps) = (number(recordings.len() as u64, "recording"), number(steps, "step"));
+        console::print(format!("{recordings}, {steps}: all the same\n").as_bytes())?;
         return Ok(exit::ACCEPTED);
     }
     console::print(text.as_bytes())?;
@@ -146,9 +149,15 @@ fn write(recordings: &[Recording], folder: &Path) -> Result<u8> {
         }
     }
     replace(&folder.join("manifest.txt"), recording::manifest(recordings).as_bytes())?;
-    let line = format!("{} recordings, {} bytes, in {}\n", recordings.len(), count(bytes), folder.display());
+    let (recordings, bytes) = (number(recordings.len() as u64, "recording"), number(bytes, "byte"));
+    let line = format!("{recordings}, {bytes}, in {}\n", folder.display());
     console::print(line.as_bytes())?;
     Ok(exit::ACCEPTED)
+}
+
+/// A number of things.
+fn number(many: u64, thing: &str) -> String {
+    format!("{} {thing}{}", count(many), if many == 1 { "" } else { "s" })
 }
 
 fn replace(path: &Path, bytes: &[u8]) -> Result<()> {

@@ -18,13 +18,27 @@ pub(in crate::cli) struct TraceInput {
     pub(in crate::cli) length: Option<u64>,
     /// The file, when there is one.
     pub(in crate::cli) identity: Option<Identity>,
-    failure: Arc<Mutex<Option<String>>>,
+    failure: Failure,
 }
 
 impl TraceInput {
-    /// What the operating system said when reading failed: our fault, not the trace's.
+    /// What the operating system or the decoder said when reading failed: not the fault of who wrote the trace.
     pub(in crate::cli) fn failure(&self) -> Option<String> {
-        self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.failure.get()
+    }
+}
+
+/// The first thing that went wrong while reading.
+#[derive(Clone, Default)]
+struct Failure(Arc<Mutex<Option<String>>>);
+
+impl Failure {
+    fn get(&self) -> Option<String> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn set(&self, message: &str) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(|| message.to_owned());
     }
 }
 
@@ -34,21 +48,21 @@ impl TraceInput {
 /// When it can't be opened. Damage shows only while it is read.
 pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = name.display().to_string();
-    let failure = Arc::default();
-    let watched = |reader| Watched { reader, failure: Arc::clone(&failure) };
+    let failure = Failure::default();
+    let watched = |reader| Watched { reader, failure: failure.clone() };
     let (reader, length, identity): (Box<dyn Read + Send>, _, _) = if let Some(asset) = asset(name) {
         let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
-        (decompressed(Box::new(Cursor::new(recording)), &[])?, None, None)
+        (decompressed(Box::new(Cursor::new(recording)), &[], &failure)?, None, None)
     } else if name == Path::new("-") {
-        let (reader, packed) = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false)?;
-        (reader, (!packed).then_some(()).and(None), None)
+        let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
+        (reader.context("cannot read the trace from standard input")?.0, None, None)
     } else {
         let context = || format!("cannot read the trace {shown}");
         let (file, metadata) = open(name).with_context(context)?;
         let plain = metadata.is_file().then_some(metadata.len());
         let file = patient(file, &metadata).with_context(context)?;
         let (reader, packed) =
-            maybe_packed(Box::new(watched(file)), has_extension(name, "zst")).with_context(context)?;
+            maybe_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure).with_context(context)?;
         (reader, plain.filter(|_| !packed), Some(Identity::of(&metadata)))
     };
     Ok(TraceInput { name: shown, reader, length, identity, failure })
@@ -57,14 +71,14 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
 /// Remembers what the operating system said when reading failed.
 struct Watched {
     reader: Box<dyn Read + Send>,
-    failure: Arc<Mutex<Option<String>>>,
+    failure: Failure,
 }
 
 impl Read for Watched {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.reader.read(buffer).inspect_err(|error| {
             if error.kind() != io::ErrorKind::Interrupted {
-                *self.failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
+                self.failure.set(&error.to_string());
             }
         })
     }
@@ -77,11 +91,15 @@ const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 const ZSTD_WINDOW: u32 = 23;
 
 /// The reader, decompressed when it starts like a zstd file, and whether it does.
-fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool) -> Result<(Box<dyn Read + Send>, bool)> {
+fn maybe_packed(
+    mut reader: Box<dyn Read + Send>,
+    must: bool,
+    failure: &Failure,
+) -> Result<(Box<dyn Read + Send>, bool)> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
     if start == ZSTD_MAGIC {
-        return Ok((decompressed(reader, &start)?, true));
+        return Ok((decompressed(reader, &start, failure)?, true));
     }
     if must {
         bail!("it is not zstd data although its name ends in .zst; rename it, or compress it with zstd");
@@ -89,22 +107,36 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool) -> Result<(Box<dyn
     Ok((Box::new(Cursor::new(start).chain(reader)), false))
 }
 
-fn decompressed(reader: Box<dyn Read + Send>, start: &[u8]) -> Result<Box<dyn Read + Send>> {
+fn decompressed(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let packed = BufReader::with_capacity(1 << 16, Cursor::new(start.to_vec()).chain(reader));
     let mut decoder = zstd::stream::read::Decoder::with_buffer(packed)?;
     decoder.window_log_max(ZSTD_WINDOW)?;
-    Ok(Box::new(Unpacked(decoder)))
+    Ok(Box::new(Unpacked { decoder, failure: failure.clone() }))
 }
 
-/// A decoder whose errors say what is wrong with the file.
-struct Unpacked<R: io::BufRead>(zstd::stream::read::Decoder<'static, R>);
+/// A decoder whose errors say what is wrong with the file, and are remembered: a copy that was damaged on its way says
+/// nothing about the trace. Bytes behind the last zstd frame that do not begin another one are damage, too.
+struct Unpacked<R: io::BufRead> {
+    decoder: zstd::stream::read::Decoder<'static, R>,
+    failure: Failure,
+}
 
 impl<R: io::BufRead> Read for Unpacked<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.0.read(buffer).map_err(|error| match error.kind() {
-            io::ErrorKind::Interrupted => error,
-            io::ErrorKind::UnexpectedEof => io::Error::new(error.kind(), "the zstd data is cut short"),
-            kind => io::Error::new(kind, format!("the zstd data is damaged ({error})")),
+        self.decoder.read(buffer).map_err(|error| {
+            // What the operating system said has been remembered already, and is the better explanation.
+            if error.kind() == io::ErrorKind::Interrupted || self.failure.get().is_some() {
+                return error;
+            }
+            let text = if error.kind() == io::ErrorKind::UnexpectedEof {
+                "the zstd data is cut short; copy it again"
+            } else if error.to_string().contains("too much memory") {
+                "its zstd window is larger than 8 MiB; compress it again without --long or --ultra"
+            } else {
+                "the zstd data is damaged; copy it again"
+            };
+            self.failure.set(text);
+            io::Error::new(error.kind(), text)
         })
     }
 }

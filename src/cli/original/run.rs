@@ -4,6 +4,7 @@ use crate::{
     cli::{
         console,
         input::{self, Identity},
+        output,
     },
     judge::{Stop, Unreadable, parity, parity::Progress},
     report::describe::step_error,
@@ -97,7 +98,8 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Option<Identity>), Refu
 fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
     if refusal.kind == RefusalKind::Crash {
         // The original dies of an uncaught exception here.
-        return complain(&format!("{}: {}\n", arguments.scene.display(), refusal.explanation));
+        let name = arguments.scene.display();
+        return complain(&format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
     }
     console::complain(&refusal.stderr);
     refusal.exit_code
@@ -136,7 +138,7 @@ fn create(name: &Path, scene: Option<Identity>) -> Result<File, Vec<u8>> {
 
 /// Creates or truncates a file. A pipe without a reader is an error and does not block.
 fn create_now(name: &Path) -> io::Result<File> {
-    OpenOptions::new().write(true).create(true).truncate(true).custom_flags(libc::O_NONBLOCK).open(name)
+    output::open_for_writing(OpenOptions::new().write(true).create(true).truncate(true), name)
 }
 
 /// Opens the trace; a directory opens and reads as an empty file.

@@ -182,8 +182,13 @@ fn notes(check: &Check<'_>, style: Style) -> Option<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();
     if let Some(damage) = &outcome.damage {
+        // Before a step without result it is what leads there.
+        let silence = match outcome.stop {
+            Some(Stop::Step(_)) => "",
+            _ => "; the original reads over this in silence",
+        };
         notes.push(format!(
-            "frame {} (step {}), byte {}: {}; the original reads over this in silence",
+            "frame {} (step {}), byte {}: {}{silence}",
             damage.frame, damage.step, damage.offset, damage.message
         ));
     }

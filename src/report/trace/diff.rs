@@ -22,10 +22,10 @@ pub struct Names<'a> {
     pub right: &'a str,
 }
 
-/// Whether both traces are complete and the same, without bytes behind the last record.
+/// Whether both traces are complete and the same, with as many bytes behind the last record, which are not compared.
 #[must_use]
 pub fn same(comparison: &Comparison) -> bool {
-    comparison.same() && comparison.left == Ok(0) && comparison.right == Ok(0)
+    comparison.same() && comparison.left == comparison.right
 }
 
 /// For people.
@@ -33,7 +33,11 @@ pub fn same(comparison: &Comparison) -> bool {
 pub fn diff_text(names: &Names<'_>, comparison: &Comparison, style: Style) -> String {
     let records = count(comparison.frames);
     if same(comparison) {
-        return format!("{}: {records} records are the same bit for bit\n", style.paint(Look::Good, "SAME"));
+        let mut text = format!("{}: {records} records are the same bit for bit\n", style.paint(Look::Good, "SAME"));
+        if let Ok(trailing @ 1..) = comparison.left {
+            text += &format!("the bytes behind the last record ({} each) were not compared\n", count(trailing));
+        }
+        return text;
     }
     let head = style.paint(Look::Bad, "DIFFERENT");
     let mut text = match &comparison.first {
