@@ -3,6 +3,7 @@ use super::{
     conclude::conclude,
     config::{Hints, RunLimits},
     grade::SceneGrade,
+    staging,
     verdict::Verdict,
 };
 use crate::{
@@ -91,7 +92,8 @@ impl Runner<'_> {
         task: &SceneTask,
         on_step: &mut dyn FnMut(u32),
     ) -> Result<SceneGrade, ExecuteError> {
-        let folder = tempfile::Builder::new().prefix("fosssim-run-").tempdir().map_err(ExecuteError::Folder)?;
+        let folder =
+            tempfile::Builder::new().prefix(&staging::prefix("run")).tempdir().map_err(ExecuteError::Folder)?;
         let scene_file = folder.path().join(SCENE_FILE);
         std::fs::write(&scene_file, &task.xml).map_err(ExecuteError::Folder)?;
         let job = Job::new(program, folder.path())

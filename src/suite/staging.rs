@@ -2,7 +2,10 @@
 //!
 //! Sources are built in a copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{config::BuildStep, execute::Cancellation, grade::Build};
-use crate::sandbox::{Backend, Ended, Job, Limits, Policy, SandboxError};
+use crate::sandbox::{
+    Backend, Ended, Job, Limits, Policy, SandboxError,
+    collect::{self, CollectError},
+};
 use std::{
     fs::{self, File, Permissions},
     io::{self, Read, Write},
@@ -25,6 +28,8 @@ pub struct Staged {
     pub digest: blake3::Hash,
     /// How it was built.
     pub build: Option<Build>,
+    /// Why the submission itself can't be run: its own fault.
+    pub refused: Option<String>,
     _folder: Option<tempfile::TempDir>,
 }
 
@@ -67,15 +72,48 @@ fn at(path: &Path) -> impl FnOnce(io::Error) -> StagingError {
 /// # Errors
 /// When the file can't be read or the copy can't be written.
 pub fn program(path: &Path) -> Result<Staged, StagingError> {
-    let in_place = |digest| Staged { program: path.to_owned(), digest, build: None, _folder: None };
     if !fs::metadata(path).is_ok_and(|data| data.is_file()) {
-        return Ok(in_place(blake3::hash(path.as_os_str().as_encoded_bytes())));
+        return Ok(Staged::in_place(path));
     }
-    let folder = public_folder("fosssim-program-")?;
-    let name = path.file_name().unwrap_or_else(|| "program".as_ref());
-    let copy = folder.path().join(name);
-    let digest = copy_file(path, &copy)?;
-    Ok(Staged { program: copy, digest, build: None, _folder: Some(folder) })
+    copied(File::open(path).map_err(at(path))?, path)
+}
+
+/// As [`program`], for a program at `name` in a folder that somebody else filled: a link that leads elsewhere, to
+/// another's submission perhaps, is refused.
+///
+/// # Errors
+/// When the copy can't be written.
+pub fn program_in(folder: &Path, name: &str) -> Result<Staged, StagingError> {
+    let path = folder.join(name);
+    match collect::open_regular_file(folder, name, LARGEST_FOLDER) {
+        Ok((file, _)) => copied(file, &path),
+        Err(CollectError::Missing { .. }) => Ok(Staged::in_place(&path)),
+        Err(error) => {
+            Ok(Staged { refused: Some(format!("the program can't be used: {error}")), ..Staged::in_place(&path) })
+        }
+    }
+}
+
+/// The digest of a program as it lies there, without a copy; `None` for what [`program`] leaves in place.
+#[must_use]
+pub fn digest(path: &Path) -> Option<blake3::Hash> {
+    let data = fs::symlink_metadata(path).ok()?;
+    let mut hasher = blake3::Hasher::new();
+    (data.is_file() && hasher.update_reader(File::open(path).ok()?).is_ok()).then(|| hasher.finalize())
+}
+
+impl Staged {
+    fn in_place(path: &Path) -> Self {
+        let digest = blake3::hash(path.as_os_str().as_encoded_bytes());
+        Self { program: path.to_owned(), digest, build: None, refused: None, _folder: None }
+    }
+}
+
+fn copied(file: File, path: &Path) -> Result<Staged, StagingError> {
+    let folder = public_folder("program")?;
+    let copy = folder.path().join(path.file_name().unwrap_or_else(|| "program".as_ref()));
+    let digest = copy_file(file, path, &copy)?;
+    Ok(Staged { program: copy, digest, build: None, refused: None, _folder: Some(folder) })
 }
 
 /// Builds the sources in `folder`, in a copy, and stages the program that comes out of it. A build that fails is no
@@ -89,14 +127,28 @@ pub fn build(
     backend: &Backend,
     cancellation: &Cancellation,
 ) -> Result<Staged, StagingError> {
-    let folder = public_folder("fosssim-build-")?;
+    let folder = public_folder("build")?;
     let copy = folder.path().join("submission");
     let mut budget = Budget { bytes: LARGEST_FOLDER, files: MOST_FILES };
-    copy_folder(sources, &copy, &mut budget)?;
+    let failed = |end: String, output: String| {
+        let build = Some(Build { succeeded: false, end, output });
+        Staged { build, ..Staged::in_place(&sources.join(&step.program)) }
+    };
+    match copy_folder(sources, &copy, &mut budget) {
+        Err(error @ StagingError::TooLarge { .. }) => return Ok(failed(error.to_string(), String::new())),
+        copied => copied?,
+    }
     let Some((command, arguments)) = step.command.split_first() else {
         return Err(StagingError::NoCommand { command: String::new() });
     };
-    let tool = find_tool(command, &copy).ok_or_else(|| StagingError::NoCommand { command: command.clone() })?;
+    let tool = match find_tool(command, &copy) {
+        Some(tool) => tool,
+        // A script of the submission's own that is missing is the submission's fault.
+        None if command.contains('/') => {
+            return Ok(failed(format!("the submission holds no {command}, which builds it"), String::new()));
+        }
+        None => return Err(StagingError::NoCommand { command: command.clone() }),
+    };
     let limits = Limits {
         cpu: step.wall,
         wall: step.wall,
@@ -120,34 +172,48 @@ pub fn build(
     if cut {
         output.push_str("\n[cut short]");
     }
-    let built = copy.join(&step.program);
-    let made = fs::symlink_metadata(&built).is_ok_and(|data| data.is_file());
-    let succeeded = outcome.ended == Ended::Exited(0) && made;
-    let end = if outcome.ended == Ended::Exited(0) && !made {
-        format!("the build made no {}", step.program)
-    } else {
-        format!("the build {}", outcome.ended)
-    };
-    let mut staged = if succeeded {
-        program(&built)?
-    } else {
-        Staged { program: built, digest: blake3::hash(b""), build: None, _folder: None }
-    };
-    staged.build = Some(Build { succeeded, end, output });
-    Ok(staged)
+    if outcome.ended != Ended::Exited(0) {
+        return Ok(failed(format!("the build {}", outcome.ended), output));
+    }
+    // The build could have left a link to anything where the program should be.
+    match collect::open_regular_file(&copy, &step.program, LARGEST_FOLDER) {
+        Ok((file, _)) => {
+            let build = Some(Build { succeeded: true, end: "the build succeeded".to_owned(), output });
+            Ok(Staged { build, ..copied(file, &copy.join(&step.program))? })
+        }
+        Err(CollectError::Missing { .. }) => Ok(failed(format!("the build made no {}", step.program), output)),
+        Err(error) => Ok(failed(format!("what the build made can't be used: {error}"), output)),
+    }
 }
 
 /// A temporary folder that other users may enter: as root the program runs as one of them.
-fn public_folder(prefix: &str) -> Result<tempfile::TempDir, StagingError> {
+fn public_folder(purpose: &str) -> Result<tempfile::TempDir, StagingError> {
     let temporary = std::env::temp_dir();
-    let folder = tempfile::Builder::new().prefix(prefix).tempdir().map_err(at(&temporary))?;
+    let folder = tempfile::Builder::new().prefix(&prefix(purpose)).tempdir().map_err(at(&temporary))?;
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).map_err(at(folder.path()))?;
     Ok(folder)
 }
 
-/// Copies a regular file with its permission bits and digests it on the way.
-fn copy_file(from: &Path, to: &Path) -> Result<blake3::Hash, StagingError> {
-    let mut source = File::open(from).map_err(at(from))?;
+/// How the names of this process's temporary folders begin.
+pub(super) fn prefix(purpose: &str) -> String {
+    format!("fosssim-{}-{purpose}-", std::process::id())
+}
+
+/// Removes the temporary folders of graders that were killed.
+pub fn sweep() {
+    for entry in fs::read_dir(std::env::temp_dir()).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let owner =
+            name.to_str().and_then(|name| name.strip_prefix("fosssim-")?.split_once('-')?.0.parse::<u32>().ok());
+        if owner.is_some_and(|owner| !Path::new("/proc").join(owner.to_string()).exists()) {
+            // Somebody else's is left to them.
+            drop(fs::remove_dir_all(entry.path()));
+        }
+    }
+}
+
+/// Copies an open regular file with its permission bits and digests it on the way.
+fn copy_file(mut source: File, from: &Path, to: &Path) -> Result<blake3::Hash, StagingError> {
     let mode = source.metadata().map_err(at(from))?.permissions().mode();
     let mut target = File::create(to).map_err(at(to))?;
     let mut hasher = blake3::Hasher::new();
@@ -165,6 +231,7 @@ fn copy_file(from: &Path, to: &Path) -> Result<blake3::Hash, StagingError> {
     Ok(hasher.finalize())
 }
 
+/// What of a submission may still be copied.
 struct Budget {
     bytes: u64,
     files: u64,
@@ -183,7 +250,7 @@ fn copy_folder(from: &Path, to: &Path, budget: &mut Budget) -> Result<(), Stagin
             copy_folder(&source, &target, budget)?;
         } else if data.is_file() {
             budget.bytes = budget.bytes.checked_sub(data.len()).ok_or_else(too_large)?;
-            copy_file(&source, &target)?;
+            copy_file(File::open(&source).map_err(at(&source))?, &source, &target)?;
         }
     }
     Ok(())

@@ -301,3 +301,59 @@ fn a_course_script_counts_with_the_drop_in() {
     let wrong = count(&wrong);
     assert!(wrong.out().ends_with("1 passed, 1 failed\n"), "{}", wrong.shown());
 }
+
+#[test]
+fn links_that_leave_a_submission_are_not_followed() {
+    let Some(workspace) = workspace() else { return };
+    std::fs::create_dir_all(workspace.path("class/thief")).expect("a folder");
+    std::fs::create_dir_all(workspace.path("class/none")).expect("a folder");
+    symlink(env!("CARGO_BIN_EXE_fosssim-sample"), workspace.path("class/thief/FOSSSim")).expect("a link");
+    let run = workspace.run(["grade", "class", "--suite", "suite.toml", "--output", "out"]);
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    let rows = rows(&workspace.read("out/grades.csv"));
+    let told: Vec<_> = rows.iter().map(|(name, verdict, points)| (&name[..], &verdict[..], &points[..])).collect();
+    assert_eq!(told, [("none", "run-time error", "0"), ("thief", "run-time error", "0")], "{}", run.shown());
+    assert!(
+        run.out().contains("the program can't be used: ") && run.out().contains("no such program"),
+        "{}",
+        run.shown()
+    );
+
+    if Path::new("/bin/sh").exists() {
+        // A build that leaves a link to somebody else's program has made none.
+        let build = "[build]\ncommand = [\"sh\", \"build.sh\"]\nprogram = \"out/FOSSSim\"\n[[group]]";
+        workspace.write("build.toml", SUITE.replacen("[[group]]", build, 1));
+        std::fs::create_dir(workspace.path("secret")).expect("a folder");
+        std::fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), workspace.path("secret/FOSSSim")).expect("a copy");
+        let script = format!("ln -s {} out\n", workspace.path("secret").display());
+        workspace.write("sources/thief/build.sh", script);
+        let run = workspace.run(["grade", "sources", "--suite", "build.toml", "--output", "built"]);
+        assert!(run.out().contains("compile error") && !run.out().contains("AC "), "{}", run.shown());
+    }
+}
+
+#[test]
+fn a_grading_that_is_stopped_by_the_platform_keeps_its_partial_results() {
+    let Some(workspace) = workspace() else { return };
+    submit(&workspace, &["", "sleep-forever"]);
+    let mut child = workspace
+        .command()
+        .args(["grade", "submissions", "--suite", "suite.toml", "--output", "out", "--format", "json=grades.json"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("started");
+    while std::fs::read(workspace.path("out/journal.jsonl")).unwrap_or_default().is_empty() {
+        assert!(child.try_wait().expect("a state").is_none(), "it ended before it was stopped");
+        std::thread::yield_now();
+    }
+    // `timeout` signals the program and its group: two signals at once.
+    for _ in 0..2 {
+        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+        assert!(kill.success());
+    }
+    assert_eq!(child.wait().expect("ended").code(), Some(130));
+    let grades: serde_json::Value = serde_json::from_slice(&workspace.read("grades.json")).expect("JSON");
+    let text = grades.to_string();
+    assert!(text.contains("\"not run\"") && text.contains("\"accepted\""), "{text}");
+}

@@ -18,7 +18,7 @@ use std::{
     num::NonZeroUsize,
     path::{Path, PathBuf},
     sync::{Arc, OnceLock},
-    time::{Duration, SystemTime},
+    time::{Duration, Instant, SystemTime},
 };
 
 /// Where results go when several submissions are graded and no folder is named.
@@ -33,8 +33,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     {
         bail!("--format {} holds one submission, and there are {}", report.name, submissions.len());
     }
-    let backend = backend(arguments.unsafe_no_sandbox)?;
+    // Before any output is touched, whose own handler would end the program at once.
     let cancellation = cancelled_by_signals();
+    for file in reports.iter().filter_map(|report| report.file.as_deref()) {
+        // An output that can't be written is said before the work is done, not after.
+        drop(output::Output::create(file, &[])?);
+    }
+    let backend = backend(arguments.unsafe_no_sandbox)?;
     let folder = match &arguments.output {
         Some(folder) => Some(folder.clone()),
         None => (submissions.len() > 1).then(|| PathBuf::from(DEFAULT_OUTPUT)),
@@ -43,9 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     if arguments.watch {
         return session.watch(&submissions, &reports);
     }
-    let grades = session.grade(&submissions, arguments.fresh)?;
-    session.report(&grades, &reports)?;
-    Ok(session.exit_code(&grades))
+    session.grade_and_report(&submissions, &reports)
 }
 
 /// Finds a suite by name or file.
@@ -88,10 +91,16 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
         .get_or_init(|| {
             let cancellation = Arc::new(Cancellation::default());
             let signalled = cancellation.clone();
+            let mut first = None;
             // Without a handler a signal ends the program, and the sandbox ends with it.
             drop(ctrlc::set_handler(move || {
+                // `timeout` and a terminal may send one stop twice.
+                let first = *first.get_or_insert_with(Instant::now);
                 if signalled.is_cancelled() {
-                    std::process::exit(exit::INTERRUPTED.into());
+                    if first.elapsed() > Duration::from_secs(1) {
+                        std::process::exit(exit::INTERRUPTED.into());
+                    }
+                    return;
                 }
                 console::complain(b"stopping; results so far are kept (once more to stop at once)\n");
                 signalled.cancel();
@@ -139,7 +148,17 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
-    fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<Vec<Grade>> {
+    fn grade_and_report(&self, submissions: &[Submission], reports: &[Report]) -> Result<u8> {
+        let (grades, fault) = self.grade(submissions, self.arguments.fresh)?;
+        self.report(&grades, reports)?;
+        match fault {
+            Some(fault) => Err(fault),
+            None => Ok(self.exit_code(&grades)),
+        }
+    }
+
+    /// The grades, and what kept the rest from being graded or kept.
+    fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let mut journal = match &self.folder {
             Some(folder) => {
                 fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
@@ -155,7 +174,7 @@ impl Session<'_> {
         };
         let mut display = Display::new(self.plan, submissions);
         let mut log_error = None;
-        let grades = batch::run(
+        let graded = batch::run(
             self.plan,
             submissions,
             self.backend,
@@ -171,30 +190,34 @@ impl Session<'_> {
                     log_error = Some(error);
                 }
             },
-        )?;
+        );
         drop(display);
-        match log_error {
-            Some(error) => Err(error),
-            None => Ok(grades),
-        }
+        let fault = graded.fault.map(anyhow::Error::from);
+        Ok((graded.grades, fault.or(log_error)))
     }
 
     /// Writes the reports and, into the folder, the files that a batch ends with.
     fn report(&self, grades: &[Grade], reports: &[Report]) -> Result<()> {
+        // One file that can't be written must not cost the others.
+        let mut wrong = None;
+        let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
+        if let Some(folder) = &self.folder {
+            let lines: String = grades.iter().map(grade::json_line).collect();
+            keep(output::write(&folder.join("grades.csv"), &[], grade::csv_of_submissions(grades).as_bytes()));
+            keep(output::write(&folder.join("scenes.csv"), &[], Format::Csv.render(grades).as_bytes()));
+            keep(output::write(&folder.join("grades.jsonl"), &[], lines.as_bytes()));
+        }
         for report in reports {
             let text = report.format.render(grades);
             match &report.file {
-                Some(file) => output::write(file, &[], text.as_bytes())?,
-                None => console::print(text.as_bytes())?,
+                Some(file) => keep(output::write(file, &[], text.as_bytes())),
+                None => keep(console::print(text.as_bytes())),
             }
         }
-        if let Some(folder) = &self.folder {
-            let lines: String = grades.iter().map(grade::json_line).collect();
-            output::write(&folder.join("grades.csv"), &[], grade::csv_of_submissions(grades).as_bytes())?;
-            output::write(&folder.join("scenes.csv"), &[], Format::Csv.render(grades).as_bytes())?;
-            output::write(&folder.join("grades.jsonl"), &[], lines.as_bytes())?;
+        match wrong {
+            Some(error) => Err(error),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn exit_code(&self, grades: &[Grade]) -> u8 {
@@ -213,10 +236,9 @@ impl Session<'_> {
     fn watch(&self, submissions: &[Submission], reports: &[Report]) -> Result<u8> {
         loop {
             let seen = stamps(submissions);
-            let grades = self.grade(submissions, self.arguments.fresh)?;
-            self.report(&grades, reports)?;
+            let code = self.grade_and_report(submissions, reports)?;
             if self.cancellation.is_cancelled() {
-                return Ok(self.exit_code(&grades));
+                return Ok(code);
             }
             console::complain(b"waiting for a change; Ctrl-C ends\n");
             // A file is graded when it has stopped changing: a linker writes in several goes.
@@ -224,7 +246,7 @@ impl Session<'_> {
             loop {
                 std::thread::sleep(Duration::from_millis(300));
                 if self.cancellation.is_cancelled() {
-                    return Ok(self.exit_code(&grades));
+                    return Ok(exit::INTERRUPTED);
                 }
                 let now = stamps(submissions);
                 if now == last && now != seen && now.iter().all(Option::is_some) {
@@ -236,13 +258,21 @@ impl Session<'_> {
     }
 }
 
-/// What tells that a program has changed.
+/// What tells that a submission has changed: the newest change below it, and its size.
 fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
-    let newest = |path: &Path| {
-        let data = fs::metadata(path).ok()?;
-        Some((data.modified().ok()?, data.len()))
-    };
-    submissions.iter().map(|submission| newest(&submission.path)).collect()
+    submissions.iter().map(|submission| newest(&submission.path, &mut 20_000)).collect()
+}
+
+fn newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
+    *budget = budget.checked_sub(1)?;
+    let data = fs::symlink_metadata(path).ok()?;
+    let data = if data.is_symlink() { fs::metadata(path).ok()? } else { data };
+    let own = (data.modified().ok()?, data.len());
+    if !data.is_dir() {
+        return Some(own);
+    }
+    let below = fs::read_dir(path).ok()?.flatten().filter_map(|entry| newest(&entry.path(), budget));
+    Some(below.fold(own, |(time, size), (newer, more)| (time.max(newer), size + more)))
 }
 
 /// A log per run: what the program wrote, made harmless, and the verdict.
@@ -267,10 +297,13 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     Ok(())
 }
 
-/// A name as a file name: no separators, no leading dot, not too long.
+/// A name as a file name: no separators, no leading dot, not too long, and another for every other name.
 fn file_name(name: &str) -> String {
-    let safe = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
-    let name: String = name.chars().map(safe).take(100).collect();
-    let name = name.trim_matches('.').trim().to_owned();
-    if name.is_empty() { "_".to_owned() } else { name }
+    let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
+    let plain: String = name.replace('/', "_").chars().map(safe).take(100).collect();
+    let plain = plain.trim_start_matches('.').trim();
+    if !plain.is_empty() && plain == name.replace('/', "_") {
+        return plain.to_owned();
+    }
+    format!("{plain}-{}", &blake3::hash(name.as_bytes()).to_hex()[..8])
 }

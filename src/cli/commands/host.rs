@@ -77,9 +77,9 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
         ),
     ] {
         let plan = plan::Plan { run, ..plan.clone() };
-        let submission = Submission { name, path: sample.clone() };
+        let submission = Submission { name, path: sample.clone(), program: None };
         let options = BatchOptions { jobs, fail_fast: false, recorded: false };
-        let grades = batch::run(&plan, &[submission], &backend, None, options, &cancellation, &mut |_| {})?;
+        let grades = batch::run(&plan, &[submission], &backend, None, options, &cancellation, &mut |_| {}).grades;
         console::print(Format::Text.render(&grades).as_bytes())?;
         if cancellation.is_cancelled() {
             return Ok(exit::INTERRUPTED);

@@ -1,5 +1,8 @@
 //! Finds the submissions that the arguments of `grade` mean.
-use crate::{cli::grading::Grade, suite::batch::Submission};
+use crate::{
+    cli::{console, grading::Grade},
+    suite::batch::Submission,
+};
 use anyhow::{Context, Result, bail};
 use std::{
     collections::BTreeMap,
@@ -17,11 +20,9 @@ pub(super) fn find(arguments: &Grade, builds: bool) -> Result<Vec<Submission>> {
     for path in &arguments.programs {
         let data = fs::metadata(path).with_context(|| format!("no submission at {}", path.display()))?;
         if !data.is_dir() {
-            found.push(Submission { name: name_of(path), path: path.clone() });
+            found.push(Submission { name: name_of(path), path: path.clone(), program: None });
         } else if arguments.single {
-            // A program that is missing is the submission's fault: its grade says so.
-            let program = if builds { path.clone() } else { path.join(&arguments.program) };
-            found.push(Submission { name: name_of(path), path: program });
+            found.push(folder(path, arguments, builds));
         } else {
             found.extend(entries(path, arguments, builds)?);
         }
@@ -34,13 +35,15 @@ fn name_of(path: &Path) -> String {
     absolute.file_name().unwrap_or(absolute.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// The submission that a folder is: the folder itself when it is to be built, else the program inside.
-fn in_folder(folder: &Path, arguments: &Grade, builds: bool) -> Option<Submission> {
-    let path = if builds { folder.to_owned() } else { folder.join(&arguments.program) };
-    (builds || path.is_file()).then(|| Submission { name: name_of(folder), path })
+/// The submission that a folder is: its sources when they are to be built, else the program inside. A program that is
+/// missing is the submission's fault: its grade says so.
+fn folder(path: &Path, arguments: &Grade, builds: bool) -> Submission {
+    let program = (!builds).then(|| arguments.program.clone());
+    Submission { name: name_of(path), path: path.to_owned(), program }
 }
 
-/// One submission per entry, in alphabetical order; hidden entries and files that can't be run are passed over.
+/// One submission per entry, in alphabetical order. Hidden entries are passed over, and files that can't be run, with a
+/// word about each.
 fn entries(folder: &Path, arguments: &Grade, builds: bool) -> Result<Vec<Submission>> {
     let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     let mut paths: Vec<PathBuf> = listing
@@ -49,23 +52,19 @@ fn entries(folder: &Path, arguments: &Grade, builds: bool) -> Result<Vec<Submiss
         .with_context(|| format!("cannot read {}", folder.display()))?;
     paths.retain(|path| path.file_name().is_some_and(|name| !name.as_encoded_bytes().starts_with(b".")));
     paths.sort();
-    let submissions: Vec<Submission> = paths
-        .iter()
-        .filter_map(|path| match fs::metadata(path) {
-            Ok(data) if data.is_dir() => in_folder(path, arguments, builds),
+    let mut submissions = Vec::new();
+    for path in &paths {
+        match fs::metadata(path) {
+            Ok(data) if data.is_dir() => submissions.push(self::folder(path, arguments, builds)),
             Ok(data) if data.is_file() && data.permissions().mode() & 0o111 != 0 => {
-                Some(Submission { name: name_of(path), path: path.clone() })
+                submissions.push(Submission { name: name_of(path), path: path.clone(), program: None });
             }
-            _ => None,
-        })
-        .collect();
+            Ok(_) => console::complain(format!("passed over {}: it is not executable\n", path.display()).as_bytes()),
+            Err(error) => console::complain(format!("passed over {}: {error}\n", path.display()).as_bytes()),
+        }
+    }
     if submissions.is_empty() {
-        bail!(
-            "{} holds no submission: neither programs, nor folders with a program {} (see --program, --single and \
-             the suite's [build])",
-            folder.display(),
-            arguments.program
-        );
+        bail!("{} holds no submission: neither programs nor folders", folder.display());
     }
     Ok(submissions)
 }

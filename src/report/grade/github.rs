@@ -7,6 +7,15 @@ use std::fmt::Write;
 pub(super) fn annotations(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
+        for warning in &grade.warnings {
+            let _ = writeln!(text, "::warning title={}::{}", property(&grade.submission), data(warning));
+        }
+        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+            let title = property(&format!("{}: {}", grade.submission, build.end));
+            let words: String = build.output.chars().take(4000).collect();
+            let _ =
+                writeln!(text, "::error title={title}::{}", words.lines().map(data).collect::<Vec<_>>().join("%0A"));
+        }
         for scene in grade.scenes().filter(|scene| !scene.verdict.is_accepted()) {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
@@ -38,6 +47,16 @@ pub(super) fn summary(grades: &[Grade]) -> String {
             grade.verdict,
             points(grade.max_points)
         );
+        for warning in &grade.warnings {
+            let _ = writeln!(text, "**Warning:** {}\n", cell(warning));
+        }
+        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+            let _ = writeln!(text, "{}\n", cell(&build.end));
+            for line in build.output.lines().take(40) {
+                let _ = writeln!(text, "    {}", one_line(line));
+            }
+            text.push('\n');
+        }
         let _ = writeln!(text, "| scene | verdict | points | what happened |\n|---|---|---:|---|");
         for scene in grade.scenes() {
             let (name, words) = (cell(&scene.scene), cell(&scene.summary));

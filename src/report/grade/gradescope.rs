@@ -1,6 +1,6 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
 use super::{plain, points};
-use crate::suite::{Grade, SceneGrade, Verdict};
+use crate::suite::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -77,7 +77,10 @@ pub(super) fn render(grade: &Grade) -> String {
 }
 
 fn overall(grade: &Grade) -> String {
+    // What everybody reads at once says nothing about groups that not everybody sees.
+    let all_visible = grade.groups.iter().all(|group| group.visibility == Visibility::Visible);
     let mut lines = vec![match grade.points {
+        Some(_) if !all_visible => "Graded.".to_owned(),
         Some(reached) => format!("{}: {} of {} points.", grade.verdict, points(reached), points(grade.max_points)),
         None => "The grader failed; this is not your fault and costs nothing. Staff has to look at it.".to_owned(),
     }];

@@ -9,6 +9,9 @@ pub(super) fn render(grades: &[Grade]) -> String {
     for grade in grades {
         for group in &grade.groups {
             let mut suite = TestSuite::new(format!("{}: {}", plain(&grade.submission), plain(&group.name)));
+            for (number, warning) in grade.warnings.iter().enumerate() {
+                suite.add_property(quick_junit::Property::new(format!("warning.{number}"), plain(warning)));
+            }
             for scene in &group.scenes {
                 suite.add_test_case(case(grade, scene));
             }
@@ -27,8 +30,12 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             let mut status = TestCaseStatus::non_success(kind);
             status.set_type(verdict.words());
             status.set_message(plain(&scene.summary));
-            if !scene.details.is_empty() {
-                status.set_description(plain(&scene.details.join("\n")));
+            let mut description = scene.details.clone();
+            if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+                description.extend([build.end.clone(), build.output.clone()]);
+            }
+            if !description.is_empty() {
+                status.set_description(plain(&description.join("\n")));
             }
             status
         }

@@ -1,6 +1,6 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
 use super::{one_line, plain};
-use crate::suite::{Grade, Verdict};
+use crate::suite::{Grade, GroupGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
 /// PrairieLearn refuses more than a megabyte; texts are cut long before.
@@ -28,8 +28,7 @@ struct Test {
 
 /// The results of one submission.
 pub(super) fn render(grade: &Grade) -> String {
-    let shown = grade.groups.iter().filter(|group| group.visibility == crate::suite::config::Visibility::Visible);
-    let tests = shown
+    let tests = shown(grade)
         .flat_map(|group| &group.scenes)
         .map(|scene| Test {
             name: one_line(&scene.scene),
@@ -46,14 +45,31 @@ pub(super) fn render(grade: &Grade) -> String {
         score: grade.points.map(|points| if grade.max_points > 0.0 { points / grade.max_points } else { 0.0 }),
         message: match grade.verdict {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
-            verdict => verdict.words().to_owned(),
+            // Groups that students do not see must not show through.
+            _ => shown_verdict(grade).words().to_owned(),
         },
-        output: build.map(|build| cut(&format!("{}\n{}", build.end, build.output))).unwrap_or_default(),
+        output: grade
+            .warnings
+            .iter()
+            .map(|warning| format!("warning: {warning}"))
+            .chain(build.map(|build| format!("{}\n{}", build.end, build.output)))
+            .map(|text| cut(&text))
+            .collect::<Vec<_>>()
+            .join("\n"),
         tests,
     };
     let mut text = serde_json::to_string_pretty(&results).unwrap_or_default();
     text.push('\n');
     text
+}
+
+/// The groups that students see at once.
+fn shown(grade: &Grade) -> impl Iterator<Item = &GroupGrade> {
+    grade.groups.iter().filter(|group| group.visibility == Visibility::Visible)
+}
+
+fn shown_verdict(grade: &Grade) -> Verdict {
+    shown(grade).map(|group| group.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
 fn cut(text: &str) -> String {

@@ -13,9 +13,9 @@ use super::{
 };
 use crate::sandbox::Backend;
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{
-        Arc, OnceLock,
+        Arc, Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicUsize, Ordering},
         mpsc,
     },
@@ -29,6 +29,9 @@ pub struct Submission {
     pub name: String,
     /// The program, or the folder of sources when the plan builds.
     pub path: PathBuf,
+    /// The program's name in the folder `path`, when the submission is a folder that somebody else filled. Links that
+    /// leave the folder are not followed.
+    pub program: Option<String>,
 }
 
 /// How to go about it.
@@ -79,12 +82,13 @@ pub enum Event<'a> {
     },
 }
 
-/// Why a grading ended early. What was judged before is in the journal.
-#[derive(Debug, thiserror::Error)]
-pub enum BatchError {
-    /// A result can't be kept.
-    #[error(transparent)]
-    Journal(#[from] JournalError),
+/// What a grading ended with.
+#[derive(Debug)]
+pub struct Graded {
+    /// The grades, in the order of the submissions.
+    pub grades: Vec<Grade>,
+    /// Why results could no longer be kept, for example a full disk: grading was stopped then.
+    pub fault: Option<JournalError>,
 }
 
 enum Message {
@@ -94,18 +98,17 @@ enum Message {
     Done(usize, usize, Box<SceneGrade>, Option<Key>),
 }
 
-/// One submission at work: staged once, by the first job that needs it.
+/// One submission at work: staged once, by the first job that has to run it, and until its last scene is done.
 struct Work {
-    staged: OnceLock<Result<Arc<Staged>, String>>,
+    /// The digest of the program as it lies there; none for what has to be built first.
+    digest: OnceLock<Option<blake3::Hash>>,
+    staged: Mutex<Option<Arc<Result<Staged, String>>>>,
     begun: OnceLock<Instant>,
     left: AtomicUsize,
 }
 
 /// Grades all submissions; the grades come back in the same order. After a cancellation the scenes that were not run
 /// say so.
-///
-/// # Errors
-/// When a result can't be written to the journal; everything at work is ended first.
 pub fn run(
     plan: &Plan,
     submissions: &[Submission],
@@ -114,18 +117,24 @@ pub fn run(
     options: BatchOptions,
     cancellation: &Cancellation,
     on_event: &mut dyn FnMut(Event<'_>),
-) -> Result<Vec<Grade>, BatchError> {
+) -> Graded {
+    staging::sweep();
     let scenes: Vec<_> = plan.scenes().collect();
     let works: Vec<Work> = submissions
         .iter()
-        .map(|_| Work { staged: OnceLock::new(), begun: OnceLock::new(), left: AtomicUsize::new(scenes.len()) })
+        .map(|_| Work {
+            digest: OnceLock::new(),
+            staged: Mutex::default(),
+            begun: OnceLock::new(),
+            left: AtomicUsize::new(scenes.len()),
+        })
         .collect();
     let tasks = submissions.len() * scenes.len();
     let next = AtomicUsize::new(0);
     let known: Option<&Journal> = journal.as_deref();
     // Jobs look results up in what the journal held at the start; new ones are kept by the main thread.
     let found = known.map(Journal::snapshot).unwrap_or_default();
-    let words = plan_words(plan, options);
+    let words = plan_words(plan, options, backend);
     let (sender, receiver) = mpsc::channel();
     let mut results: Vec<Vec<Option<SceneGrade>>> = submissions.iter().map(|_| vec![None; scenes.len()]).collect();
     let mut grades: Vec<Option<Grade>> = submissions.iter().map(|_| None).collect();
@@ -153,24 +162,34 @@ pub fn run(
                     let steps = scene.scene.steps();
                     work.begun.get_or_init(Instant::now);
                     let _ = sender.send(Message::Begins(submission, number));
-                    let staged = work.staged.get_or_init(|| {
-                        stage(&submissions[submission], plan, backend, cancellation)
-                            .map(Arc::new)
-                            .map_err(|error| error.to_string())
+                    let key_of = |digest: &blake3::Hash, called: &str| {
+                        // A program may behave as it is called, so its name belongs to what is graded.
+                        let own = [scene.name.as_str(), called];
+                        let words: Vec<&str> = words.iter().map(String::as_str).chain(own).collect();
+                        Key::of(digest, &scene.xml, &words)
+                    };
+                    let known = work.digest.get_or_init(|| digest(&submissions[submission], plan)).and_then(|digest| {
+                        let called = submissions[submission].called();
+                        found.get(&key_of(&digest, &called))
                     });
-                    let (grade, key) = match staged {
+                    if let Some(grade) = known {
+                        let grade = SceneGrade { cached: true, ..grade.clone() };
+                        let _ = sender.send(Message::Done(submission, number, Box::new(grade), None));
+                        continue;
+                    }
+                    let staged = work.staged(|| stage(&submissions[submission], plan, backend, cancellation));
+                    let (grade, key) = match &*staged {
                         Err(message) => (not_run(&scene.name, steps, Verdict::JudgeError, message.clone()), None),
+                        Ok(Staged { refused: Some(why), .. }) => {
+                            (not_run(&scene.name, steps, Verdict::RuntimeError, why.clone()), None)
+                        }
                         Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.succeeded) => {
                             let verdict =
                                 if cancellation.is_cancelled() { Verdict::NotRun } else { Verdict::CompileError };
                             (not_run(&scene.name, steps, verdict, "the sources do not build".to_owned()), None)
                         }
                         Ok(staged) => {
-                            // A program may behave as it is called, so its name belongs to what is graded.
-                            let called = staged.program.file_name().unwrap_or_default().to_string_lossy();
-                            let own = [scene.name.as_str(), &called];
-                            let words: Vec<&str> = words.iter().map(String::as_str).chain(own).collect();
-                            let key = Key::of(&staged.digest, &scene.xml, &words);
+                            let key = key_of(&staged.digest, &called(&staged.program));
                             match found.get(&key) {
                                 Some(grade) => (SceneGrade { cached: true, ..grade.clone() }, None),
                                 None => {
@@ -210,7 +229,8 @@ pub fn run(
                     if work.left.fetch_sub(1, Ordering::Relaxed) == 1 {
                         let scenes = results[submission].iter_mut().filter_map(Option::take).collect();
                         let wall = work.begun.get().map_or(Duration::ZERO, Instant::elapsed);
-                        let build = match work.staged.get() {
+                        // The copy goes away now, not when the whole batch ends.
+                        let build = match work.lock().take().as_deref() {
                             Some(Ok(staged)) => staged.build.clone(),
                             _ => None,
                         };
@@ -222,15 +242,45 @@ pub fn run(
             }
         }
     });
-    match failed {
-        Some(error) => Err(error.into()),
-        None => Ok(grades.into_iter().flatten().collect()),
+    Graded { grades: grades.into_iter().flatten().collect(), fault: failed }
+}
+
+impl Work {
+    fn lock(&self) -> MutexGuard<'_, Option<Arc<Result<Staged, String>>>> {
+        self.staged.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The staged submission; whoever comes first stages it, the others wait.
+    fn staged(&self, stage: impl FnOnce() -> Result<Staged, StagingError>) -> Arc<Result<Staged, String>> {
+        let mut staged = self.lock();
+        staged.get_or_insert_with(|| Arc::new(stage().map_err(|error| error.to_string()))).clone()
     }
 }
 
+impl Submission {
+    /// The name of its program's file.
+    fn called(&self) -> String {
+        called(&self.program.as_ref().map_or_else(|| self.path.clone(), |program| self.path.join(program)))
+    }
+}
+
+fn called(program: &Path) -> String {
+    program.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The digest of a program that needs no build and no copy to be known.
+fn digest(submission: &Submission, plan: &Plan) -> Option<blake3::Hash> {
+    let builds = plan.build.is_some() && submission.path.is_dir();
+    let own = !builds && submission.program.is_none();
+    own.then(|| staging::digest(&submission.path)).flatten()
+}
+
 /// Everything besides program and scene that a result depends on.
-fn plan_words(plan: &Plan, options: BatchOptions) -> Vec<String> {
+fn plan_words(plan: &Plan, options: BatchOptions, backend: &Backend) -> Vec<String> {
+    let walls: Vec<&str> =
+        backend.layers().iter().filter(|report| report.active).map(|report| report.layer.name()).collect();
     vec![
+        walls.join(","),
         "parity".to_owned(),
         plan.run.join("\u{1f}"),
         format!("{:?}", plan.limits),
@@ -247,7 +297,10 @@ fn stage(
 ) -> Result<Staged, StagingError> {
     match &plan.build {
         Some(step) if submission.path.is_dir() => staging::build(&submission.path, step, backend, cancellation),
-        _ => staging::program(&submission.path),
+        _ => match &submission.program {
+            Some(program) => staging::program_in(&submission.path, program),
+            None => staging::program(&submission.path),
+        },
     }
 }
 
