@@ -13,6 +13,8 @@ FROM debian:bookworm-slim
 RUN apt-get update \
     && apt-get install -y --no-install-recommends build-essential freeglut3-dev libpng-dev \
     && rm -rf /var/lib/apt/lists/*
-COPY --from=build /source/target/release/fosssim-oracle /source/target/release/fosssim-sample /usr/local/bin/
+# Outside of /usr, which build steps may read. The sample, a right submission, is left out: nobody may copy it.
+COPY --from=build /source/target/release/fosssim-oracle /opt/fosssim/fosssim-oracle
+RUN ln -s /opt/fosssim/fosssim-oracle /usr/local/bin/fosssim-oracle
 ENTRYPOINT ["fosssim-oracle"]
 CMD ["--help"]

@@ -102,6 +102,11 @@ impl Supervisor {
         Self { program: program.into() }
     }
 
+    /// The grader's files that nobody may run: this process's and the supervisor's.
+    fn own_files(&self) -> [PathBuf; 2] {
+        ["/proc/self/exe".into(), self.program.clone()]
+    }
+
     fn command(&self, mode: &str) -> Command {
         let mut command = Command::new(&self.program);
         command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
@@ -180,11 +185,29 @@ impl Backend {
         Ok(Self { kind, layers: reports.into() })
     }
 
-    /// No walls at all: limits, clocks and the kill of everything only. For `--unsafe-no-sandbox`; every report states
-    /// it.
+    /// Every wall that holds on this host, however few: nothing is refused for a missing one. For
+    /// `--unsafe-no-sandbox`. The layers say what is missing, see [`Backend::weaknesses`].
+    ///
+    /// # Errors
+    ///
+    /// [`SandboxError::Missing`] when we are root and cannot become another user: a program is never run as root. Also
+    /// when the supervisor does not start.
+    pub fn unsandboxed(supervisor: Supervisor) -> Result<Self, SandboxError> {
+        let reports = layers::reports(&supervisor.probe()?);
+        let walls = layers::whatever_holds(&reports).map_err(|missing| SandboxError::Missing { missing })?;
+        Ok(Self { kind: Kind::Launcher { supervisor, walls }, layers: reports.into() })
+    }
+
+    /// Whether every wall holds that this host may not grade without.
     #[must_use]
-    pub fn unsandboxed(supervisor: Supervisor) -> Self {
-        Self { kind: Kind::Launcher { supervisor, walls: Walls::default() }, layers: layers::none() }
+    pub fn is_complete(&self) -> bool {
+        self.layers.iter().all(|report| report.active || !report.required)
+    }
+
+    /// One line per required wall that does not hold; none for a complete sandbox.
+    #[must_use]
+    pub fn weaknesses(&self) -> Vec<String> {
+        layers::missing(&self.layers)
     }
 
     /// A backend that runs nothing and answers as scripted, for tests of whatever uses the sandbox.
@@ -210,7 +233,7 @@ impl Backend {
             Kind::Launcher { supervisor, walls } => (supervisor, *walls),
             Kind::Fake(script) => return Ok(script(job).into_running(job, self.layers.clone())),
         };
-        let examined = match program::examine(&job.program) {
+        let examined = match program::examine(&job.program, &supervisor.own_files()) {
             Ok(examined) => examined,
             Err(problem) => return Ok(FakeRun::could_not_start(problem).into_running(job, self.layers.clone())),
         };

@@ -190,28 +190,42 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
 
 /// The walls that the supervisor puts up, given the reports; `None` without the required set, with what is missing.
 pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
-    let missing: Vec<String> = reports
-        .iter()
-        .filter(|report| report.required && !report.active)
-        .map(|report| {
-            let remedy = report.remedy.map(|remedy| format!("; {remedy}")).unwrap_or_default();
-            format!("{}: {}{remedy}", report.layer.name(), report.detail)
-        })
-        .collect();
-    if !missing.is_empty() {
-        return Err(missing.join("\n"));
+    let missing = missing(reports);
+    if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
+}
+
+/// The walls that hold, without regard to the required set. Only root must not run programs as itself: the error says
+/// why it would.
+pub(super) fn whatever_holds(reports: &[LayerReport]) -> Result<Walls, String> {
+    match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
+        Some(report) => Err(line(report)),
+        None => Ok(active(reports)),
     }
+}
+
+/// One line per required wall that does not hold.
+pub(super) fn missing(reports: &[LayerReport]) -> Vec<String> {
+    reports.iter().filter(|report| report.required && !report.active).map(line).collect()
+}
+
+fn line(report: &LayerReport) -> String {
+    let remedy = report.remedy.map(|remedy| format!("; {remedy}")).unwrap_or_default();
+    format!("{}: {}{remedy}", report.layer.name(), report.detail)
+}
+
+fn active(reports: &[LayerReport]) -> Walls {
     let active = |layer| reports.iter().any(|report| report.layer == layer && report.active);
-    Ok(Walls {
+    Walls {
         landlock: active(Layer::FileRules),
         scopes: active(Layer::Scopes),
         seccomp: active(Layer::CallFilter),
-        notify: active(Layer::NamedCalls),
+        // A listener belongs to the filter.
+        notify: active(Layer::NamedCalls) && active(Layer::CallFilter),
         own_user: active(Layer::OwnUser),
-    })
+    }
 }
 
-/// What a report says of a run without walls.
+/// What a report says of a run that never happened.
 pub(super) fn none() -> Arc<[LayerReport]> {
     let off = |layer| LayerReport {
         layer,
@@ -255,6 +269,24 @@ mod tests {
     fn root_that_cannot_change_its_user_is_refused() {
         let bound = Probe { own_user: Some("invalid argument".into()), ..healthy(true) };
         assert!(walls(&reports(&bound)).unwrap_err().contains("ordinary user"));
+    }
+
+    #[test]
+    fn without_the_required_set_whatever_holds_stays_up() {
+        let lacking = Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(false) };
+        let walls = whatever_holds(&reports(&lacking)).unwrap();
+        assert!(!walls.landlock && walls.seccomp && walls.notify);
+        assert_eq!(missing(&reports(&lacking)).len(), 1);
+        assert_eq!(whatever_holds(&reports(&healthy(true))), super::walls(&reports(&healthy(true))));
+        let filterless = Probe { seccomp: Some("none".into()), ..healthy(true) };
+        let walls = whatever_holds(&reports(&filterless)).unwrap();
+        assert!(walls.own_user && walls.landlock && !walls.seccomp && !walls.notify);
+    }
+
+    #[test]
+    fn root_never_runs_programs_as_itself() {
+        let bound = Probe { own_user: Some("not permitted".into()), ..healthy(true) };
+        assert!(whatever_holds(&reports(&bound)).unwrap_err().contains("a user per program"));
     }
 
     #[test]

@@ -20,6 +20,7 @@ mod fake;
 mod job;
 mod layers;
 mod outcome;
+mod own;
 mod program;
 mod running;
 pub mod selftest;

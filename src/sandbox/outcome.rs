@@ -179,6 +179,18 @@ pub enum StartProblem {
         /// Advice, or nothing.
         hint: &'static str,
     },
+    /// The loader or interpreter is not one of the system's.
+    #[error(
+        "it asks to be run by {path}, which is not an interpreter or loader of the system; \
+         begin a script with #!/usr/bin/env NAME or #!/bin/sh, and link a program with the system's compiler"
+    )]
+    NotTheSystems {
+        /// The path that the program names.
+        path: String,
+    },
+    /// The file is the grader itself.
+    #[error("this is the grader's own program, not a submission; name the submission's program")]
+    GradersOwn,
     /// Somebody has the file open for writing.
     #[error("the file is still being written (text file busy); wait for the build or the copy to end")]
     Busy,

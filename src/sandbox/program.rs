@@ -6,10 +6,11 @@
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 
 use super::outcome::StartProblem;
+use super::own;
 
 const ELF_MAGIC: &[u8] = b"\x7fELF";
 const PT_LOAD: u32 = 1;
@@ -22,6 +23,11 @@ const SANITISER_NAMES: [&[u8]; 4] = [b"__asan_init", b"__tsan_init", b"__msan_in
 /// No header, path or table of a sane program is longer than these.
 const LONGEST_PATH: u64 = 4096;
 const LONGEST_TABLE: u64 = 16 << 20;
+/// Where the system keeps the programs that a script may name, in the order of the sandbox's `PATH`.
+const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
+/// Where the system keeps loaders, and interpreters that are linked from the folders of programs.
+const LIBRARIES: [&str; 8] =
+    ["/lib", "/lib32", "/lib64", "/libx32", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/libexec"];
 
 /// What the sandbox must know of a program before it starts it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -34,12 +40,13 @@ pub(super) struct Program {
     pub(super) sanitised: bool,
 }
 
-/// Looks at the file at `path`, following symbolic links.
+/// Looks at the file at `path`, following symbolic links. `own` are the grader's own programs, which are never run as
+/// a submission, an interpreter or a loader.
 ///
 /// # Errors
 ///
 /// The reason why it cannot be started on this machine.
-pub(super) fn examine(path: &Path) -> Result<Program, StartProblem> {
+pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProblem> {
     let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::PermissionDenied => StartProblem::NotPermitted,
         _ => StartProblem::NotFound,
@@ -50,6 +57,9 @@ pub(super) fn examine(path: &Path) -> Result<Program, StartProblem> {
     if !metadata.is_file() {
         return Err(StartProblem::NotAFile);
     }
+    if is_one_of(path, own) {
+        return Err(StartProblem::GradersOwn);
+    }
     if metadata.permissions().mode() & 0o111 == 0 {
         return Err(StartProblem::NotExecutable);
     }
@@ -57,16 +67,19 @@ pub(super) fn examine(path: &Path) -> Result<Program, StartProblem> {
     let mut file = File::open(path).map_err(|_| StartProblem::NotPermitted)?;
     let start = read_at(&mut file, 0, 256).unwrap_or_default();
     if start.starts_with(ELF_MAGIC) {
-        elf(&mut file, &start)
+        elf(&mut file, &start, own)
     } else if let Some(line) = start.strip_prefix(b"#!") {
-        script(line)
+        script(line, own)
     } else {
         Err(StartProblem::NotAProgram)
     }
 }
 
 /// The system's paths of a script's interpreter; for `#!/usr/bin/env NAME` also that of NAME.
-fn script(line: &[u8]) -> Result<Program, StartProblem> {
+///
+/// Whatever is named here becomes executable for the submission. So it must be one of the system's own programs, after
+/// all links and `..` are resolved: a script that names the grader's program would be graded by its own answers.
+fn script(line: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
     let hint = if line.ends_with('\r') {
         " (its lines end in CR LF: convert them with dos2unix)"
@@ -77,17 +90,24 @@ fn script(line: &[u8]) -> Result<Program, StartProblem> {
     let interpreter = words.next().ok_or(StartProblem::NoInterpreter)?;
     let missing =
         |name: &str| StartProblem::MissingInterpreter { interpreter: name.escape_default().to_string(), hint };
-    let mut executable = vec![existing(Path::new(interpreter)).ok_or_else(|| missing(interpreter))?];
+    let found = existing(Path::new(interpreter)).ok_or_else(|| missing(interpreter))?;
+    let folders = || PROGRAMS.into_iter().chain(LIBRARIES);
+    let mut executable = vec![systems(&found, folders(), own)?];
     if interpreter.ends_with("/env") {
-        let name = words.find(|word| !word.starts_with('-')).ok_or(StartProblem::NoInterpreter)?;
-        let found = ["/usr/bin", "/bin"].iter().find_map(|folder| existing(&Path::new(folder).join(name)));
-        executable.push(found.ok_or_else(|| missing(name))?);
+        let words = words.map(|word| word.strip_prefix("-S").unwrap_or(word));
+        let name = { words }.find(|word| !word.is_empty() && !word.starts_with('-') && !word.contains('='));
+        let name = name.ok_or(StartProblem::NoInterpreter)?;
+        if name.contains('/') {
+            return Err(StartProblem::NotTheSystems { path: name.escape_default().to_string() });
+        }
+        let found = PROGRAMS.iter().find_map(|folder| existing(&Path::new(folder).join(name)));
+        executable.push(systems(&found.ok_or_else(|| missing(name))?, folders(), own)?);
     }
     for index in 0..executable.len() {
         let mut file = File::open(&executable[index]).map_err(|_| StartProblem::NotPermitted)?;
         let start = read_at(&mut file, 0, 256).unwrap_or_default();
         if start.starts_with(ELF_MAGIC) {
-            executable.extend(elf(&mut file, &start)?.executable);
+            executable.extend(elf(&mut file, &start, own)?.executable);
         }
     }
     Ok(Program { executable, script: true, sanitised: false })
@@ -97,8 +117,33 @@ fn existing(path: &Path) -> Option<PathBuf> {
     path.is_file().then(|| path.to_path_buf())
 }
 
+/// The resolved path of a loader or an interpreter, which must be the system's: beneath one of `folders`, and not the
+/// grader's.
+fn systems(
+    path: &Path,
+    mut folders: impl Iterator<Item = &'static str>,
+    own: &[PathBuf],
+) -> Result<PathBuf, StartProblem> {
+    let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
+    // A relative path would be looked up in the program's folder, and one in /proc means whoever looks.
+    let resolved = path.canonicalize().map_err(|_| refused())?;
+    let beneath = |folder: &str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
+    let named = [path, &resolved].into_iter().any(own::is_name);
+    if !path.is_absolute() || path.starts_with("/proc") || named || is_one_of(&resolved, own) || !folders.any(beneath) {
+        return Err(refused());
+    }
+    Ok(resolved)
+}
+
+/// Whether the path leads to one of these files, whatever its name.
+fn is_one_of(path: &Path, own: &[PathBuf]) -> bool {
+    let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
+    let here = identity(path);
+    here.is_some() && own.iter().any(|own| identity(own) == here)
+}
+
 /// The facts of an ELF file whose first bytes are `start`.
-fn elf(file: &mut File, start: &[u8]) -> Result<Program, StartProblem> {
+fn elf(file: &mut File, start: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
     if start.get(4) == Some(&1) {
         return Err(StartProblem::ThirtyTwoBit);
     }
@@ -123,7 +168,7 @@ fn elf(file: &mut File, start: &[u8]) -> Result<Program, StartProblem> {
         if !loader.is_file() {
             return Err(StartProblem::MissingLoader { loader: text.escape_default().to_string() });
         }
-        program.executable.push(loader);
+        program.executable.push(systems(&loader, LIBRARIES.into_iter(), own)?);
     }
     program.sanitised =
         dynamic_names(file, &segments).is_some_and(|table| SANITISER_NAMES.iter().any(|name| contains(&table, name)));
@@ -222,28 +267,32 @@ mod tests {
     #[test]
     fn what_is_not_a_program_is_said_to_be_what_it_is() {
         let folder = tempfile::tempdir().unwrap();
-        assert_eq!(examine(folder.path()), Err(StartProblem::IsFolder));
-        assert_eq!(examine(&folder.path().join("none")), Err(StartProblem::NotFound));
-        assert_eq!(examine(Path::new("/dev/null")), Err(StartProblem::NotAFile));
+        assert_eq!(examine(folder.path(), &[]), Err(StartProblem::IsFolder));
+        assert_eq!(examine(&folder.path().join("none"), &[]), Err(StartProblem::NotFound));
+        assert_eq!(examine(Path::new("/dev/null"), &[]), Err(StartProblem::NotAFile));
         let (_kept, path) = written("a", b"#!/bin/sh\n", 0o644);
-        assert_eq!(examine(&path), Err(StartProblem::NotExecutable));
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotExecutable));
         let (_kept, path) = written("a", b"hello", 0o755);
-        assert_eq!(examine(&path), Err(StartProblem::NotAProgram));
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotAProgram));
         let (_kept, path) = written("a", b"", 0o755);
-        assert_eq!(examine(&path), Err(StartProblem::NotAProgram));
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotAProgram));
     }
 
     #[test]
     fn foreign_and_unlinked_files_are_named() {
         let here = this_machine() as u8;
         let (_kept, path) = written("a", &header(1, 2, 3), 0o755);
-        assert_eq!(examine(&path), Err(StartProblem::ThirtyTwoBit));
+        assert_eq!(examine(&path, &[]), Err(StartProblem::ThirtyTwoBit));
         let (_kept, path) = written("a", &header(2, 2, 21), 0o755);
-        assert!(matches!(examine(&path), Err(StartProblem::WrongMachine { machine, .. }) if machine == "PowerPC"));
+        assert!(matches!(examine(&path, &[]), Err(StartProblem::WrongMachine { machine, .. }) if machine == "PowerPC"));
         let (_kept, path) = written("a", &header(2, 1, here), 0o755);
-        assert_eq!(examine(&path), Err(StartProblem::NotLinked { what: "an object file" }));
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotLinked { what: "an object file" }));
         let (_kept, path) = written("a", &header(2, 2, here), 0o755);
-        assert_eq!(examine(&path), Ok(Program::default()), "a static program without segments is the kernel's matter");
+        assert_eq!(
+            examine(&path, &[]),
+            Ok(Program::default()),
+            "a static program without segments is the kernel's matter"
+        );
     }
 
     #[test]
@@ -252,29 +301,69 @@ mod tests {
         bytes[32..40].copy_from_slice(&u64::MAX.to_le_bytes());
         bytes[56..58].copy_from_slice(&u16::MAX.to_le_bytes());
         let (_kept, path) = written("a", &bytes, 0o755);
-        assert_eq!(examine(&path), Ok(Program::default()));
+        assert_eq!(examine(&path, &[]), Ok(Program::default()));
     }
 
     #[test]
     fn scripts_name_their_interpreter() {
         let (_kept, path) = written("a", b"#!\n", 0o755);
-        assert_eq!(examine(&path), Err(StartProblem::NoInterpreter));
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NoInterpreter));
         let (_kept, path) = written("a", b"#!/no/such/shell -e\n", 0o755);
         assert!(
-            matches!(examine(&path), Err(StartProblem::MissingInterpreter { interpreter, .. }) if interpreter == "/no/such/shell")
+            matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { interpreter, .. }) if interpreter == "/no/such/shell")
         );
         let (_kept, path) = written("a", b"#!/no/such/shell\r\n", 0o755);
         assert!(
-            matches!(examine(&path), Err(StartProblem::MissingInterpreter { hint, .. }) if hint.contains("dos2unix"))
+            matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { hint, .. }) if hint.contains("dos2unix"))
         );
         let (_kept, path) = written("a", b"#! /bin/sh -e\n", 0o755);
-        let program = examine(&path).unwrap();
-        assert!(program.script && program.executable[0] == Path::new("/bin/sh"));
+        let program = examine(&path, &[]).unwrap();
+        assert!(program.script && program.executable[0] == Path::new("/bin/sh").canonicalize().unwrap());
+    }
+
+    #[test]
+    fn only_the_systems_own_interpreters_and_loaders_are_executed() {
+        let (_kept, foreign) = written("shell", b"", 0o755);
+        std::fs::copy("/bin/sh", &foreign).unwrap();
+        let foreign = foreign.canonicalize().unwrap();
+        let path = foreign.display();
+        for line in [
+            format!("#!{path}\n"),
+            format!("#!/usr/bin/../..{path}\n"),
+            format!("#!/usr/bin/env {path}\n"),
+            format!("#!/usr/bin/env -S {path} original --\n"),
+            format!("#!/usr/bin/env -S../..{path} original\n"),
+            format!("#!/usr/bin/env -S A=1 {path} original\n"),
+            "#!/proc/self/exe\n".into(),
+            "#!/proc/thread-self/root/bin/sh\n".into(),
+        ] {
+            let (_kept, script) = written("a", line.as_bytes(), 0o755);
+            assert!(matches!(examine(&script, &[]), Err(StartProblem::NotTheSystems { .. })), "{line}");
+        }
+        let mut program = header(2, 3, this_machine() as u8);
+        let loader = format!("{path}\0");
+        (program[32], program[56]) = (64, 1);
+        program.extend(PT_INTERP.to_le_bytes());
+        program.extend([0; 4]);
+        for word in [120, 0, 0, loader.len() as u64, loader.len() as u64, 1] {
+            program.extend(word.to_le_bytes());
+        }
+        program.extend(loader.as_bytes());
+        let (_kept, program) = written("a", &program, 0o755);
+        assert_eq!(examine(&program, &[]), Err(StartProblem::NotTheSystems { path: path.to_string() }));
+    }
+
+    #[test]
+    fn the_graders_own_file_is_nobodys_program_whatever_its_name() {
+        let own = [Path::new("/bin/sh").canonicalize().unwrap()];
+        let (_kept, script) = written("a", b"#!/bin/sh\n", 0o755);
+        assert!(matches!(examine(&script, &own), Err(StartProblem::NotTheSystems { .. })));
+        assert_eq!(examine(Path::new("/bin/sh"), &own), Err(StartProblem::GradersOwn));
     }
 
     #[test]
     fn a_dynamic_program_brings_its_loader() {
-        let program = examine(Path::new("/proc/self/exe")).unwrap();
+        let program = examine(Path::new("/bin/sh"), &[]).unwrap();
         assert!(!program.script && !program.sanitised);
         assert!(program.executable.iter().all(|loader| loader.is_file()));
     }

@@ -416,19 +416,55 @@ fn a_program_dies_with_its_grader() {
 }
 
 #[test]
-fn without_walls_the_limits_still_hold() {
+fn without_the_required_walls_the_limits_and_all_other_walls_still_hold() {
+    let Some(best) = backend() else { return };
     let bench_folder = tempfile::tempdir().unwrap();
-    let backend = Backend::unsandboxed(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle")));
+    let backend = Backend::unsandboxed(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle"))).unwrap();
+    assert!(backend.is_complete() && backend.weaknesses().is_empty(), "this host lacks nothing");
+    assert_eq!(backend.layers(), best.layers(), "no wall that holds is left out");
+    let job = Job::new("/usr/bin/id", bench_folder.path()).arguments(["-u"]);
+    let outcome = backend.start(&job).unwrap().wait().unwrap();
+    assert_ne!(text(&outcome.stdout.bytes), "0\n", "a program never runs as root");
     let limits = Limits { wall: Duration::from_millis(200), ..small() };
     let job = Job::new("/bin/sleep", bench_folder.path()).arguments(["1000"]).limits(limits);
     let outcome = backend.start(&job).unwrap().wait().unwrap();
     assert_eq!(outcome.ended, Ended::WallLimit);
-    assert!(outcome.layers.iter().any(|report| report.layer == Layer::CallFilter && !report.active));
+    assert!(outcome.layers.iter().any(|report| report.layer == Layer::CallFilter && report.active));
     // Eight sleepers where four processes are allowed.
     let script = "for i in 1 2 3 4 5 6 7 8; do sleep 1000 & done; wait";
     let limits = Limits { processes: 4, ..small() };
-    let job = Job::new("/bin/sh", bench_folder.path()).arguments(["-c", script]).limits(limits);
+    let job = Job::new("/bin/sh", bench_folder.path()).arguments(["-c", script]).limits(limits).policy(Policy::Tools);
     assert_eq!(backend.start(&job).unwrap().wait().unwrap().ended, Ended::ProcessLimit);
+}
+
+#[test]
+fn a_program_cannot_have_the_grader_run_in_its_place() {
+    let Some(bench) = Bench::new() else { return };
+    let grader = env!("CARGO_BIN_EXE_fosssim-oracle");
+    for line in [
+        format!("#!{grader} --version\n"),
+        format!("#!/usr/bin/../..{grader} --version\n"),
+        format!("#!/usr/bin/env {grader}\n"),
+        format!("#!/usr/bin/env -S {grader} --version --\n"),
+        "#!/proc/self/exe --version\n".into(),
+    ] {
+        let ended = bench.run(bench.script(&line), &[]).ended;
+        let Ended::CouldNotStart(StartProblem::NotTheSystems { .. }) = ended else { panic!("{line}: {ended:?}") };
+    }
+    for text in
+        [format!("#!/bin/sh\nexec {grader} --version\n"), format!("#!/usr/bin/env sh\nexec {grader} --version\n")]
+    {
+        let outcome = bench.run(bench.script(&text), &[]);
+        assert!(outcome.ended != Ended::Exited(0) && outcome.stdout.bytes.is_empty(), "{text}: {outcome:?}");
+    }
+    assert_eq!(bench.run(grader, &["--version"]).ended, Ended::CouldNotStart(StartProblem::GradersOwn));
+    let link = bench.folder.path().join("link");
+    std::os::unix::fs::symlink(grader, &link).unwrap();
+    assert_eq!(bench.run(link, &["--version"]).ended, Ended::CouldNotStart(StartProblem::GradersOwn));
+    // Not even a folder that it may read shows it the grader.
+    let beside = Path::new(grader).parent().unwrap();
+    let outcome = bench.finish(&bench.job("/bin/cat", &[grader]).readable([beside]).policy(Policy::Tools));
+    assert!(outcome.ended != Ended::Exited(0) && outcome.stdout.bytes.is_empty(), "it read the grader");
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn in_file(name: &str, error: &config::SuiteError) -> anyhow::Error {
 pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     let supervisor = Supervisor::this_program();
     if unsafe_no_sandbox {
-        return Ok(Backend::unsandboxed(supervisor));
+        return Backend::unsandboxed(supervisor).context("programs can't be run on this machine, not even unsafely");
     }
     Backend::best(supervisor).context(
         "programs can't be run safely on this machine; `fosssim-oracle doctor` says what to do, \

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use landlock::RulesetCreated;
 
-use super::{filter, walls};
+use super::{filter, processes, walls};
 use crate::sandbox::sys;
 use crate::sandbox::wire::{self, Failure, Order, Raw};
 
@@ -107,6 +107,7 @@ fn limits(order: &Order, own_user: bool) -> io::Result<()> {
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
     const SPARE_PROCESSES: u64 = 16;
+    const SPARE_FOR_OTHERS: u64 = 128;
     // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
     sys::limit(libc::RLIMIT_CORE, 1)?;
     sys::limit(libc::RLIMIT_FSIZE, order.folder_bytes)?;
@@ -119,10 +120,9 @@ fn limits(order: &Order, own_user: bool) -> io::Result<()> {
         // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
         sys::limit(libc::RLIMIT_AS, order.memory.saturating_mul(2).saturating_add(SPARE_MEMORY))?;
     }
-    if own_user {
-        // The count is per user, so that it means something only for a user of the program's own.
-        sys::limit(libc::RLIMIT_NPROC, u64::from(order.processes) + SPARE_PROCESSES)?;
-    }
+    // The count is per user: what ours does already is added, and room for other runs that begin later.
+    let others = if own_user { 0 } else { processes::threads_of_user(sys::user()) + SPARE_FOR_OTHERS };
+    sys::limit(libc::RLIMIT_NPROC, u64::from(order.processes) + SPARE_PROCESSES + others)?;
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use std::io;
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::sandbox::sys;
 
@@ -70,24 +70,58 @@ pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<
     sys::change_owner(folder, user, group)
 }
 
-/// Opens folders that are closed to their own owner, so that they can be read and removed. Only called while no process
-/// of the program is alive.
-pub(super) fn open_up(folder: BorrowedFd<'_>) {
-    walk(folder, 0, &mut |path, metadata| {
-        let mode = metadata.permissions().mode();
-        if metadata.is_dir() && mode & 0o700 != 0o700 {
-            let name = path.file_name().and_then(|name| CString::new(name.as_bytes()).ok());
-            let parent = path.parent().and_then(|parent| std::fs::File::open(parent).ok());
-            if let (Some(name), Some(parent)) = (name, parent)
-                && let Ok(opened) = sys::open_beneath(parent.as_fd(), &name, libc::O_PATH | libc::O_DIRECTORY)
-            {
-                let entry = format!("/proc/self/fd/{}", opened.as_raw_fd());
-                // A folder that stays closed is reported as over the limit by the measurement that follows.
-                let _ = std::fs::set_permissions(entry, Permissions::from_mode(mode | 0o700));
-            }
+/// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth: what lies
+/// deeper than [`DEEPEST`] is moved up into `folder` itself, because whoever removes it later would run out of
+/// descriptors. The answer is whether nothing lay so deep. Only called while no process of the program is alive.
+pub(super) fn open_up(folder: BorrowedFd<'_>) -> bool {
+    let mut moved: Vec<CString> = Vec::new();
+    open_level(folder, folder, 0, &mut moved);
+    let mut next = 0;
+    while let Some(name) = moved.get(next) {
+        next += 1;
+        if let Ok(inner) = sys::open_beneath(folder, name, libc::O_RDONLY | libc::O_DIRECTORY) {
+            open_level(folder, inner.as_fd(), 1, &mut moved);
         }
-        true
-    });
+    }
+    moved.is_empty()
+}
+
+/// Opens the folders beneath one at `depth` and notes the new names of those that were too deep.
+fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &mut Vec<CString>) {
+    let Ok(entries) = std::fs::read_dir(inside(folder)) else { return };
+    for entry in entries.flatten().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
+        let Ok(name) = CString::new(entry.file_name().as_bytes()) else { continue };
+        let Ok(opened) = sys::open_beneath(folder, &name, libc::O_PATH | libc::O_DIRECTORY) else { continue };
+        let Ok(mode) = std::fs::metadata(inside(opened.as_fd())).map(|metadata| metadata.permissions().mode()) else {
+            continue;
+        };
+        if mode & 0o700 != 0o700 {
+            // A folder that stays closed is reported as over the limit by the measurement that follows.
+            let _ = std::fs::set_permissions(inside(opened.as_fd()), Permissions::from_mode(mode | 0o700));
+        }
+        drop(opened);
+        if depth < DEEPEST {
+            if let Ok(inner) = sys::open_beneath(folder, &name, libc::O_RDONLY | libc::O_DIRECTORY) {
+                open_level(root, inner.as_fd(), depth + 1, moved);
+            }
+        } else if let Some(name) = free_name(root, moved.len())
+            && std::fs::rename(entry.path(), inside(root).join(&name)).is_ok()
+        {
+            moved.extend(CString::new(name));
+        }
+    }
+}
+
+/// A name that the folder does not hold.
+fn free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
+    const TRIES: usize = 100_000;
+    let names = (from..from + TRIES).map(|number| format!(".too-deep-{number}"));
+    { names }.find(|name| inside(folder).join(name).symlink_metadata().is_err())
+}
+
+/// The path of an open folder.
+fn inside(folder: BorrowedFd<'_>) -> PathBuf {
+    PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()))
 }
 
 /// Visits everything beneath the folder until the visitor says stop. The answer is whether everything was visited.
@@ -145,6 +179,28 @@ mod tests {
         assert!(!measure(opened(&folder).as_fd(), 1 << 20, 100).over);
         std::fs::create_dir_all(folder.path().join("x/".repeat(40))).unwrap();
         assert!(measure(opened(&folder).as_fd(), 1 << 20, 100).over);
+    }
+
+    #[test]
+    fn closed_folders_are_opened_at_any_depth_and_can_then_be_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        // From the inside out, so that an ordinary user can do it, too.
+        let deep = folder.path().join("d/".repeat(300));
+        std::fs::create_dir_all(&deep).unwrap();
+        let mut closed = deep.components().as_path();
+        while closed != folder.path() {
+            std::fs::set_permissions(closed, Permissions::from_mode(0o000)).unwrap();
+            closed = closed.parent().unwrap();
+        }
+        assert!(!open_up(opened(&folder).as_fd()), "it says that something lay too deep");
+        let mut folders = 0;
+        let whole = walk(opened(&folder).as_fd(), 0, &mut |_, metadata| {
+            folders += 1;
+            metadata.permissions().mode() & 0o700 == 0o700
+        });
+        assert!(whole && folders == 300, "{folders} folders");
+        assert!(open_up(opened(&folder).as_fd()));
+        folder.close().unwrap();
     }
 
     #[test]

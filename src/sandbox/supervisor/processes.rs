@@ -1,5 +1,6 @@
 //! What `/proc` says about the processes below us, and how they are ended.
 
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 use crate::sandbox::sys;
@@ -53,19 +54,25 @@ pub(super) fn of_user(user: u32) -> Vec<i32> {
     all().filter(owned).collect()
 }
 
+/// The threads of a user, as the kernel counts them for its limit.
+pub(super) fn threads_of_user(user: u32) -> u64 {
+    of_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
+}
+
 /// Ends every descendant and everything that runs as `user`, reaping as it goes. The answer is how many would not go.
 ///
+/// Everybody is stopped before anybody is killed: a fork bomb would otherwise use each place that becomes free.
 /// `reaped` is told of every process that was reaped.
 pub(super) fn end_all(user: Option<u32>, mut reaped: impl FnMut(sys::Reaped)) -> u32 {
-    const PATIENCE: Duration = Duration::from_secs(10);
+    // Only a process that the kernel itself holds (state D) lasts so long.
+    const PATIENCE: Duration = Duration::from_secs(120);
     let start = Instant::now();
     loop {
-        let mut victims: Vec<i32> = descendants().iter().map(|stat| stat.pid).collect();
-        victims.extend(user.into_iter().flat_map(of_user));
-        for &pid in &victims {
-            // It may have gone by itself meanwhile; the next round sees.
-            let _ = sys::kill(pid, libc::SIGKILL);
-        }
+        let victims = stop_then_kill(|| {
+            let mut victims: Vec<i32> = descendants().iter().map(|stat| stat.pid).collect();
+            victims.extend(user.into_iter().flat_map(of_user));
+            victims
+        });
         loop {
             match sys::reap() {
                 Ok(Some(process)) => reaped(process),
@@ -85,21 +92,42 @@ pub(super) fn end_all(user: Option<u32>, mut reaped: impl FnMut(sys::Reaped)) ->
 pub(in crate::sandbox) fn end_orphans(session: i32, user: Option<u32>) {
     const ROUNDS: u32 = 1000;
     for _ in 0..ROUNDS {
-        let mut victims: Vec<i32> = all()
-            .filter_map(read)
-            .filter(|stat| stat.session == session && stat.state != b'Z')
-            .map(|stat| stat.pid)
-            .collect();
-        victims.extend(user.into_iter().flat_map(of_user));
+        let victims = stop_then_kill(|| {
+            let mut victims: Vec<i32> = all()
+                .filter_map(read)
+                .filter(|stat| stat.session == session && stat.state != b'Z')
+                .map(|stat| stat.pid)
+                .collect();
+            victims.extend(user.into_iter().flat_map(of_user));
+            victims
+        });
         if victims.is_empty() {
             return;
         }
-        for pid in victims {
-            // It may have gone by itself meanwhile; the next round sees.
-            let _ = sys::kill(pid, libc::SIGKILL);
-        }
         std::thread::sleep(Duration::from_millis(1));
     }
+}
+
+/// Stops the victims until no new one appears, then kills all of them. The answer is whom it found.
+fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
+    const ROUNDS: u32 = 100;
+    let mut stopped = BTreeSet::new();
+    for _ in 0..ROUNDS {
+        let fresh: Vec<i32> = victims().into_iter().filter(|pid| !stopped.contains(pid)).collect();
+        if fresh.is_empty() {
+            break;
+        }
+        for pid in fresh {
+            // It may have gone by itself meanwhile; the next round sees.
+            let _ = sys::kill(pid, libc::SIGSTOP);
+            stopped.insert(pid);
+        }
+    }
+    for &pid in &stopped {
+        // As above.
+        let _ = sys::kill(pid, libc::SIGKILL);
+    }
+    stopped.into_iter().collect()
 }
 
 /// All living descendants of this process. As their reaper it is an ancestor even of those whose parents have died.
@@ -161,6 +189,29 @@ mod tests {
             stat,
             Stat { pid: 42, state: b'S', parent: 7, session: 43, ticks: 18, threads: 2, resident_pages: 512 }
         );
+    }
+
+    #[test]
+    fn the_threads_of_this_user_are_counted() {
+        assert!(threads_of_user(sys::user()) >= usage(std::process::id() as i32, false).threads.min(1));
+        assert_eq!(threads_of_user(u32::MAX - 7), 0);
+    }
+
+    #[test]
+    fn everybody_found_is_stopped_and_killed_until_nobody_new_appears() {
+        let children: Vec<_> =
+            (0..3).map(|_| std::process::Command::new("/bin/sleep").arg("1000").spawn().unwrap()).collect();
+        let pids: Vec<i32> = children.iter().map(|child| child.id() as i32).collect();
+        // Each look finds one more, as if it had just been forked.
+        let looks = std::cell::Cell::new(0);
+        let found = stop_then_kill(|| {
+            looks.set((looks.get() + 1).min(pids.len()));
+            pids[..looks.get()].to_vec()
+        });
+        assert_eq!(found.len(), 3);
+        for mut child in children {
+            assert!(!child.wait().unwrap().success());
+        }
     }
 
     #[test]

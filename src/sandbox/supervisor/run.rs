@@ -171,7 +171,7 @@ impl Run {
         self.stdout.take_rest();
         self.stderr.take_rest();
         self.hear();
-        folder::open_up(self.folder.as_fd());
+        let shallow = folder::open_up(self.folder.as_fd());
         let after = folder::measure(self.folder.as_fd(), u64::MAX, u64::MAX);
         if let Some((_, (owner, group))) = &self.slot {
             folder::give(self.folder.as_fd(), *owner, *group)
@@ -196,7 +196,7 @@ impl Run {
             wall_micros: micros(wall),
             peak_memory: largest.max(self.peak_memory),
             folder_growth: after.bytes.saturating_sub(self.folder_before.bytes),
-            folder_over: self.over(&after),
+            folder_over: self.over(&after) || !shallow,
             stdout_bytes: self.stdout.bytes.len() as u64,
             stderr_bytes: self.stderr.bytes.len() as u64,
             stdout_truncated: self.stdout.truncated,

@@ -5,8 +5,10 @@
 
 use std::fs::{DirBuilder, File, OpenOptions};
 use std::io;
+use std::ops::Range;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use super::processes;
 
@@ -20,21 +22,35 @@ pub(super) struct Slot {
     _lock: File,
 }
 
-/// Takes the first id that nobody holds and that no process runs under.
+/// How long to wait for an id; no run that keeps its limits lasts so long.
+const PATIENCE: Duration = Duration::from_secs(3600);
+
+/// Takes the first id that nobody holds and that no process runs under. With all of them taken it waits for one.
 ///
 /// # Errors
 ///
-/// When all are taken, or the folder of locks belongs to somebody else.
+/// When none becomes free for an hour, the grader has gone meanwhile, or the folder of locks belongs to somebody else.
 pub(super) fn take() -> io::Result<Slot> {
-    let folder = folder()?;
-    for user in FIRST..FIRST + COUNT {
-        let path = folder.join(user.to_string());
-        let lock = OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(path)?;
-        if lock.try_lock().is_ok() && processes::of_user(user).is_empty() {
-            return Ok(Slot { user, _lock: lock });
+    take_of(&folder()?, FIRST..FIRST + COUNT, PATIENCE)
+}
+
+/// The same for any folder and ids.
+fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<Slot> {
+    const PAUSE: Duration = Duration::from_millis(20);
+    let (start, grader) = (Instant::now(), std::os::unix::process::parent_id());
+    loop {
+        for user in users.clone() {
+            let path = folder.join(user.to_string());
+            let lock = OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(path)?;
+            if lock.try_lock().is_ok() && processes::of_user(user).is_empty() {
+                return Ok(Slot { user, _lock: lock });
+            }
         }
+        if start.elapsed() >= patience || std::os::unix::process::parent_id() != grader {
+            return Err(io::Error::other(format!("all {} user ids from {} on are in use", users.len(), users.start)));
+        }
+        std::thread::sleep(PAUSE);
     }
-    Err(io::Error::other(format!("all {COUNT} user ids from {FIRST} on are in use")))
 }
 
 /// The folder of the locks, made on first use.
@@ -50,4 +66,23 @@ fn folder() -> io::Result<PathBuf> {
         return Err(io::Error::other(format!("{} must be a folder that only root can enter", folder.display())));
     }
     Ok(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn with_every_id_taken_a_run_waits_for_one() {
+        let folder = tempfile::tempdir().unwrap();
+        // An id that nobody has.
+        let take = |patience| take_of(folder.path(), 4_000_000_000..4_000_000_001, patience);
+        let first = take(Duration::ZERO).unwrap();
+        assert!(take(Duration::ZERO).is_err(), "it is held");
+        std::thread::scope(|scope| {
+            let second = scope.spawn(|| take(PATIENCE).map(|slot| slot.user));
+            drop(first);
+            assert_eq!(second.join().unwrap().unwrap(), 4_000_000_000);
+        });
+    }
 }

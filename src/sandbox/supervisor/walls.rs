@@ -5,13 +5,14 @@
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use landlock::{
     ABI, Access, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible, PathBeneath, PathFd, Ruleset, RulesetAttr,
     RulesetCreated, RulesetCreatedAttr, RulesetError, RulesetStatus, Scope,
 };
 
+use crate::sandbox::own::{self, Allowed};
 use crate::sandbox::wire::{self, Order};
 
 /// The newest rules we know and have tried; older kernels enforce what they can, [`LayerReport`] says what.
@@ -52,22 +53,23 @@ const SETTINGS: [&str; 7] = [
 pub(super) fn rules(order: &Order, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
     let read = AccessFs::ReadFile | AccessFs::ReadDir;
     let execute = read | AccessFs::Execute;
+    let own = own::files();
     let mut ruleset = handled(order.walls.scopes)?;
     for path in LIBRARIES.iter().chain(&MACHINE) {
-        ruleset = add(ruleset, Path::new(path), read)?;
+        ruleset = add_around(ruleset, Path::new(path), read, &own)?;
     }
     for path in DEVICES {
         ruleset = add(ruleset, Path::new(path), AccessFs::ReadFile | AccessFs::WriteFile)?;
     }
     for raw in &order.readable {
-        ruleset = add(ruleset, &wire::path(raw), read)?;
+        ruleset = add_around(ruleset, &wire::path(raw), read, &own)?;
     }
     for raw in order.executable.iter().chain([&order.program]) {
         ruleset = add(ruleset, &wire::path(raw), execute)?;
     }
     if order.tools {
         for path in TOOLS {
-            ruleset = add(ruleset, Path::new(path), execute)?;
+            ruleset = add_around(ruleset, Path::new(path), execute, &own)?;
         }
         for path in SETTINGS {
             ruleset = add(ruleset, Path::new(path), read)?;
@@ -125,6 +127,22 @@ fn in_folder(tools: bool) -> BitFlags<AccessFs> {
         | AccessFs::RemoveFile
         | AccessFs::RemoveDir;
     if tools { submission | AccessFs::Execute | AccessFs::MakeSym | AccessFs::Refer } else { submission }
+}
+
+/// Like [`add`], but without the grader's own files beneath the path.
+fn add_around(
+    mut ruleset: RulesetCreated,
+    path: &Path,
+    access: BitFlags<AccessFs>,
+    own: &[PathBuf],
+) -> io::Result<RulesetCreated> {
+    for allowed in own::around(path, own) {
+        ruleset = match allowed {
+            Allowed::Whole(path) => add(ruleset, &path, access)?,
+            Allowed::Listing(path) => add(ruleset, &path, access & AccessFs::ReadDir)?,
+        };
+    }
+    Ok(ruleset)
 }
 
 fn add(ruleset: RulesetCreated, path: &Path, access: BitFlags<AccessFs>) -> io::Result<RulesetCreated> {
