@@ -51,7 +51,8 @@ pub(super) struct Grade {
     /// Grade again whenever the program changes, until interrupted.
     #[arg(long)]
     pub(super) watch: bool,
-    /// Run programs without a sandbox, when this machine lacks one. Every report says so.
+    /// Run programs although required layers of the sandbox are missing here; those that hold stay up. Every report
+    /// says what is missing.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
 }

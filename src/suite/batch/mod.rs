@@ -319,7 +319,7 @@ fn assemble(
         .map(|group| score::group(&group.name, group.stakes, scenes.by_ref().take(group.scenes.len()).collect()))
         .collect();
     let verdict = groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun);
-    let (active, missing): (Vec<_>, Vec<_>) = backend.layers().iter().partition(|layer| layer.active);
+    let active = backend.layers().iter().filter(|report| report.active);
     Grade {
         submission: submission.name.clone(),
         suite: plan.name.clone(),
@@ -329,12 +329,8 @@ fn assemble(
         max_points: plan.max_points(),
         groups,
         build,
-        warnings: missing
-            .iter()
-            .filter(|report| report.required)
-            .map(|report| format!("{} does not hold: {}", report.layer.name(), report.detail))
-            .collect(),
-        layers: active.iter().map(|report| report.layer.name().to_owned()).collect(),
+        warnings: backend.weaknesses(),
+        layers: active.map(|report| report.layer.name().to_owned()).collect(),
         wall,
     }
 }
