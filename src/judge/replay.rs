@@ -22,7 +22,7 @@ use std::{
 };
 
 /// A batch is full when its frames hold this many bytes ...
-const BATCH_BYTES: usize = 1 << 19;
+const BATCH_BYTES: usize = 1 << 18;
 /// ... or this many steps.
 const BATCH_STEPS: usize = 256;
 /// More threads than this only cost memory: reading is sequential.
