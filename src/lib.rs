@@ -16,6 +16,8 @@ pub mod judge;
 
 pub mod sandbox;
 
+pub mod diagnose;
+
 pub mod suite;
 
 pub mod report;

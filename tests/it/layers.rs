@@ -2,8 +2,17 @@
 use std::path::{Path, PathBuf};
 
 /// Lowest first; modules of one line stand on one layer and must not see each other.
-const LAYERS: [&[&str]; 8] =
-    [&["num"], &["scene"], &["sim"], &["trace"], &["judge", "sandbox"], &["suite"], &["report"], &["cli"]];
+const LAYERS: [&[&str]; 9] = [
+    &["num"],
+    &["scene"],
+    &["sim"],
+    &["trace"],
+    &["judge", "sandbox"],
+    &["diagnose"],
+    &["suite"],
+    &["report"],
+    &["cli"],
+];
 
 fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|modules| modules.contains(&module))

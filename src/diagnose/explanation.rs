@@ -1,0 +1,44 @@
+//! What an explanation says.
+
+/// A likely mistake, with the evidence for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Explanation {
+    /// A stable key for machines: the id of a known mistake (`pe-square-no-eh`) or of a general finding (`reversed`).
+    pub key: String,
+    /// What is wrong, in one sentence to the student, without the remedy's formula.
+    pub what: String,
+    /// The exact form, one line each: "t^2: R^2 (e1.e1) has weight 2, expected 1". May give the right formula away.
+    pub details: Vec<String>,
+    /// Of the samples that were looked at, how many it reproduces to round-off.
+    pub reproduced: u64,
+    /// Samples that were looked at: polynomials, or steps.
+    pub samples: u64,
+    /// One small example.
+    pub example: Option<Example>,
+    /// Keys of other known mistakes that reproduce the same samples: this trace can't tell them apart.
+    pub same_as: Vec<String>,
+}
+
+/// A small instance of the mistake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Example {
+    /// Step, from 1.
+    pub step: u32,
+    /// Where, in words: "particle 3 and edge 1, pass 0".
+    pub place: String,
+    /// What went in, by name and in the assignment's notation.
+    pub given: Vec<ExampleValue>,
+    /// What should have come out.
+    pub expected: Vec<f64>,
+    /// What did.
+    pub actual: Vec<f64>,
+}
+
+/// A named input of an example.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExampleValue {
+    /// Its name, such as `x1` or `R`.
+    pub name: &'static str,
+    /// Its components.
+    pub value: Vec<f64>,
+}

@@ -1,0 +1,10 @@
+//! From findings to the likely mistake.
+//!
+//! Knows nothing of processes and reports. It looks at the steps of a trace that the fair rules find wrong, asks which
+//! mistake reproduces them, and yields [`Explanation`]s, the likeliest first.
+#![forbid(unsafe_code)]
+#![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
+
+mod explanation;
+
+pub use explanation::{Example, ExampleValue, Explanation};

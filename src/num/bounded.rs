@@ -1,0 +1,173 @@
+//! Numbers that carry a bound on their rounding error: running error analysis.
+//!
+//! A [`Bounded`] is a computed value with a count `units`: whatever order a correct program evaluates the same formula in,
+//! its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those of
+//! Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.3), with
+//! the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and the bound also
+//! covers other orders of summation. Nothing of this reaches a trace.
+use super::vector::Vec2;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// The unit roundoff of doubles, `2^-53`.
+pub const UNIT_ROUNDOFF: f64 = 1.110_223_024_625_156_5e-16;
+
+/// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bounded {
+    /// The computed value.
+    pub value: f64,
+    /// Sum of the moduli of everything that was rounded on the way, weighted by its effect; at least 0, or NaN.
+    pub bound: f64,
+}
+
+/// A vector of bounded components.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bounded2 {
+    /// To the right.
+    pub x: Bounded,
+    /// Up.
+    pub y: Bounded,
+}
+
+impl Bounded {
+    /// A number without error, such as a factor of a formula.
+    #[must_use]
+    pub const fn exact(value: f64) -> Self {
+        Self { value, bound: 0.0 }
+    }
+
+    /// An input that may be off by one rounding.
+    #[must_use]
+    pub const fn rounded(value: f64) -> Self {
+        Self { value, bound: value.abs() }
+    }
+}
+
+impl Bounded2 {
+    /// A vector without error.
+    #[must_use]
+    pub fn exact(v: Vec2) -> Self {
+        Self { x: Bounded::exact(v.x), y: Bounded::exact(v.y) }
+    }
+
+    /// A vector whose components may each be off by one rounding.
+    #[must_use]
+    pub fn rounded(v: Vec2) -> Self {
+        Self { x: Bounded::rounded(v.x), y: Bounded::rounded(v.y) }
+    }
+
+    /// `x*x' + y*y'`.
+    #[must_use]
+    pub fn dot(self, other: Self) -> Bounded {
+        self.x * other.x + self.y * other.y
+    }
+
+    /// `x*y' - y*x'`.
+    #[must_use]
+    pub fn cross(self, other: Self) -> Bounded {
+        self.x * other.y - self.y * other.x
+    }
+}
+
+impl Add for Bounded {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        let rounding = self.value.abs() + other.value.abs();
+        Self { value: self.value + other.value, bound: self.bound + other.bound + rounding }
+    }
+}
+
+impl Sub for Bounded {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        let rounding = self.value.abs() + other.value.abs();
+        Self { value: self.value - other.value, bound: self.bound + other.bound + rounding }
+    }
+}
+
+impl Mul for Bounded {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let value = self.value * other.value;
+        let bound = self.bound * other.value.abs() + self.value.abs() * other.bound + value.abs();
+        Self { value, bound }
+    }
+}
+
+/// A divisor of 0 gives what the division gives, and a bound that is infinite or NaN.
+impl Div for Bounded {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let bound = (self.bound + value.abs() * other.bound) / other.value.abs() + value.abs();
+        Self { value, bound }
+    }
+}
+
+impl Neg for Bounded {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { value: -self.value, bound: self.bound }
+    }
+}
+
+impl Mul<Bounded> for f64 {
+    type Output = Bounded;
+    fn mul(self, other: Bounded) -> Bounded {
+        Bounded::exact(self) * other
+    }
+}
+
+impl Add for Bounded2 {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y }
+    }
+}
+
+impl Sub for Bounded2 {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y }
+    }
+}
+
+impl Mul<Bounded2> for Bounded {
+    type Output = Bounded2;
+    fn mul(self, other: Bounded2) -> Bounded2 {
+        Bounded2 { x: self * other.x, y: self * other.y }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `(a + b) - a` with a large `a`: what is left of `b` may be off by a rounding of `a`, and the bound says so.
+    #[test]
+    fn cancelled_terms_keep_their_weight() {
+        let (a, b) = (Bounded::exact(1e10), Bounded::exact(0.1));
+        let left = (a + b) - a;
+        assert!((left.value - 0.1).abs() > 1e-8);
+        assert!((left.value - 0.1).abs() <= left.bound * UNIT_ROUNDOFF);
+    }
+
+    #[test]
+    fn a_quotient_knows_its_condition() {
+        let quotient = Bounded::rounded(1.0) / Bounded { value: 1e-8, bound: 1.0 };
+        assert_eq!(quotient.value, 1e8);
+        assert!(quotient.bound >= 1e16);
+        assert!(!(Bounded::rounded(1.0) / Bounded::exact(0.0)).bound.is_finite());
+    }
+
+    /// Two orders of summing the same dot product differ by less than the bounds allow.
+    #[test]
+    fn other_orders_of_evaluation_stay_within_the_bound() {
+        let (a, b) = (Vec2::new(0.1, -0.3), Vec2::new(0.7, 0.233_333));
+        let bounded = Bounded2::exact(a).dot(Bounded2::exact(b));
+        let otherwise = a.y * b.y + a.x * b.x;
+        assert_eq!(bounded.value, a.dot(&b));
+        assert!((bounded.value - otherwise).abs() <= bounded.bound * UNIT_ROUNDOFF);
+        assert_eq!(Bounded2::exact(a).cross(Bounded2::exact(b)).value, a.x * b.y - a.y * b.x);
+    }
+}
