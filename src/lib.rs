@@ -12,6 +12,8 @@ pub mod sim;
 
 pub mod trace;
 
+pub mod student;
+
 pub mod judge;
 
 pub mod sandbox;

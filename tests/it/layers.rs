@@ -6,7 +6,7 @@ const LAYERS: [&[&str]; 9] = [
     &["num"],
     &["scene"],
     &["sim"],
-    &["trace"],
+    &["trace", "student"],
     &["judge", "sandbox"],
     &["diagnose"],
     &["suite"],

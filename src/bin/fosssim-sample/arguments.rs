@@ -2,8 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-
-use crate::catalogue::{self, CATALOGUE, Student};
+use fosssim_oracle::student::{self, CATALOGUE, Mistake, Student};
 
 /// The environment variable that names a mistake.
 const VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
@@ -81,7 +80,7 @@ pub fn parse() -> Result<Task, String> {
 }
 
 /// The mistake that the command line, the program's name or the environment asks for.
-fn mistake(option: Option<String>) -> Result<Option<catalogue::Mistake>, String> {
+fn mistake(option: Option<String>) -> Result<Option<Mistake>, String> {
     let (source, id) = if let Some(id) = option {
         ("--mistake", id)
     } else if let Some(id) = mistake_of_name(std::env::args_os().next().as_deref().map(Path::new)) {
@@ -91,7 +90,7 @@ fn mistake(option: Option<String>) -> Result<Option<catalogue::Mistake>, String>
     } else {
         return Ok(None);
     };
-    match catalogue::find(&id) {
+    match student::find(&id) {
         Some(row) => Ok(Some(row.mistake)),
         None => Err(format!("{source} asks for the mistake '{id}', which does not exist{}", hint(&id))),
     }

@@ -10,7 +10,7 @@ use std::{
     time::Duration,
 };
 
-use crate::catalogue::{Mistake, Student};
+use fosssim_oracle::student::{Mistake, Student};
 
 /// How much a flood writes.
 const FLOOD_BYTES: usize = 256 << 20;

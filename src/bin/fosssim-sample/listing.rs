@@ -1,20 +1,34 @@
 //! The catalogue as a table or as JSON.
 use std::io::{self, Write};
 
+use fosssim_oracle::student::{CATALOGUE, Kind, Row};
 use serde::Serialize;
-
-use crate::catalogue::{CATALOGUE, Kind, Row};
 
 #[derive(Serialize)]
 struct Listing {
     schema: &'static str,
-    mistakes: &'static [Row],
+    mistakes: Vec<Entry>,
+}
+
+/// A row as the listing shows it.
+#[derive(Serialize)]
+struct Entry {
+    id: &'static str,
+    kind: &'static str,
+    area: &'static str,
+    explanation: &'static str,
+}
+
+impl From<&Row> for Entry {
+    fn from(row: &Row) -> Self {
+        Self { id: row.id, kind: row.kind.name(), area: row.area.name(), explanation: row.explanation }
+    }
 }
 
 /// Prints the catalogue on standard output.
 pub fn print(json: bool) -> anyhow::Result<u8> {
     let text = if json {
-        let listing = Listing { schema: "fosssim-sample/1", mistakes: CATALOGUE };
+        let listing = Listing { schema: "fosssim-sample/1", mistakes: CATALOGUE.iter().map(Entry::from).collect() };
         serde_json::to_string_pretty(&listing)? + "\n"
     } else {
         table()

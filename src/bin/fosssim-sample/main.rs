@@ -1,8 +1,7 @@
 //! `fosssim-sample`: stands for a student's submission.
 //!
-//! It speaks the course's protocol (`fosssim-sample -s scene.xml -d 0 -o trace.bin`), simulates with code of its own,
-//! and can make one documented mistake. What it takes from the library is what the course supplies: the scene loader,
-//! the vectors, the linear solver and the root finder. It never uses the library's simulator.
+//! It speaks the course's protocol (`fosssim-sample -s scene.xml -d 0 -o trace.bin`) and can make one documented
+//! mistake. Its physics is the library's second simulator, `student`; it never uses the one that judges, `sim`.
 
 #![expect(
     clippy::disallowed_methods,
@@ -11,24 +10,10 @@
 )]
 
 mod arguments;
-mod catalogue;
-mod continuous_time;
-mod detection;
-mod failsafe;
-mod forces;
-mod hessians;
 mod hostile;
-mod hybrid;
-mod impulses;
-mod integrators;
 mod listing;
-mod penalty;
-mod response;
 mod run;
-mod simple;
 mod trace;
-mod world;
-mod zones;
 
 use std::process::ExitCode;
 

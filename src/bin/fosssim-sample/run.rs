@@ -5,18 +5,12 @@ use std::{
 };
 
 use anyhow::Context;
-use fosssim_oracle::scene::Collision;
+use fosssim_oracle::student::{self, StepLog, World};
 
 use crate::{
     arguments::Options,
-    catalogue::Mistake,
-    continuous_time,
     hostile::{self, Midway},
-    hybrid,
-    integrators::{self, StepFailure},
-    simple,
     trace::Trace,
-    world::{State, StepLog, World},
 };
 
 /// The status of a run that the course's program would never have ended.
@@ -69,65 +63,17 @@ fn simulate(world: &World, trace: &mut Output) -> anyhow::Result<u8> {
                 }
             }
         }
-        match advance(world, &mut state, &mut log, trace) {
-            Ok(()) => {}
-            Err(Stop::Write(error)) => return Err(error).context("the trace can't be written"),
-            Err(Stop::Step(failure)) => {
-                eprintln!("step {step}: {failure}");
-                return Ok(NEVER_ENDS);
+        let mut written = Ok(());
+        let stepped = student::step(world, &mut state, &mut log, &mut |state, log| {
+            if written.is_ok() {
+                written = trace.record(state, log);
             }
+        });
+        written.context("the trace can't be written")?;
+        if let Err(failure) = stepped {
+            eprintln!("step {step}: {failure}");
+            return Ok(NEVER_ENDS);
         }
     }
     Ok(0)
-}
-
-#[derive(Debug, thiserror::Error)]
-enum Stop {
-    #[error(transparent)]
-    Write(#[from] io::Error),
-    #[error(transparent)]
-    Step(#[from] StepFailure),
-}
-
-impl From<fosssim_oracle::num::rpoly::DoesNotTerminate> for Stop {
-    fn from(failure: fosssim_oracle::num::rpoly::DoesNotTerminate) -> Self {
-        Self::Step(failure.into())
-    }
-}
-
-/// One step with its records.
-fn advance(world: &World, state: &mut State, log: &mut StepLog, trace: &mut Output) -> Result<(), Stop> {
-    let student = world.student;
-    let q_start = state.x.clone();
-    integrators::advance(world, state)?;
-    if !student.makes(Mistake::LogImpulsesKept) {
-        log.impulses.clear();
-    }
-    if !student.makes(Mistake::LogPolynomialsKept) {
-        log.polynomials.clear();
-    }
-    match world.scene.collision {
-        Collision::None | Collision::Penalty { .. } => {}
-        Collision::Simple { .. } => simple::handle(world, state, log),
-        Collision::ContinuousTime { .. } => {
-            continuous_time::handle(world, &q_start, state, log)?;
-            if !student.makes(Mistake::LogNoMid) {
-                trace.record(state, log)?;
-            }
-        }
-        Collision::Hybrid { max_iterations, .. } => {
-            let mut written = Ok(());
-            hybrid::handle(world, &q_start, max_iterations, state, log, &mut |state, log| {
-                if !matches!(student.mistake(), Some(Mistake::LogNoMid | Mistake::LogMidIsEnd)) {
-                    written = trace.record(state, log);
-                }
-            })?;
-            written?;
-            if student.makes(Mistake::LogMidIsEnd) {
-                trace.record(state, log)?;
-            }
-        }
-    }
-    trace.record(state, log)?;
-    Ok(())
 }

@@ -2,29 +2,25 @@
 //! will do (trace-format.md).
 use std::io::{self, Write};
 
-use fosssim_oracle::{num::polynomial::Polynomial, scene::Collision};
-
-use crate::{
-    catalogue::{Mistake, Student},
-    hostile,
-    world::{Contact, Object, State, StepLog},
+use fosssim_oracle::{
+    scene::Collision,
+    student::{Contact, Mistake, Object, Record, State, StepLog, Student},
 };
+
+use crate::hostile;
 
 /// Writes the records of one run.
 pub struct Trace<W> {
     output: W,
     student: Student,
-    impulses: bool,
-    polynomials: bool,
+    collision: Collision,
     records: u64,
 }
 
 impl<W: Write> Trace<W> {
     /// A trace for scenes of this collision type.
     pub fn new(output: W, collision: &Collision, student: Student) -> Self {
-        let polynomials = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
-        let impulses = polynomials || matches!(collision, Collision::Simple { .. });
-        Self { output, student, impulses, polynomials, records: 0 }
+        Self { output, student, collision: *collision, records: 0 }
     }
 
     /// Writes one record into the buffer behind the trace.
@@ -33,20 +29,17 @@ impl<W: Write> Trace<W> {
         if self.records == 1 && self.student.makes(Mistake::LogNoInitial) {
             return Ok(());
         }
-        for value in state.x.iter().chain(&state.v) {
-            let value = match self.student.mistake() {
-                #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float in the trace")]
-                Some(Mistake::LogSinglePrecision) => f64::from(*value as f32),
-                Some(Mistake::HostileNanState) if self.records > 10 => f64::NAN,
-                _ => *value,
-            };
+        let record = Record::new(self.student, &self.collision, state, log);
+        let hidden = self.student.makes(Mistake::HostileNanState) && self.records > 10;
+        for value in record.x.iter().chain(&record.v) {
+            let value = if hidden { f64::NAN } else { *value };
             self.output.write_all(&value.to_le_bytes())?;
         }
-        if self.impulses {
-            self.impulses(&log.impulses)?;
+        if let Some(impulses) = &record.impulses {
+            self.impulses(impulses)?;
         }
-        if self.polynomials {
-            self.polynomials(&log.polynomials)?;
+        if let Some(polynomials) = &record.polynomials {
+            self.polynomials(polynomials)?;
         }
         Ok(())
     }
@@ -72,14 +65,8 @@ impl<W: Write> Trace<W> {
     }
 
     fn impulses(&mut self, impulses: &[Contact]) -> io::Result<()> {
-        let listed: Vec<&Contact> = match self.student.mistake() {
-            Some(Mistake::LogNoImpulses) => Vec::new(),
-            Some(Mistake::LogDuplicateImpulses) => impulses.iter().flat_map(|impulse| [impulse, impulse]).collect(),
-            Some(Mistake::LogImpulsesReversed) => impulses.iter().rev().collect(),
-            _ => impulses.iter().collect(),
-        };
-        self.integer(listed.len())?;
-        for impulse in listed {
+        self.integer(impulses.len())?;
+        for impulse in impulses {
             let (kind, second) = match impulse.pair.object {
                 Object::Particle(index) => (0, index),
                 Object::Edge(index) => (1, index),
@@ -88,26 +75,20 @@ impl<W: Write> Trace<W> {
             for value in [kind, impulse.pair.particle, second] {
                 self.integer(value)?;
             }
-            let n =
-                if self.student.makes(Mistake::LogNanContacts) { [f64::NAN; 2] } else { [impulse.n.x, impulse.n.y] };
-            for value in [n[0], n[1], impulse.time] {
+            for value in [impulse.n.x, impulse.n.y, impulse.time] {
                 self.output.write_all(&value.to_le_bytes())?;
             }
         }
         Ok(())
     }
 
-    fn polynomials(&mut self, polynomials: &[Polynomial]) -> io::Result<()> {
+    fn polynomials(&mut self, polynomials: &[Vec<f64>]) -> io::Result<()> {
         match self.student.mistake() {
             Some(Mistake::HostileHugeCounts) => self.output.write_all(&2_000_000_000_i32.to_le_bytes())?,
             Some(Mistake::HostileNegativeCounts) => self.output.write_all(&(-1_i32).to_le_bytes())?,
             _ => self.integer(polynomials.len())?,
         }
-        for index in 0..polynomials.len() {
-            let partner = index ^ 1;
-            let swapped = self.student.makes(Mistake::LogSwapped) && partner < polynomials.len();
-            let polynomial = &polynomials[if swapped { partner } else { index }];
-            let coefficients = logged(self.student, polynomial.coefficients());
+        for coefficients in polynomials {
             self.integer(coefficients.len())?;
             for coefficient in coefficients {
                 self.output.write_all(&coefficient.to_le_bytes())?;
@@ -115,24 +96,4 @@ impl<W: Write> Trace<W> {
         }
         Ok(())
     }
-}
-
-/// The coefficients as this program logs them.
-fn logged(student: Student, coefficients: &[f64]) -> Vec<f64> {
-    let mut list = coefficients.to_vec();
-    match student.mistake() {
-        Some(Mistake::LogLowestFirst) => list.reverse(),
-        Some(Mistake::LogNegated) => list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient),
-        Some(Mistake::LogNan) => list.fill(f64::NAN),
-        Some(Mistake::LogTiny) => list.fill(1e-11),
-        Some(Mistake::LogZeros) => list.fill(0.0),
-        Some(Mistake::LogPadded) => list.insert(0, 0.0),
-        Some(Mistake::LogTrailingZero) => list.push(0.0),
-        Some(Mistake::LogRounded) => {
-            list.iter_mut()
-                .for_each(|coefficient| *coefficient = format!("{coefficient:.5e}").parse().unwrap_or(*coefficient));
-        }
-        _ => {}
-    }
-    list
 }

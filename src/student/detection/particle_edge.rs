@@ -1,8 +1,8 @@
 //! A particle and an edge (collisions.md 2): it overlaps the infinite line, between the endpoints, and approaches.
-use fosssim_oracle::num::vector::Vec2;
+use crate::num::vector::Vec2;
 
 use super::{Body, factorised, quintic, wide};
-use crate::catalogue::{Mistake, Student};
+use crate::student::catalogue::{Mistake, Student};
 
 /// Overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic).
 pub fn polynomials(student: Student, bodies: &[Body; 3], edge_radius: f64) -> Vec<Vec<f64>> {

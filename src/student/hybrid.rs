@@ -1,7 +1,7 @@
 //! Collision type `hybrid`: impulses first, and rigid impact zones where they do not suffice (collisions.md 5).
-use fosssim_oracle::num::rpoly::DoesNotTerminate;
+use crate::num::rpoly::DoesNotTerminate;
 
-use crate::{
+use super::{
     catalogue::Mistake,
     detection, failsafe, impulses,
     world::{State, StepLog, World},

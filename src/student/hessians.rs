@@ -1,10 +1,10 @@
 //! The matrix of the implicit integrators: mass, and the second derivatives of the forces (simulation.md 3 and 4).
-use fosssim_oracle::{
+use crate::{
     num::vector::{at, length, over},
     scene::Force,
 };
 
-use crate::{integrators::StepFailure, world::World};
+use super::{integrators::StepFailure, world::World};
 
 /// A 2 x 2 block, `block[row][column]`.
 type Block = [[f64; 2]; 2];

@@ -1,12 +1,12 @@
 //! The time integrators (simulation.md 4).
 use std::hint::black_box;
 
-use fosssim_oracle::{
+use crate::{
     num::{linear, rpoly::DoesNotTerminate},
     scene::Integrator,
 };
 
-use crate::{forces, hessians, world::State, world::World};
+use super::{forces, hessians, world::State, world::World};
 
 /// Why a step has no end.
 #[derive(Debug, thiserror::Error)]

@@ -1,10 +1,10 @@
 //! What a step works on: the scene's constants, the moving state, and the pairs that detection looks at.
-use fosssim_oracle::{
+use crate::{
     num::vector::{Vec2, at, put},
     scene::Scene,
 };
 
-use crate::catalogue::{Mistake, Student};
+use super::catalogue::{Mistake, Student};
 
 /// Everything that stays as it is during a run.
 pub struct World {
@@ -19,7 +19,7 @@ pub struct World {
 }
 
 /// Positions and velocities, `x0, y0, x1, y1, ...` each.
-#[derive(Clone)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     /// Positions.
     pub x: Vec<f64>,
@@ -28,7 +28,7 @@ pub struct State {
 }
 
 /// A particle and what it may collide with.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pair {
     /// The particle's index.
     pub particle: usize,
@@ -37,7 +37,7 @@ pub struct Pair {
 }
 
 /// What a particle may collide with, by its index among its kind.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Object {
     /// Another particle.
     Particle(usize),
@@ -48,7 +48,7 @@ pub enum Object {
 }
 
 /// A collision that detection found.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// Who collides.
     pub pair: Pair,
@@ -59,12 +59,12 @@ pub struct Contact {
 }
 
 /// What a step leaves for the trace.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub struct StepLog {
     /// The impulses, in the order in which they were applied.
     pub impulses: Vec<Contact>,
     /// The polynomials handed to the root finder, in order.
-    pub polynomials: Vec<fosssim_oracle::num::polynomial::Polynomial>,
+    pub polynomials: Vec<crate::num::polynomial::Polynomial>,
 }
 
 /// Adds `change` to the vector of one particle.

@@ -5,7 +5,7 @@
 //! precision*, Numerische Mathematik 18, 1971).
 use std::ops::{Add, Mul, Sub};
 
-use fosssim_oracle::num::vector::Vec2;
+use crate::num::vector::Vec2;
 
 use super::Body;
 

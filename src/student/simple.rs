@@ -1,7 +1,7 @@
 //! Collision type `simple`: one pass over the positions at the end of the step, changing velocities (collisions.md 6).
-use fosssim_oracle::num::vector::{Vec2, at, length, put, unit};
+use crate::num::vector::{Vec2, at, length, put, unit};
 
-use crate::{
+use super::{
     response::{clamped, restitution},
     world::{Contact, Object, Pair, State, StepLog, World, add},
 };

@@ -1,6 +1,6 @@
 //! The approach of a particle and an edge: the quintic that the course supplies, and what becomes of it.
 use super::{Body, factorised};
-use crate::catalogue::{Mistake, Student};
+use crate::student::catalogue::{Mistake, Student};
 
 /// The quintic, or what this student puts in its place.
 pub fn approach(student: Student, bodies: &[Body; 3]) -> Vec<f64> {

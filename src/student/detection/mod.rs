@@ -1,14 +1,14 @@
 //! Continuous-time detection of one pair: its polynomials, the time of impact, the contact vector, the decision.
 //!
 //! The root finder is the one that the course supplies (`num::first_time`); everything else is the student's.
-use fosssim_oracle::num::{
+use crate::num::{
     first_time::first_time,
     polynomial::Polynomial,
     rpoly::DoesNotTerminate,
     vector::{Vec2, at, length, unit},
 };
 
-use crate::{
+use crate::student::{
     catalogue::{Mistake, Student},
     world::{Contact, Object, Pair, StepLog, World},
 };

@@ -1,10 +1,10 @@
 //! The impulses that resolve one contact (collisions.md 3): positions and velocities at the end of the step change.
-use fosssim_oracle::{
+use crate::{
     num::vector::{Vec2, at, over, unit},
     scene::Collision,
 };
 
-use crate::{
+use super::{
     catalogue::Mistake,
     world::{Contact, Object, State, World, add, subtract},
 };

@@ -1,8 +1,8 @@
 //! The last thing that happens to coefficients before the root finder gets them.
-use fosssim_oracle::num::polynomial::Polynomial;
+use crate::num::polynomial::Polynomial;
 
 use super::trimmed;
-use crate::{
+use crate::student::{
     catalogue::{Mistake, Student},
     world::Object,
 };

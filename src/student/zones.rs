@@ -1,7 +1,7 @@
 //! Impact zones: sets of particles that collide with one another (collisions.md 5.4).
 use std::collections::BTreeSet;
 
-use crate::{
+use super::{
     catalogue::{Mistake, Student},
     world::{Contact, Object, World},
 };

@@ -1,7 +1,10 @@
 //! The rigid failsafe: an impact zone moves as one rigid body, or stops (collisions.md 5, last part).
-use fosssim_oracle::num::vector::{Vec2, at, length, over, put};
+use crate::num::{
+    elementary,
+    vector::{Vec2, at, length, over, put},
+};
 
-use crate::{
+use super::{
     catalogue::Mistake,
     world::{State, World},
     zones::Zone,
@@ -159,8 +162,10 @@ impl<'a> Rigid<'a> {
     fn carry_out(&self, zone: &Zone, state: &mut State) {
         let (cosine, sine) = match self.mistake() {
             Some(Mistake::FailsafeSmallAngle) => (1.0, self.angle),
-            Some(Mistake::FailsafeDegrees) => (self.angle.to_degrees().cos(), self.angle.to_degrees().sin()),
-            _ => (self.angle.cos(), self.angle.sin()),
+            Some(Mistake::FailsafeDegrees) => {
+                (elementary::cos(self.angle.to_degrees()), elementary::sin(self.angle.to_degrees()))
+            }
+            _ => (elementary::cos(self.angle), elementary::sin(self.angle)),
         };
         for &particle in &zone.particles {
             let start = at(self.q_start, particle);

@@ -1,7 +1,7 @@
 //! The penalty force, which `penalty` and `hybrid` scenes add to the others (simulation.md 3).
-use fosssim_oracle::num::vector::{at, length, unit};
+use crate::num::vector::{at, length, unit};
 
-use crate::world::{World, add, subtract};
+use super::world::{World, add, subtract};
 
 /// Adds the gradient of the penalty force with stiffness `k` and thickness `h`.
 pub fn add_gradient(world: &World, k: f64, h: f64, x: &[f64], g: &mut [f64]) {

@@ -1,7 +1,7 @@
 //! Collision type `continuous-time`: one pass, each contact resolved as soon as it is found (collisions.md 4).
-use fosssim_oracle::num::rpoly::DoesNotTerminate;
+use crate::num::rpoly::DoesNotTerminate;
 
-use crate::{
+use super::{
     catalogue::Mistake,
     detection,
     response::respond,

@@ -1,8 +1,8 @@
 //! A particle and a half-plane with point P and normal Q (collisions.md 2): it overlaps the boundary, and approaches.
-use fosssim_oracle::num::vector::{Vec2, unit};
+use crate::num::vector::{Vec2, unit};
 
 use super::{Body, wide};
-use crate::catalogue::{Mistake, Student};
+use crate::student::catalogue::{Mistake, Student};
 
 /// Overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &Body, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {

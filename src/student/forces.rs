@@ -1,10 +1,10 @@
 //! The forces: the gradient of their potentials (simulation.md 2 and 3).
-use fosssim_oracle::{
+use crate::{
     num::vector::{Vec2, at, length, over},
     scene::{Collision, Force},
 };
 
-use crate::{
+use super::{
     penalty,
     world::{World, add, subtract},
 };

@@ -1,8 +1,8 @@
 //! Two particles (collisions.md 2): they overlap, and they approach each other.
-use fosssim_oracle::num::vector::Vec2;
+use crate::num::vector::Vec2;
 
 use super::{Body, wide};
-use crate::catalogue::{Mistake, Student};
+use crate::student::catalogue::{Mistake, Student};
 
 /// Overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &Body, two: &Body) -> Vec<Vec<f64>> {

@@ -1,13 +1,10 @@
-//! Everything that this program can do differently: one row each.
+//! Everything that a student's program can do differently: one row each.
 //!
 //! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
 //! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
 //! a mistake is made asks [`Student::makes`].
-use serde::Serialize;
-
 /// What is to be thought of a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A mistake: the result is wrong.
     Wrong,
@@ -18,8 +15,7 @@ pub enum Kind {
 }
 
 /// The part of the assignment that a row belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Area {
     /// Polynomials of two particles.
     ParticleParticle,
@@ -49,11 +45,44 @@ pub enum Area {
     Process,
 }
 
+impl Kind {
+    /// Its name in listings.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong",
+            Self::Variant => "variant",
+            Self::Hostile => "hostile",
+        }
+    }
+}
+
+impl Area {
+    /// Its name in listings.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "particle-particle",
+            Self::ParticleEdge => "particle-edge",
+            Self::ParticleHalfPlane => "particle-half-plane",
+            Self::Handover => "handover",
+            Self::ContactVector => "contact-vector",
+            Self::Decision => "decision",
+            Self::Response => "response",
+            Self::ContinuousTime => "continuous-time",
+            Self::ImpulseLoop => "impulse-loop",
+            Self::ImpactZones => "impact-zones",
+            Self::Failsafe => "failsafe",
+            Self::Trace => "trace",
+            Self::Process => "process",
+        }
+    }
+}
+
 /// One row of the catalogue.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy)]
 pub struct Row {
     /// The mistake, for the program.
-    #[serde(skip)]
     pub mistake: Mistake,
     /// The mistake, for the user.
     pub id: &'static str,

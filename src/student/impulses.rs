@@ -1,10 +1,10 @@
 //! The first part of `hybrid`: rounds of detection and impulses, at most `maxiters` of them (collisions.md 5.2).
-use fosssim_oracle::num::{
+use crate::num::{
     rpoly::DoesNotTerminate,
     vector::{at, length, put},
 };
 
-use crate::{
+use super::{
     catalogue::Mistake,
     detection,
     response::respond,

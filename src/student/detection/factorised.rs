@@ -2,7 +2,7 @@
 //! t, the cross product `q = e x w`, the squared length `g = e.e`, and nothing else.
 //!
 //! The quartic is `R^2 g - q^2`; the mathematically right quintic is `-q (2 q' g - q g') / 2`.
-use fosssim_oracle::num::vector::Vec2;
+use crate::num::vector::Vec2;
 
 use super::Body;
 
