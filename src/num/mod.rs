@@ -9,6 +9,7 @@
 
 pub mod bounded;
 pub mod certificate;
+pub mod decision;
 pub mod elementary;
 pub mod first_time;
 pub mod interval;

@@ -1,0 +1,95 @@
+//! Times as dyadic fractions: an integer over a power of two.
+use num_bigint::BigInt;
+
+/// `numerator / 2^exponent`, not negative.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Dyadic {
+    /// The numerator, not negative.
+    pub(super) numerator: BigInt,
+    /// The exponent of the denominator.
+    pub(super) exponent: u64,
+}
+
+impl Dyadic {
+    /// 0.
+    pub(super) const ZERO: Self = Self { numerator: BigInt::ZERO, exponent: 0 };
+
+    /// 1.
+    pub(super) fn one() -> Self {
+        Self { numerator: BigInt::from(1), exponent: 0 }
+    }
+
+    /// The numerator over `2^exponent`, for an exponent that is not smaller than its own.
+    fn numerator_over(&self, exponent: u64) -> BigInt {
+        &self.numerator << (exponent - self.exponent)
+    }
+
+    /// The midpoint.
+    pub(super) fn between(&self, other: &Self) -> Self {
+        let exponent = self.exponent.max(other.exponent);
+        Self { numerator: self.numerator_over(exponent) + other.numerator_over(exponent), exponent: exponent + 1 }
+    }
+
+    /// Whether it is 1.
+    pub(super) fn is_one(&self) -> bool {
+        self.numerator == BigInt::from(1) << self.exponent
+    }
+
+    /// The greatest double that is not above, and the least that is not below.
+    pub(super) fn enclosure(&self) -> [f64; 2] {
+        let bits = self.numerator.bits();
+        let dropped = bits.saturating_sub(53);
+        let top = u64::try_from(&self.numerator >> dropped).unwrap_or(0);
+        let exact = self.numerator == BigInt::from(top) << dropped;
+        // The value lies between top and top + 1 (or at top) times 2^scale, and is at most 1.
+        let scale = i128::from(dropped) - i128::from(self.exponent);
+        let Ok(scale) = i32::try_from(scale) else { return [0.0, f64::from_bits(1)] };
+        if scale < -1074 {
+            // Too small for a full mantissa: enclose coarsely. Zero itself is exact.
+            return if top == 0 { [0.0; 2] } else { [0.0, scaled(top + 1, -1074)] };
+        }
+        [scaled(top, scale), scaled(if exact { top } else { top + 1 }, scale)]
+    }
+}
+
+/// `integer * 2^exponent` for an integer up to `2^53`, exact for exponents in `-1074..=0` with a result of at most 1.
+fn scaled(integer: u64, exponent: i32) -> f64 {
+    let power = |exponent: i32| f64::from_bits(u64::try_from(exponent + 1023).unwrap_or(0) << 52);
+    let half = exponent / 2;
+    integer as f64 * power(half) * power(exponent - half)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Dyadic;
+    use num_bigint::BigInt;
+
+    fn dyadic(numerator: &str, exponent: u64) -> Dyadic {
+        Dyadic { numerator: numerator.parse::<BigInt>().expect("a number"), exponent }
+    }
+
+    #[test]
+    fn fractions_that_are_doubles_are_enclosed_by_themselves() {
+        assert_eq!(Dyadic::ZERO.enclosure(), [0.0; 2]);
+        assert_eq!(dyadic("1024", 10).enclosure(), [1.0; 2]);
+        assert_eq!(dyadic("3", 3).enclosure(), [0.375; 2]);
+        assert_eq!(dyadic("1", 1074).enclosure(), [f64::from_bits(1); 2]);
+    }
+
+    #[test]
+    fn others_lie_between_neighbours() {
+        // 2^60 + 1 over 2^61: just above a half.
+        assert_eq!(dyadic("1152921504606846977", 61).enclosure(), [0.5, 0.5_f64.next_up()]);
+        // 2^54 - 1 over 2^54 rounds up to 1.
+        assert_eq!(dyadic("18014398509481983", 54).enclosure(), [1.0_f64.next_down(), 1.0]);
+        let [lo, hi] = dyadic("5", 1080).enclosure();
+        assert!(lo == 0.0 && hi > 0.0);
+    }
+
+    #[test]
+    fn midpoints() {
+        assert_eq!(Dyadic::ZERO.between(&Dyadic::one()).enclosure(), [0.5; 2]);
+        assert_eq!(dyadic("1", 2).between(&Dyadic::one()).enclosure(), [0.625; 2]);
+        assert!(dyadic("4", 2).is_one() && !dyadic("3", 2).is_one());
+    }
+}

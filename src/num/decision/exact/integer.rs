@@ -1,0 +1,259 @@
+//! Polynomials with integer coefficients: what the exact decision needs of them.
+//!
+//! Greatest common divisors use primitive pseudo-remainders (Knuth, *The Art of Computer Programming* 2, 4.6.1). They are
+//! nearly always constant, which one run modulo a prime shows for a fraction of the price.
+use super::{super::short::split, dyadic::Dyadic};
+use num_bigint::{BigInt, Sign};
+
+/// A prime: `2^61 - 1`.
+const PRIME: u64 = (1 << 61) - 1;
+
+/// Coefficients, lowest power first; the last is not zero. The zero polynomial has none.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Integer(Vec<BigInt>);
+
+/// -1, 0 or 1.
+fn sign(value: &BigInt) -> i8 {
+    match value.sign() {
+        Sign::Minus => -1,
+        Sign::NoSign => 0,
+        Sign::Plus => 1,
+    }
+}
+
+impl Integer {
+    /// The polynomial with these coefficients.
+    pub(super) fn new(mut coefficients: Vec<BigInt>) -> Self {
+        while coefficients.last().is_some_and(|last| last.sign() == Sign::NoSign) {
+            coefficients.pop();
+        }
+        Self(coefficients)
+    }
+
+    /// The constant 1.
+    pub(super) fn one() -> Self {
+        Self(vec![BigInt::from(1)])
+    }
+
+    /// A positive multiple of the polynomial with these finite coefficients, highest power first.
+    pub(super) fn from_doubles(list: &[f64]) -> Self {
+        let lowest = |&value: &f64| {
+            let (mantissa, exponent) = split(value);
+            exponent + mantissa.trailing_zeros().cast_signed()
+        };
+        let least = list.iter().filter(|value| **value != 0.0).map(lowest).min().unwrap_or(0);
+        let integer = |&value: &f64| {
+            let (mantissa, exponent) = split(value);
+            let shift = exponent - least;
+            let modulus = if mantissa == 0 {
+                BigInt::ZERO
+            } else if shift >= 0 {
+                BigInt::from(mantissa) << shift
+            } else {
+                BigInt::from(mantissa) >> -shift
+            };
+            if value < 0.0 { -modulus } else { modulus }
+        };
+        Self::new(list.iter().rev().map(integer).collect())
+    }
+
+    /// The coefficients, lowest power first.
+    pub(super) fn coefficients(&self) -> &[BigInt] {
+        &self.0
+    }
+
+    /// The degree; 0 for the zero polynomial.
+    pub(super) fn degree(&self) -> usize {
+        self.0.len().saturating_sub(1)
+    }
+
+    /// Whether no coefficient is positive.
+    pub(super) fn never_positive_after_zero(&self) -> bool {
+        self.0.iter().all(|value| sign(value) <= 0)
+    }
+
+    /// Whether no coefficient is negative, and one is positive.
+    pub(super) fn always_positive_after_zero(&self) -> bool {
+        !self.0.is_empty() && self.0.iter().all(|value| sign(value) >= 0)
+    }
+
+    /// The sign at a time.
+    pub(super) fn sign_at(&self, time: &Dyadic) -> i8 {
+        // Horner's rule, with everything multiplied by 2^(exponent * degree).
+        let mut value = BigInt::ZERO;
+        for (step, coefficient) in (0_u64..).zip(self.0.iter().rev()) {
+            value = value * &time.numerator + (coefficient << (time.exponent * step));
+        }
+        sign(&value)
+    }
+
+    /// The sign right after a time: that of the first derivative that is not zero there.
+    pub(super) fn sign_after(&self, time: &Dyadic) -> i8 {
+        let mut derivative = self.clone();
+        while !derivative.0.is_empty() {
+            let sign = derivative.sign_at(time);
+            if sign != 0 {
+                return sign;
+            }
+            derivative = derivative.derivative();
+        }
+        0
+    }
+
+    /// Whether it is positive right after 1.
+    pub(super) fn positive_right_of_one(&self) -> bool {
+        self.sign_after(&Dyadic::one()) > 0
+    }
+
+    /// The polynomial in `t + 1`.
+    pub(super) fn shifted(&self) -> Self {
+        let mut coefficients = self.0.clone();
+        for row in 1..coefficients.len() {
+            for i in (row - 1..coefficients.len() - 1).rev() {
+                let (low, high) = coefficients.split_at_mut(i + 1);
+                low[i] += &high[0];
+            }
+        }
+        Self::new(coefficients)
+    }
+
+    /// The polynomial in `t / 2`, times `2^degree`.
+    pub(super) fn halved(&self) -> Self {
+        let degree = self.degree();
+        Self(self.0.iter().enumerate().map(|(i, value)| value << (degree - i)).collect())
+    }
+
+    fn derivative(&self) -> Self {
+        Self::new(self.0.iter().enumerate().skip(1).map(|(i, value)| value * BigInt::from(i)).collect())
+    }
+
+    /// The product.
+    fn times(&self, other: &Self) -> Self {
+        let mut product = vec![BigInt::ZERO; (self.0.len() + other.0.len()).saturating_sub(1)];
+        for (i, a) in self.0.iter().enumerate() {
+            for (j, b) in other.0.iter().enumerate() {
+                product[i + j] += a * b;
+            }
+        }
+        Self::new(product)
+    }
+
+    /// Divided by the greatest common divisor of the coefficients.
+    fn primitive(self) -> Self {
+        let content = self.0.iter().fold(BigInt::ZERO, |divisor, value| common_divisor(divisor, value.clone()));
+        if content.sign() == Sign::NoSign || content == BigInt::from(1) {
+            return self;
+        }
+        Self(self.0.iter().map(|value| value / &content).collect())
+    }
+
+    /// The remainder of a positive multiple of `self`, for a divisor that is not zero.
+    fn pseudo_remainder(&self, divisor: &Self) -> Self {
+        let mut rest = self.clone();
+        let leading = &divisor.0[divisor.degree()];
+        while rest.0.len() >= divisor.0.len() {
+            let shift = rest.0.len() - divisor.0.len();
+            let top = rest.0[rest.degree()].clone();
+            for value in &mut rest.0 {
+                *value *= leading;
+            }
+            for (i, value) in divisor.0.iter().enumerate() {
+                rest.0[i + shift] -= &top * value;
+            }
+            rest = Self::new(rest.0);
+        }
+        rest
+    }
+
+    /// The primitive greatest common divisor; neither is zero.
+    fn common_factor(&self, other: &Self) -> Self {
+        if self.coprime_modulo_prime(other) {
+            return Self::one();
+        }
+        let (mut a, mut b) = (self.clone().primitive(), other.clone().primitive());
+        while !b.0.is_empty() {
+            let rest = a.pseudo_remainder(&b).primitive();
+            a = std::mem::replace(&mut b, rest);
+        }
+        if a.degree() == 0 { Self::one() } else { a }
+    }
+
+    /// Whether the two have no common zero modulo [`PRIME`], which proves that they have none at all: reduction keeps a
+    /// common factor's degree if it keeps a leading coefficient.
+    fn coprime_modulo_prime(&self, other: &Self) -> bool {
+        let reduced = |polynomial: &Self| -> Vec<u64> { polynomial.0.iter().map(modulo_prime).collect() };
+        let (mut a, mut b) = (reduced(self), reduced(other));
+        if a.last() == Some(&0) || b.last() == Some(&0) {
+            return false;
+        }
+        while !b.is_empty() {
+            reduce(&mut a, &b);
+            std::mem::swap(&mut a, &mut b);
+        }
+        a.len() == 1
+    }
+
+    /// The quotient by a primitive divisor that divides.
+    fn divided_by(&self, divisor: &Self) -> Self {
+        if divisor.degree() == 0 {
+            return self.clone();
+        }
+        let leading = &divisor.0[divisor.degree()];
+        let mut rest = self.0.clone();
+        let mut quotient = vec![BigInt::ZERO; rest.len() + 1 - divisor.0.len()];
+        for shift in (0..quotient.len()).rev() {
+            let factor = &rest[shift + divisor.degree()] / leading;
+            for (i, value) in divisor.0.iter().enumerate() {
+                rest[i + shift] -= &factor * value;
+            }
+            quotient[shift] = factor;
+        }
+        debug_assert!(rest.iter().all(|value| value.sign() == Sign::NoSign), "not a divisor");
+        Self::new(quotient)
+    }
+
+    /// A polynomial with the same zeros, each simple; `self` is not zero.
+    pub(super) fn square_free(&self) -> Self {
+        let derivative = self.derivative();
+        if derivative.0.is_empty() { self.clone() } else { self.divided_by(&self.common_factor(&derivative)) }
+    }
+
+    /// A square-free polynomial with the zeros of both, which are square-free and not zero.
+    pub(super) fn united(&self, other: &Self) -> Self {
+        self.times(&other.divided_by(&self.common_factor(other)))
+    }
+}
+
+/// Euclid's algorithm, not negative.
+fn common_divisor(mut a: BigInt, mut b: BigInt) -> BigInt {
+    while b.sign() != Sign::NoSign {
+        let rest = &a % &b;
+        a = std::mem::replace(&mut b, rest);
+    }
+    if a.sign() == Sign::Minus { -a } else { a }
+}
+
+fn modulo_prime(value: &BigInt) -> u64 {
+    let rest = u64::try_from(BigInt::from(value.magnitude() % PRIME)).unwrap_or(0);
+    if value.sign() == Sign::Minus && rest != 0 { PRIME - rest } else { rest }
+}
+
+fn product(a: u64, b: u64) -> u64 {
+    u64::try_from(u128::from(a) * u128::from(b) % u128::from(PRIME)).unwrap_or(0)
+}
+
+/// The remainder of `a` by `b` (last entry not 0) up to a factor, modulo [`PRIME`].
+fn reduce(a: &mut Vec<u64>, b: &[u64]) {
+    while a.len() >= b.len() {
+        let (top, leading, shift) = (a[a.len() - 1], b[b.len() - 1], a.len() - b.len());
+        for value in a.iter_mut() {
+            *value = product(*value, leading);
+        }
+        for (i, &value) in b.iter().enumerate() {
+            a[i + shift] = (a[i + shift] + PRIME - product(top, value)) % PRIME;
+        }
+        while a.last() == Some(&0) {
+            a.pop();
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Isolation of the real zeros of a square-free polynomial within the step.
+//!
+//! Descartes' rule of signs in the variable `1/(1+t)` counts the zeros in `(0, 1)` up to an even number and is exact for
+//! none and one; halving the interval gets there (Collins and Akritas, 1976; it ends because zeros are simple).
+use super::{dyadic::Dyadic, integer::Integer};
+use num_bigint::{BigInt, Sign};
+
+/// Halvings of an isolating interval beyond which its enclosure is narrower than a double can say.
+const NARROW: u64 = 60;
+
+/// A zero between two times, at which the polynomial is not zero; or at a time, when both are equal.
+#[derive(Debug, Clone)]
+pub(super) struct Root {
+    /// Before, or the zero itself.
+    pub(super) lo: Dyadic,
+    /// After, or the zero itself.
+    pub(super) hi: Dyadic,
+}
+
+impl Root {
+    /// A zero that is known exactly.
+    pub(super) fn point(time: Dyadic) -> Self {
+        Self { lo: time.clone(), hi: time }
+    }
+
+    /// Whether it is known exactly.
+    pub(super) fn is_point(&self) -> bool {
+        self.lo == self.hi
+    }
+
+    /// Whether it is exactly 1.
+    pub(super) fn is_one(&self) -> bool {
+        self.is_point() && self.hi.is_one()
+    }
+
+    /// Two doubles around it: equal if it was met exactly, else a few units of `2^-60` of the step or the neighbours.
+    pub(super) fn enclosure(&self, polynomial: &Integer) -> [f64; 2] {
+        let mut root = self.clone();
+        let before = polynomial.sign_at(&root.lo);
+        for _ in 0..NARROW {
+            if root.is_point() {
+                break;
+            }
+            root.halve(polynomial, before);
+        }
+        [root.lo.enclosure()[0], root.hi.enclosure()[1]]
+    }
+
+    /// Halves the interval; `before` is the sign between its start and the zero.
+    fn halve(&mut self, polynomial: &Integer, before: i8) {
+        let middle = self.lo.between(&self.hi);
+        let sign = polynomial.sign_at(&middle);
+        if sign == 0 {
+            *self = Self::point(middle);
+        } else if sign == before {
+            self.lo = middle;
+        } else {
+            self.hi = middle;
+        }
+    }
+}
+
+/// The zeros in the open interval `(0, 1)` of a square-free polynomial that is not zero, ascending and apart: intervals
+/// may share an end, but no end of an interval is a zero.
+pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
+    let mut roots = Vec::new();
+    // Intervals to look at, the leftmost last: the polynomial stretched so that the interval becomes (0, 1), and the interval
+    // as numerator and exponent.
+    let mut pending = vec![Pending::Interval(polynomial.clone(), BigInt::ZERO, 0)];
+    while let Some(next) = pending.pop() {
+        let (stretched, start, exponent) = match next {
+            Pending::Interval(stretched, start, exponent) => (stretched, start, exponent),
+            Pending::Point(time) => {
+                roots.push(Root::point(time));
+                continue;
+            }
+        };
+        match variations(&stretched) {
+            0 => {}
+            1 => roots.push(isolated(polynomial, start, exponent)),
+            _ => {
+                let left = stretched.halved();
+                let right = left.shifted();
+                let middle: BigInt = (&start << 1) + 1;
+                let zero_between = right.coefficients().first().is_some_and(|value| value.sign() == Sign::NoSign);
+                pending.push(Pending::Interval(right, middle.clone(), exponent + 1));
+                if zero_between {
+                    pending.push(Pending::Point(Dyadic { numerator: middle, exponent: exponent + 1 }));
+                }
+                pending.push(Pending::Interval(left, start << 1, exponent + 1));
+            }
+        }
+    }
+    roots
+}
+
+/// What is still to be looked at.
+enum Pending {
+    /// From `start / 2^exponent` on, `1 / 2^exponent` wide.
+    Interval(Integer, BigInt, u64),
+    /// A zero.
+    Point(Dyadic),
+}
+
+/// Sign changes among the coefficients of `(1+t)^n P(1/(1+t))`.
+fn variations(polynomial: &Integer) -> usize {
+    let reversed = Integer::new(polynomial.coefficients().iter().rev().cloned().collect()).shifted();
+    let signs = reversed.coefficients().iter().map(BigInt::sign).filter(|&sign| sign != Sign::NoSign);
+    signs.clone().zip(signs.skip(1)).filter(|(one, next)| one != next).count()
+}
+
+/// The only zero in an open interval whose ends may be zeros, too: narrowed until they are none.
+fn isolated(polynomial: &Integer, start: BigInt, exponent: u64) -> Root {
+    let end: BigInt = &start + 1;
+    let (lo, hi) = (Dyadic { numerator: start, exponent }, Dyadic { numerator: end, exponent });
+    let before = polynomial.sign_after(&lo);
+    let mut root = Root { lo, hi };
+    while !root.is_point() && (polynomial.sign_at(&root.lo) == 0 || polynomial.sign_at(&root.hi) == 0) {
+        root.halve(polynomial, before);
+    }
+    root
+}

@@ -1,0 +1,201 @@
+//! Certified decisions: does a detection hit within the step, whatever rounding did to its polynomials?
+//!
+//! A detection hits if the first time `tau` of its polynomials is at most 1 (root-finder.md 16): they need not be positive
+//! in one open interval, it is enough that the *closures* of the sets where each is positive meet in `(0, 1]`. Each
+//! coefficient is known up to an error; [`decide`] says whether the answer is the same for all choices of coefficients, and
+//! proves it. It never asks what the original's root finder would have said (that is
+//! [`first_time`](super::first_time), and [`certificate`](super::certificate) for skipping it).
+//!
+//! The mathematics is short. For `t >= 0` a polynomial grows with each of its coefficients, so among all choices the one
+//! with the greatest coefficients ("upper") is positive where any is, and the one with the least ("lower") only where all
+//! are. Hence `tau(upper) <= tau <= tau(lower)` for every choice, and both ends are choices themselves:
+//!
+//! * **Yes** exactly if `tau(lower) <= 1`, with `[tau(upper), tau(lower)]` as enclosure of the time;
+//! * **No** exactly if `tau(upper) > 1`;
+//! * **Borderline** otherwise: some choices hit, others do not.
+//!
+//! So two lists without errors are left to decide. `range` rejects them by signs and by Bernstein coefficients, `pieces`
+//! by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, section 3.3;
+//! Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and what is left goes to
+//! integer arithmetic ([`exact`]), which always decides.
+//!
+//! What counts (and where it differs from the original): zeros at which a polynomial only touches zero from above do not
+//! interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11); a time of exactly 1
+//! counts, sets that end at exactly 0 do not (16.2); an empty list, an empty polynomial and one that vanishes are nowhere
+//! positive (17.2). Coefficients are taken as they are: small leading ones are not dropped, and `c t^m` is positive after 0
+//! if `c` is, while the original takes it as nowhere positive (17.1). Whoever compares with the original has to know these two.
+pub mod exact;
+pub(crate) mod pieces;
+pub(crate) mod range;
+mod short;
+
+#[cfg(test)]
+mod tests;
+
+use super::bounded::{Bounded, UNIT_ROUNDOFF};
+use exact::{ExactAnswer, exact_first};
+use pieces::{Answer, Search};
+use range::{Ends, Problem};
+pub use short::{all_exact, is_short};
+
+/// Most polynomials that one detection asks about.
+pub const MAX_POLYNOMIALS: usize = 4;
+
+/// Most coefficients of one polynomial.
+pub const MAX_COEFFICIENTS: usize = 6;
+
+/// The greatest margin that is reported, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about 1.
+pub const MARGIN_CAP: f64 = 9_007_199_254_740_992.0;
+
+/// Whether the detection hits within the step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Certainty {
+    /// For every choice of coefficients within their bounds `tau <= 1`.
+    Yes,
+    /// For every choice `tau > 1`.
+    No,
+    /// Some choices hit, others do not; or a coefficient is not finite.
+    Borderline,
+}
+
+/// What has decided, cheapest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Signs of the coefficients, or the interval sum of their terms (L0).
+    Range,
+    /// The Bernstein coefficients on `[0, 1]` of one polynomial (L1).
+    Bernstein,
+    /// Subdivision of `[0, 1]` (L2).
+    Subdivision,
+    /// Integer arithmetic (L3).
+    Exact,
+}
+
+impl Level {
+    /// All levels, in the order in which they are tried.
+    pub const ALL: [Self; 4] = [Self::Range, Self::Bernstein, Self::Subdivision, Self::Exact];
+}
+
+/// How many queries each level has decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts([u64; Level::ALL.len()]);
+
+impl Counts {
+    /// Counts one more decision of this level.
+    pub fn record(&mut self, level: Level) {
+        self.0[level as usize] += 1;
+    }
+
+    /// Decisions of this level so far.
+    #[must_use]
+    pub fn of(&self, level: Level) -> u64 {
+        self.0[level as usize]
+    }
+
+    /// Adds the counts of another worker.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, count) in self.0.iter_mut().zip(other.0) {
+            *sum += count;
+        }
+    }
+}
+
+/// A decision and what is known about it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Certified {
+    /// The decision.
+    pub certainty: Certainty,
+    /// For `Yes`: encloses `tau` for every choice of coefficients, a fraction of the step in `[0, 1]`. About as
+    /// wide as the errors of the coefficients move it; wider if the polynomials nearly touch earlier in the step.
+    pub time: Option<[f64; 2]>,
+    /// The decision is proved to survive errors of at least this many units `u` of the coefficients' bounds, at least the
+    /// `units` that were asked for and at most [`MARGIN_CAP`]; the true number may be greater. 0 for `Borderline`.
+    pub margin: f64,
+    /// Which level was needed.
+    pub level: Level,
+}
+
+/// Decides whether all polynomials of a detection become positive within the step: is `tau <= 1` for every choice of
+/// coefficients within `units` times [`UNIT_ROUNDOFF`] times their bounds, for none, or for some (see the module's header)?
+///
+/// Coefficients come highest power first and untrimmed. With `units` 0 (or bounds that are all 0) the answer is that of
+/// [`exact_first`] and never `Borderline`; a coefficient that is not finite makes every answer `Borderline`.
+///
+/// # Panics
+/// With more than [`MAX_POLYNOMIALS`] polynomials, or more than [`MAX_COEFFICIENTS`] coefficients in one.
+#[must_use]
+pub fn decide(polynomials: &[&[Bounded]], units: f64) -> Certified {
+    let upper = Problem::new(polynomials, units, Ends::Upper);
+    if !upper.is_finite() {
+        return borderline(Level::Range);
+    }
+    if let Some((level, slack)) = upper.exclusion() {
+        return no(level, units + slack);
+    }
+    let lower = Problem::new(polynomials, units, Ends::Lower);
+    if !lower.is_finite() {
+        return borderline(Level::Range);
+    }
+    if lower.starts_positive() {
+        return yes([0.0; 2], units + lower.slack_of_yes(), Level::Range);
+    }
+    let outer = pieces::search(&upper);
+    if outer.answer == Answer::Never {
+        return no(Level::Subdivision, units + outer.slack);
+    }
+    if upper.coefficients_equal(&lower) {
+        return without_errors(&upper, &outer, units);
+    }
+    let inner = pieces::search(&lower);
+    match (outer.answer, inner.answer) {
+        (_, Answer::Reached(time)) => yes([outer.from, time], units + lower.slack_of_yes(), Level::Subdivision),
+        (Answer::Reached(_), Answer::Never) => borderline(Level::Subdivision),
+        (known, inner) => by_integers(&upper, &lower, units, known != Answer::Unknown, inner == Answer::Never),
+    }
+}
+
+/// The decision when all coefficients are exact.
+fn without_errors(problem: &Problem, search: &Search, units: f64) -> Certified {
+    match search.answer {
+        Answer::Reached(time) => yes([search.from, time], units + problem.slack_of_yes(), Level::Subdivision),
+        Answer::Never => no(Level::Subdivision, units + search.slack),
+        Answer::Unknown => match exact(problem) {
+            ExactAnswer::First { time, .. } => yes(time, units, Level::Exact),
+            ExactAnswer::Never | ExactAnswer::NotFinite => no(Level::Exact, units),
+        },
+    }
+}
+
+/// The decision by exact arithmetic; `upper_hits` and `lower_misses` say what is known already.
+fn by_integers(upper: &Problem, lower: &Problem, units: f64, upper_hits: bool, lower_misses: bool) -> Certified {
+    let ExactAnswer::First { time: [from, _], .. } = exact(upper) else {
+        debug_assert!(!upper_hits, "the subdivision has proved a hit");
+        return no(Level::Exact, units);
+    };
+    if !lower_misses && let ExactAnswer::First { time: [_, to], .. } = exact(lower) {
+        return yes([from, to], units, Level::Exact);
+    }
+    borderline(Level::Exact)
+}
+
+/// [`exact_first`] of a problem's coefficients.
+fn exact(problem: &Problem) -> ExactAnswer {
+    let lists = problem.highest_first();
+    let mut slices = [&[] as &[f64]; MAX_POLYNOMIALS];
+    for (slice, (list, length)) in slices.iter_mut().zip(&lists) {
+        *slice = &list[..*length];
+    }
+    exact_first(&slices[..problem.polynomials().len()])
+}
+
+fn yes(time: [f64; 2], margin: f64, level: Level) -> Certified {
+    Certified { certainty: Certainty::Yes, time: Some(time), margin: margin.min(MARGIN_CAP), level }
+}
+
+fn no(level: Level, margin: f64) -> Certified {
+    Certified { certainty: Certainty::No, time: None, margin: margin.min(MARGIN_CAP), level }
+}
+
+fn borderline(level: Level) -> Certified {
+    Certified { certainty: Certainty::Borderline, time: None, margin: 0.0, level }
+}

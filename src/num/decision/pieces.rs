@@ -1,0 +1,186 @@
+//! Subdivision of `[0, 1]`: L2 of [`super::decide`].
+//!
+//! Pieces are visited from left to right and halved by de Casteljau's algorithm. On a piece a polynomial lies between the
+//! least and the greatest of its Bernstein coefficients; each list carries a bound on its rounding, which grows by what
+//! every halving adds. A piece is closed when one polynomial is negative throughout; a time at which all are positive ends
+//! the search. Halving stops where the coefficients are no more than their own rounding: such pieces stay open.
+use super::{
+    MAX_POLYNOMIALS, UNIT_ROUNDOFF,
+    range::{Control, Problem, slack},
+};
+
+/// After this many halvings a piece stays open; its ends are still exact.
+const DEEPEST: u32 = 50;
+
+/// After this many pieces all others stay open. Ordinary searches need some hundred.
+const MOST_PIECES: u32 = 5_000;
+
+/// Coefficients below this many times their rounding are noise: halving shows no more.
+const NOISE: f64 = 2.0;
+
+/// What a search has found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Answer {
+    /// At this time all polynomials are positive, so `tau` is at most this.
+    Reached(f64),
+    /// At every time in `[0, 1]` a polynomial is negative.
+    Never,
+    /// No such time was found, but open pieces are left.
+    Unknown,
+}
+
+/// An answer and what belongs to it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Search {
+    /// The answer.
+    pub(crate) answer: Answer,
+    /// Before this time a polynomial is always negative.
+    pub(crate) from: f64,
+    /// For [`Answer::Never`]: how many units of the bounds it survives at least.
+    pub(crate) slack: f64,
+}
+
+/// Searches `[0, 1]` for the first time at which all polynomials are positive.
+pub(crate) fn search(problem: &Problem) -> Search {
+    let mut walk = Walk { first_open: None, slack: f64::INFINITY, pieces: 0 };
+    let mut controls = Controls::new();
+    for polynomial in problem.polynomials() {
+        controls.push(polynomial.control());
+    }
+    let reached = walk.visit(0.0, 1.0, &controls, 0);
+    let answer = match (reached, walk.first_open) {
+        (Some(time), _) => Answer::Reached(time),
+        (None, None) => Answer::Never,
+        (None, Some(_)) => Answer::Unknown,
+    };
+    Search { answer, from: walk.first_open.or(reached).unwrap_or(1.0), slack: walk.slack }
+}
+
+/// The polynomials whose sign on a piece is not known yet; all others are positive there.
+#[derive(Clone, Copy)]
+struct Controls {
+    list: [Control; MAX_POLYNOMIALS],
+    count: usize,
+}
+
+impl Controls {
+    const fn new() -> Self {
+        let empty = Control { values: [0.0; super::MAX_COEFFICIENTS], length: 0, error: 0.0, bound: 0.0 };
+        Self { list: [empty; MAX_POLYNOMIALS], count: 0 }
+    }
+
+    fn push(&mut self, control: Control) {
+        self.list[self.count] = control;
+        self.count += 1;
+    }
+
+    fn as_slice(&self) -> &[Control] {
+        &self.list[..self.count]
+    }
+
+    /// Whether all are positive at the left end.
+    fn begin_positive(&self) -> bool {
+        self.as_slice().iter().all(|control| control.values[0] > control.error)
+    }
+
+    /// Whether all are positive at the right end.
+    fn end_positive(&self) -> bool {
+        self.as_slice().iter().all(|control| control.values[control.length - 1] > control.error)
+    }
+}
+
+/// The state of a search.
+struct Walk {
+    first_open: Option<f64>,
+    slack: f64,
+    pieces: u32,
+}
+
+impl Walk {
+    /// Visits the piece from `lo` to `hi`; `Some` with the first time at which all were seen to be positive.
+    fn visit(&mut self, lo: f64, hi: f64, controls: &Controls, depth: u32) -> Option<f64> {
+        self.pieces += 1;
+        let mut open = Controls::new();
+        let mut improves = false;
+        for control in controls.as_slice() {
+            match Sign::of(control) {
+                Sign::Negative(distance) => {
+                    self.slack = self.slack.min(slack(distance, control.bound));
+                    return None;
+                }
+                Sign::Positive => {}
+                Sign::Mixed => {
+                    improves = true;
+                    open.push(*control);
+                }
+                Sign::Noise => open.push(*control),
+            }
+        }
+        // Without open polynomials this holds, too: all are positive on the whole piece.
+        if open.begin_positive() {
+            return Some(lo);
+        }
+        if !improves || depth == DEEPEST || self.pieces >= MOST_PIECES {
+            self.first_open.get_or_insert(lo);
+            return open.end_positive().then_some(hi);
+        }
+        let middle = lo + (hi - lo) * 0.5;
+        let (mut left, mut right) = (Controls::new(), Controls::new());
+        for control in open.as_slice() {
+            let (first, second) = halves(control);
+            left.push(first);
+            right.push(second);
+        }
+        self.visit(lo, middle, &left, depth + 1).or_else(|| self.visit(middle, hi, &right, depth + 1))
+    }
+}
+
+/// What the Bernstein coefficients of a piece say.
+enum Sign {
+    /// All are negative, by this much at least.
+    Negative(f64),
+    /// All are positive.
+    Positive,
+    /// None is clearly more than rounding.
+    Noise,
+    /// Anything else; halving helps.
+    Mixed,
+}
+
+impl Sign {
+    fn of(control: &Control) -> Self {
+        let values = &control.values[..control.length];
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &value in values {
+            least = least.min(value);
+            most = most.max(value);
+        }
+        if most < -control.error {
+            Self::Negative(-most - control.error)
+        } else if least > control.error {
+            Self::Positive
+        } else if -least > NOISE * control.error || most > NOISE * control.error {
+            Self::Mixed
+        } else {
+            Self::Noise
+        }
+    }
+}
+
+/// The Bernstein coefficients of the two halves (de Casteljau). A sum is rounded, halving is exact but for underflow,
+/// which the error already covers; all intermediate values are convex combinations of the first ones.
+fn halves(control: &Control) -> (Control, Control) {
+    let (mut left, mut right) = (*control, *control);
+    let length = control.length;
+    let size = control.values[..length].iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    for step in 1..length {
+        for i in 0..length - step {
+            right.values[i] = (right.values[i] + right.values[i + 1]) * 0.5;
+        }
+        left.values[step] = right.values[0];
+    }
+    // One more than there are steps covers the rounding of the bound itself.
+    left.error += length as f64 * UNIT_ROUNDOFF * (size + control.error);
+    right.error = left.error;
+    (left, right)
+}

@@ -1,0 +1,226 @@
+//! The two extreme choices of a detection's coefficients, and what their signs and Bernstein coefficients exclude.
+//!
+//! Levels L0 and L1 of [`super::decide`]: they look at one polynomial at a time. Every comparison allows for the rounding of
+//! the computation itself, so what it says is proved (rounding as in Higham, *Accuracy and Stability of Numerical
+//! Algorithms*, section 3.1).
+use super::{Bounded, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOFF};
+
+/// Which end of every coefficient's interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ends {
+    /// The greatest values.
+    Upper,
+    /// The least values.
+    Lower,
+}
+
+/// More than all that underflow can take from a sum or a convex combination of six numbers, fifty times in a row.
+const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
+
+/// What the Bernstein coefficients may be off by, in units of the sum of the moduli of the power coefficients: a rounded
+/// weight, a product, at most five sums, and the rounding of that sum of moduli; sixteen is twice as much.
+const CONVERSION: f64 = 16.0 * UNIT_ROUNDOFF;
+
+/// One polynomial without errors.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Exactly {
+    /// Coefficients, lowest power first; zeros behind `length`.
+    pub(crate) coefficients: [f64; MAX_COEFFICIENTS],
+    /// How many there are.
+    pub(crate) length: usize,
+    /// Sum of the original coefficients' bounds: what one unit changes at most within `[0, 1]`, divided by `u`.
+    pub(crate) bound: f64,
+}
+
+/// Bernstein coefficients on some piece of `[0, 1]`, the last `6 - length` unused.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Control {
+    /// The coefficients.
+    pub(crate) values: [f64; MAX_COEFFICIENTS],
+    /// How many there are.
+    pub(crate) length: usize,
+    /// By how much each may be off.
+    pub(crate) error: f64,
+    /// As in [`Exactly`].
+    pub(crate) bound: f64,
+}
+
+/// The polynomials of a detection for one extreme choice of coefficients.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Problem {
+    list: [Exactly; MAX_POLYNOMIALS],
+    count: usize,
+}
+
+impl Problem {
+    /// The choice at these ends, rounded outwards; coefficients without error stay as they are.
+    ///
+    /// # Panics
+    /// With too many polynomials or coefficients.
+    #[inline]
+    pub(crate) fn new(polynomials: &[&[Bounded]], units: f64, ends: Ends) -> Self {
+        assert!(polynomials.len() <= MAX_POLYNOMIALS, "more polynomials than a detection has");
+        let empty = Exactly { coefficients: [0.0; MAX_COEFFICIENTS], length: 0, bound: 0.0 };
+        let mut problem = Self { list: [empty; MAX_POLYNOMIALS], count: polynomials.len() };
+        for (exactly, polynomial) in problem.list.iter_mut().zip(polynomials) {
+            assert!(polynomial.len() <= MAX_COEFFICIENTS, "a polynomial of higher degree than a detection has");
+            exactly.length = polynomial.len();
+            for (value, &coefficient) in exactly.coefficients.iter_mut().zip(polynomial.iter().rev()) {
+                *value = end(coefficient, units, ends);
+                exactly.bound += coefficient.bound;
+            }
+        }
+        problem
+    }
+
+    /// The polynomials.
+    #[inline]
+    pub(crate) fn polynomials(&self) -> &[Exactly] {
+        &self.list[..self.count]
+    }
+
+    /// Whether all coefficients are finite.
+    #[inline]
+    pub(crate) fn is_finite(&self) -> bool {
+        self.polynomials().iter().all(|polynomial| polynomial.coefficients.iter().all(|value| value.is_finite()))
+    }
+
+    /// Whether one polynomial alone shows that nothing happens within the step, at which level, and how many further units
+    /// of the bounds this survives. An empty problem is excluded.
+    #[inline]
+    pub(crate) fn exclusion(&self) -> Option<(Level, f64)> {
+        if self.count == 0 {
+            return Some((Level::Range, f64::INFINITY));
+        }
+        let by = |test: fn(&Exactly) -> Option<f64>, level| {
+            self.polynomials().iter().find_map(test).map(|slack| (level, slack))
+        };
+        by(Exactly::range, Level::Range).or_else(|| by(Exactly::bernstein, Level::Bernstein))
+    }
+
+    /// Whether all polynomials are positive at 0 (exact, no arithmetic is needed).
+    #[inline]
+    pub(crate) fn starts_positive(&self) -> bool {
+        self.polynomials().iter().all(|polynomial| polynomial.coefficients[0] > 0.0)
+    }
+
+    /// Whether two problems of the same shape have the same coefficients.
+    pub(crate) fn coefficients_equal(&self, other: &Self) -> bool {
+        let pairs = self.polynomials().iter().zip(other.polynomials());
+        pairs.into_iter().all(|(one, two)| one.coefficients == two.coefficients)
+    }
+
+    /// The coefficients, highest power first, with their number.
+    pub(crate) fn highest_first(&self) -> [([f64; MAX_COEFFICIENTS], usize); MAX_POLYNOMIALS] {
+        self.list.map(|polynomial| {
+            let mut list = [0.0; MAX_COEFFICIENTS];
+            for (place, value) in list.iter_mut().zip(polynomial.coefficients[..polynomial.length].iter().rev()) {
+                *place = *value;
+            }
+            (list, polynomial.length)
+        })
+    }
+
+    /// How many further units of the bounds a hit survives: at the best of 33 equally spaced times, the least of the
+    /// polynomials' values over their bounds. At least 0.
+    pub(crate) fn slack_of_yes(&self) -> f64 {
+        let slack_at = |t: f64| {
+            let slacks = self.polynomials().iter().map(|polynomial| polynomial.slack_at(t));
+            slacks.fold(f64::INFINITY, f64::min)
+        };
+        (0..=32_u8).map(|step| slack_at(f64::from(step) / 32.0)).fold(0.0, f64::max)
+    }
+}
+
+/// One end of the interval in which a coefficient lies, rounded outwards.
+#[inline]
+fn end(coefficient: Bounded, units: f64, ends: Ends) -> f64 {
+    if units == 0.0 || coefficient.bound == 0.0 {
+        return coefficient.value;
+    }
+    // The factor covers the rounding of the products, the neighbour that of the sum and underflow.
+    let reach = units * UNIT_ROUNDOFF * coefficient.bound * (1.0 + 8.0 * UNIT_ROUNDOFF);
+    match ends {
+        Ends::Upper => (coefficient.value + reach).next_up(),
+        Ends::Lower => (coefficient.value - reach).next_down(),
+    }
+}
+
+/// How many units of a bound a distance from zero is worth.
+#[inline]
+pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
+    // A hundredth less covers the rounding of the bound and of the quotient.
+    if bound > 0.0 { (0.99 * distance / (bound * UNIT_ROUNDOFF)).max(0.0) } else { f64::INFINITY }
+}
+
+impl Exactly {
+    /// L0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive terms cannot
+    /// make up for a negative constant.
+    #[inline]
+    fn range(&self) -> Option<f64> {
+        let (mut greatest, mut size) = (self.coefficients[0], self.coefficients[0].abs());
+        let mut none_positive = !(self.coefficients[0] > 0.0);
+        for &value in &self.coefficients[1..] {
+            none_positive &= !(value > 0.0);
+            greatest += value.max(0.0);
+            size += value.abs();
+        }
+        let distance = -greatest - CONVERSION * size;
+        if distance > 0.0 || none_positive { Some(slack(distance, self.bound)) } else { None }
+    }
+
+    /// L1: all Bernstein coefficients are negative.
+    #[inline]
+    fn bernstein(&self) -> Option<f64> {
+        // Positive at 0: no need to look.
+        if self.coefficients[0] > 0.0 {
+            return None;
+        }
+        let control = self.control();
+        let greatest = control.values[..control.length].iter().fold(f64::NEG_INFINITY, |most, &value| most.max(value));
+        let distance = -greatest - control.error;
+        (distance > 0.0).then(|| slack(distance, self.bound))
+    }
+
+    /// The Bernstein coefficients on `[0, 1]`. An overflow makes the error infinite, so that nothing follows from it.
+    #[inline]
+    pub(crate) fn control(&self) -> Control {
+        let values = match self.length {
+            0 | 1 => self.coefficients,
+            2 => self.converted([1.0, 1.0]),
+            3 => self.converted([1.0, 0.5, 1.0]),
+            4 => self.converted([1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
+            5 => self.converted([1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
+            _ => self.converted([1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
+        };
+        let size: f64 = self.coefficients.iter().map(|value| value.abs()).sum();
+        Control { values, length: self.length, error: CONVERSION * size + UNDERFLOW, bound: self.bound }
+    }
+
+    /// Divides by the binomial coefficients and adds up Pascal's triangle: entry k becomes the sum of (k over i) times
+    /// entry i.
+    #[inline(always)]
+    fn converted<const LENGTH: usize>(&self, reciprocals: [f64; LENGTH]) -> [f64; MAX_COEFFICIENTS] {
+        let mut values = [0.0; MAX_COEFFICIENTS];
+        for i in 0..LENGTH {
+            values[i] = self.coefficients[i] * reciprocals[i];
+        }
+        for row in 1..LENGTH {
+            for i in (row..LENGTH).rev() {
+                values[i] += values[i - 1];
+            }
+        }
+        values
+    }
+
+    /// How many units of the bound the value at `t` in `[0, 1]` lies above zero, at least 0.
+    fn slack_at(&self, t: f64) -> f64 {
+        let (mut value, mut size) = (0.0, 0.0);
+        for &coefficient in self.coefficients.iter().rev() {
+            value = value * t + coefficient;
+            size = size * t + coefficient.abs();
+        }
+        let distance = value - (CONVERSION * size + UNDERFLOW);
+        if distance > 0.0 { slack(distance, self.bound) } else { 0.0 }
+    }
+}

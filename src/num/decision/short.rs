@@ -1,0 +1,76 @@
+//! Short numbers: when formulas over them are exact whatever the order of evaluation.
+//!
+//! A double is an integer times a power of two. If all inputs of a formula are integer multiples of *one* power of two and
+//! the integers are short, every sum and product of the formula still fits into 53 bits and nothing is rounded.
+
+/// Whether all values are integer multiples of one power of two with quotients of modulus below `2^bits`. Zeros fit
+/// everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.
+#[must_use]
+pub fn all_exact(values: &[f64], bits: u32) -> bool {
+    let (mut lowest, mut highest) = (i32::MAX, i32::MIN);
+    for &value in values {
+        if !value.is_finite() {
+            return false;
+        }
+        if value != 0.0 {
+            let (mantissa, exponent) = split(value);
+            lowest = lowest.min(exponent + mantissa.trailing_zeros().cast_signed());
+            highest = highest.max(exponent + mantissa.ilog2().cast_signed() + 1);
+        }
+    }
+    // No value but zeros, or the span from the lowest set bit of any to above the highest.
+    highest == i32::MIN || i64::from(highest) - i64::from(lowest) <= i64::from(bits)
+}
+
+/// [`all_exact`] of one value: it has at most `bits` significant bits.
+#[must_use]
+pub fn is_short(value: f64, bits: u32) -> bool {
+    all_exact(&[value], bits)
+}
+
+/// `|value|` as mantissa times a power of two; the mantissa of zero is 0. For finite values.
+pub(super) fn split(value: f64) -> (u64, i32) {
+    let bits = value.to_bits();
+    let exponent = i32::try_from((bits >> 52) & 0x7FF).unwrap_or(0);
+    let fraction = bits & ((1 << 52) - 1);
+    if exponent == 0 { (fraction, -1074) } else { (fraction | (1 << 52), exponent - 1075) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{all_exact, is_short, split};
+
+    #[test]
+    fn short_values_share_a_power_of_two() {
+        assert!(all_exact(&[], 0));
+        assert!(all_exact(&[0.0, -0.0], 0));
+        assert!(all_exact(&[0.5, -3.0, 0.0, 7.25], 5));
+        assert!(!all_exact(&[0.5, -3.0, 0.0, 7.25], 4));
+        // Each is short, but not with the other.
+        assert!(!all_exact(&[1e9, 0.0625], 30));
+        assert!(all_exact(&[f64::MAX, f64::MIN], 53));
+        assert!(!all_exact(&[f64::MAX, 5e-324], 2000));
+        assert!(all_exact(&[f64::MAX, 5e-324], 2098));
+    }
+
+    #[test]
+    fn decimals_are_long_and_what_is_not_finite_is_never_short() {
+        assert!(!is_short(0.1, 50));
+        assert!(is_short(0.1, 53));
+        assert!(is_short(5e-324, 1));
+        assert!(!is_short(f64::NAN, 2000) && !is_short(f64::INFINITY, 2000));
+    }
+
+    #[test]
+    fn mantissas_and_exponents_make_the_value() {
+        for value in [1.0, 0.1, 3.5e300, 2.0_f64 * f64::MIN_POSITIVE, 12.0] {
+            let (mantissa, exponent) = split(value);
+            let scale = f64::from_bits(u64::try_from(exponent + 1023).unwrap_or(0) << 52);
+            if exponent > -1022 {
+                assert_eq!(mantissa as f64 * scale, value);
+            }
+        }
+        assert_eq!(split(5e-324), (1, -1074));
+        assert_eq!(split(-0.0).0, 0);
+    }
+}
