@@ -6,5 +6,6 @@
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod explanation;
+pub mod polynomial;
 
 pub use explanation::{Example, ExampleValue, Explanation};

@@ -1,0 +1,305 @@
+//! Sparse least squares: which few columns add up to a given vector.
+//!
+//! Small supports are tried exhaustively by the normal equations of unit columns, larger ones by orthogonal matching
+//! pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar Conference, 1993). What is
+//! found here is a proposal: the caller checks it against every sample.
+
+/// A proposal: column indices, ascending, and their weights.
+pub(super) type Support = Vec<(usize, f64)>;
+
+/// A residual whose square is below this share of the target's counts as none; the normal equations give no more.
+const SMALL_RESIDUAL: f64 = 1e-10;
+
+/// Columns closer to linear dependence than this are not used together.
+const INDEPENDENT: f64 = 1e-10;
+
+/// Most columns for which all triples are tried.
+const MOST_FOR_TRIPLES: usize = 110;
+
+/// Most likely columns for which all quadruples are tried.
+const MOST_FOR_QUADRUPLES: usize = 26;
+
+/// Longest support that matching pursuit is asked for.
+const LONGEST: usize = 8;
+
+/// Columns of the same length, ready to be fitted.
+pub(super) struct Columns {
+    /// Original indices of the columns that are not zero, the likely ones first.
+    indices: Vec<usize>,
+    unit: Vec<Vec<f64>>,
+    norms: Vec<f64>,
+    gram: Vec<f64>,
+    likely: usize,
+}
+
+impl Columns {
+    /// Prepares the columns. `likely` says which of them are tried in larger combinations, too.
+    pub fn new(columns: &[Vec<f64>], likely: impl Fn(usize) -> bool) -> Self {
+        let norm = |column: &[f64]| column.iter().map(|value| value * value).sum::<f64>().sqrt();
+        let usable: Vec<usize> = (0..columns.len())
+            .filter(|&index| {
+                let norm = norm(&columns[index]);
+                norm > 0.0 && norm.is_finite()
+            })
+            .collect();
+        let mut indices: Vec<usize> = usable.iter().copied().filter(|&index| likely(index)).collect();
+        let likely_count = indices.len();
+        indices.extend(usable.into_iter().filter(|&index| !likely(index)));
+        let norms: Vec<f64> = indices.iter().map(|&index| norm(&columns[index])).collect();
+        let unit: Vec<Vec<f64>> = indices
+            .iter()
+            .zip(&norms)
+            .map(|(&index, norm)| columns[index].iter().map(|value| value / norm).collect())
+            .collect();
+        let count = unit.len();
+        let mut gram = vec![1.0; count * count];
+        for one in 0..count {
+            for two in 0..one {
+                let product = dot(&unit[one], &unit[two]);
+                gram[one * count + two] = product;
+                gram[two * count + one] = product;
+            }
+        }
+        Self { indices, unit, norms, gram, likely: likely_count }
+    }
+
+    /// Proposals for `target`, grouped by size: the caller takes the first group that holds a verified one. At each call
+    /// of `accept` it gets one proposal and says whether it holds. Returns the accepted ones of the smallest size.
+    pub fn supports(&self, target: &[f64], mut accept: impl FnMut(&Support) -> bool) -> Vec<Support> {
+        let square = dot(target, target);
+        if !(square > 0.0 && square.is_finite()) {
+            return Vec::new();
+        }
+        let fits: Vec<f64> = self.unit.iter().map(|column| dot(column, target)).collect();
+        let problem = Problem { columns: self, fits: &fits, square };
+        let sizes = [
+            (1, self.indices.len()),
+            (2, self.indices.len()),
+            (
+                3,
+                if self.indices.len() > MOST_FOR_TRIPLES {
+                    self.likely.min(MOST_FOR_TRIPLES)
+                } else {
+                    self.indices.len()
+                },
+            ),
+            (4, self.likely.min(MOST_FOR_QUADRUPLES)),
+        ];
+        for (size, among) in sizes {
+            let mut accepted = Vec::new();
+            problem.search(&mut Partial::default(), 0, among, size, &mut |chosen| {
+                if let Some(support) = self.solved(chosen, &fits)
+                    && accept(&support)
+                {
+                    accepted.push(support);
+                }
+            });
+            if !accepted.is_empty() {
+                return accepted;
+            }
+        }
+        let pursued = self.pursue(target, &fits);
+        pursued.into_iter().filter(|support| accept(support)).take(1).collect()
+    }
+
+    /// Matching pursuit, among the likely columns and among all.
+    fn pursue(&self, target: &[f64], fits: &[f64]) -> Vec<Support> {
+        [self.likely, self.indices.len()]
+            .into_iter()
+            .filter_map(|among| self.pursue_among(target, fits, among))
+            .collect()
+    }
+
+    fn pursue_among(&self, target: &[f64], fits: &[f64], among: usize) -> Option<Support> {
+        let square = dot(target, target);
+        let mut chosen: Vec<usize> = Vec::new();
+        let mut residual = target.to_vec();
+        while chosen.len() < LONGEST {
+            let best = (0..among)
+                .filter(|column| !chosen.contains(column))
+                .map(|column| (column, dot(&self.unit[column], &residual).abs()))
+                .max_by(|one, two| one.1.total_cmp(&two.1))?;
+            chosen.push(best.0);
+            let weights = self.weights(&chosen, fits)?;
+            residual.copy_from_slice(target);
+            for (&column, weight) in chosen.iter().zip(&weights) {
+                residual.iter_mut().zip(&self.unit[column]).for_each(|(rest, value)| *rest -= weight * value);
+            }
+            if dot(&residual, &residual) <= SMALL_RESIDUAL * square {
+                return self.solved(&chosen, fits);
+            }
+        }
+        None
+    }
+
+    /// The weights of the original columns.
+    fn solved(&self, chosen: &[usize], fits: &[f64]) -> Option<Support> {
+        let weights = self.weights(chosen, fits)?;
+        let mut support: Support = chosen
+            .iter()
+            .zip(weights)
+            .map(|(&column, weight)| (self.indices[column], weight / self.norms[column]))
+            .collect();
+        support.sort_by_key(|&(index, _)| index);
+        Some(support)
+    }
+
+    /// Solves the normal equations of unit columns by Cholesky's method; `None` if they are close to dependent.
+    fn weights(&self, chosen: &[usize], fits: &[f64]) -> Option<Vec<f64>> {
+        let size = chosen.len();
+        let count = self.indices.len();
+        let mut lower = vec![0.0; size * size];
+        for row in 0..size {
+            for column in 0..=row {
+                let mut value = self.gram[chosen[row] * count + chosen[column]];
+                for inner in 0..column {
+                    value -= lower[row * size + inner] * lower[column * size + inner];
+                }
+                lower[row * size + column] = if row == column {
+                    if !(value > INDEPENDENT) {
+                        return None;
+                    }
+                    value.sqrt()
+                } else {
+                    value / lower[column * size + column]
+                };
+            }
+        }
+        let mut weights: Vec<f64> = chosen.iter().map(|&column| fits[column]).collect();
+        for row in 0..size {
+            for column in 0..row {
+                weights[row] -= lower[row * size + column] * weights[column];
+            }
+            weights[row] /= lower[row * size + row];
+        }
+        for row in (0..size).rev() {
+            for below in row + 1..size {
+                weights[row] -= lower[below * size + row] * weights[below];
+            }
+            weights[row] /= lower[row * size + row];
+        }
+        Some(weights)
+    }
+}
+
+struct Problem<'a> {
+    columns: &'a Columns,
+    fits: &'a [f64],
+    square: f64,
+}
+
+/// A started choice: its columns, Cholesky's factor row by row, the forward-substituted target, and the square explained.
+#[derive(Default)]
+struct Partial {
+    chosen: Vec<usize>,
+    rows: Vec<[f64; 4]>,
+    forward: Vec<f64>,
+    explained: f64,
+}
+
+impl Problem<'_> {
+    /// Tells all choices of `size` columns among the first `among` that leave no residual.
+    fn search(&self, partial: &mut Partial, from: usize, among: usize, size: usize, found: &mut impl FnMut(&[usize])) {
+        let count = self.columns.indices.len();
+        let depth = partial.chosen.len();
+        for column in from..among {
+            let mut row = [0.0; 4];
+            let mut diagonal = 1.0;
+            let mut forward = self.fits[column];
+            for (inner, &other) in partial.chosen.iter().enumerate() {
+                let mut value = self.columns.gram[column * count + other];
+                for (before, entry) in row.iter().enumerate().take(inner) {
+                    value -= entry * partial.rows[inner][before];
+                }
+                row[inner] = value / partial.rows[inner][inner];
+                diagonal -= row[inner] * row[inner];
+                forward -= row[inner] * partial.forward[inner];
+            }
+            if !(diagonal > INDEPENDENT) {
+                continue;
+            }
+            forward /= diagonal.sqrt();
+            let explained = partial.explained + forward * forward;
+            if depth + 1 == size {
+                if self.square - explained <= SMALL_RESIDUAL * self.square {
+                    partial.chosen.push(column);
+                    found(&partial.chosen);
+                    partial.chosen.pop();
+                }
+                continue;
+            }
+            row[depth] = diagonal.sqrt();
+            let before = std::mem::replace(&mut partial.explained, explained);
+            partial.chosen.push(column);
+            partial.rows.push(row);
+            partial.forward.push(forward);
+            self.search(partial, column + 1, among, size, found);
+            partial.chosen.pop();
+            partial.rows.pop();
+            partial.forward.pop();
+            partial.explained = before;
+        }
+    }
+}
+
+fn dot(one: &[f64], two: &[f64]) -> f64 {
+    one.iter().zip(two).map(|(one, two)| one * two).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers between -1 and 1 without a pattern.
+    fn columns(count: usize, rows: usize) -> Vec<Vec<f64>> {
+        let mut state = 7_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        (0..count).map(|_| (0..rows).map(|_| next()).collect()).collect()
+    }
+
+    fn combined(columns: &[Vec<f64>], support: &[(usize, f64)]) -> Vec<f64> {
+        (0..columns[0].len())
+            .map(|row| support.iter().map(|&(index, weight)| weight * columns[index][row]).sum())
+            .collect()
+    }
+
+    #[test]
+    fn supports_of_every_size_are_found() {
+        let all = columns(40, 100);
+        let prepared = Columns::new(&all, |index| index < 20);
+        for support in [
+            vec![(33, -2.0)],
+            vec![(2, 1.0), (31, 0.25)],
+            vec![(5, 1.0), (6, -1.0), (39, 4.0)],
+            vec![(1, 1.0), (2, 1.0), (3, -1.0), (19, 2.0)],
+            vec![(0, 3.0), (7, 1.0), (9, -2.0), (12, 1.5), (18, 2.0), (25, 1.0)],
+        ] {
+            let found = prepared.supports(&combined(&all, &support), |_| true);
+            assert_eq!(found.len(), 1, "{support:?}: {found:?}");
+            assert_eq!(found[0].len(), support.len(), "{support:?}: {found:?}");
+            for (ours, right) in found[0].iter().zip(&support) {
+                assert_eq!(ours.0, right.0);
+                assert!((ours.1 - right.1).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn columns_that_cannot_be_told_apart_are_all_reported() {
+        let mut all = columns(6, 50);
+        all[4] = all[1].iter().map(|value| 2.0 * value).collect();
+        let found = Columns::new(&all, |_| true).supports(&all[1], |_| true);
+        assert_eq!(found.len(), 2);
+        assert_eq!((found[0][0].0, found[1][0].0), (1, 4));
+        assert!((found[1][0].1 - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nothing_is_proposed_for_noise() {
+        let all = columns(30, 100);
+        assert!(Columns::new(&all[1..], |_| true).supports(&all[0], |_| true).is_empty());
+    }
+}
