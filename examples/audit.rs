@@ -3,9 +3,14 @@
 //! `cargo run --release --example audit -- [detections] [seed]` draws that many detections (default: a million) of
 //! the three pair types from wide and nasty distributions. Wherever the certificate says that nothing happens within
 //! the step, the search has to say so, too: for the list, and for each polynomial by itself, where no other one hides
-//! a mistake. A fourth kind are products of linear factors whose zeros are as awkward as can be. It prints how many detections each level decided, how many the search
-//! alone could decide, and the first disagreement; there must be none. The draws depend on the seed only, not on the
-//! number of processors.
+//! a mistake. A fourth kind are products of linear factors whose zeros are as awkward as can be. It prints how many
+//! detections each level decided, how many the search alone could decide, and the first disagreement; there must be none.
+//! The draws depend on the seed only, not on the number of processors.
+//!
+//! A second table compares the certified decisions of `num::decision` (64 units of rounding, as the fair rules have it) with
+//! the root finder. Here disagreements are facts about the root finder, not mistakes: a decision says what is true. They are
+//! sorted by what the original does on purpose: `c t^m` counts as nowhere positive, small leading coefficients are dropped;
+//! whatever is left is its rounding. These do not change the exit code.
 use std::{
     fmt::Write as _,
     process::ExitCode,
@@ -13,10 +18,17 @@ use std::{
 };
 
 use fosssim_oracle::num::{
+    bounded::{Bounded, Bounded2},
     certificate::{Level, exclusion},
     first_time::first_time,
     polynomial::Polynomial,
+    vector::Vec2,
 };
+
+#[path = "audit/decisions.rs"]
+mod decisions;
+
+use decisions::Decisions;
 
 /// Detections that one thread draws in one go.
 const BLOCK: u64 = 10_000;
@@ -66,11 +78,14 @@ struct Tally {
     endless: [u64; PAIRS.len()],
     disagreements: u64,
     first: Option<(u64, String)>,
+    decisions: [Decisions; PAIRS.len()],
 }
 
 impl Tally {
     fn audit(&mut self, index: u64, random: &mut Random) {
-        let (pair, geometry, polynomials) = draw(random);
+        let (pair, geometry, lists) = draw(random);
+        let values = |list: &Vec<Bounded>| list.iter().map(|coefficient| coefficient.value).collect::<Vec<f64>>();
+        let polynomials: Vec<Polynomial> = lists.iter().map(|list| Polynomial::trimmed(&values(list))).collect();
         let level = exclusion(&polynomials);
         let time = first_time(&polynomials);
         let column = level.map_or(Level::ALL.len(), |level| level as usize);
@@ -90,6 +105,7 @@ impl Tally {
                 self.first = Some((index, what));
             }
         }
+        self.decisions[pair].compare(index, geometry, &lists, &polynomials, time.ok());
     }
 
     fn add(&mut self, other: Self) {
@@ -99,6 +115,9 @@ impl Tally {
             }
             self.needless[pair] += other.needless[pair];
             self.endless[pair] += other.endless[pair];
+        }
+        for (sum, decisions) in self.decisions.iter_mut().zip(other.decisions) {
+            sum.add(decisions);
         }
         self.disagreements += other.disagreements;
         self.first = [self.first.take(), other.first].into_iter().flatten().min();
@@ -126,6 +145,9 @@ impl Tally {
         let _ = writeln!(text, "disagreements: {}", self.disagreements);
         if let Some((index, what)) = &self.first {
             let _ = writeln!(text, "first: detection {index}, {what}");
+        }
+        for (decisions, name) in self.decisions.iter().zip(PAIRS) {
+            decisions.report(name, &mut text);
         }
         text
     }
@@ -228,7 +250,7 @@ struct Motion {
 type Make = fn(&mut Random) -> Motion;
 
 /// Draws a detection: pair type, name of the distribution, polynomials.
-fn draw(random: &mut Random) -> (usize, &'static str, Vec<Polynomial>) {
+fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
     let pair = [0, 1, 1, 2, 3][random.below(5) as usize];
     if pair == 3 {
         return (pair, "zeros on a grid", vec![product(random)]);
@@ -259,7 +281,7 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Polynomial>) {
 
 /// A polynomial of degree three to five with zeros on a coarse grid, some of them multiple or nearly so, that is
 /// often negative within the step.
-fn product(random: &mut Random) -> Polynomial {
+fn product(random: &mut Random) -> Vec<Bounded> {
     let unit = [1.0, 0.5, 0.25, 0.1][random.below(4) as usize];
     let degree = 3 + random.below(3) as usize;
     let noise = if random.chance(2) { 0.0 } else { random.log(-16.0, -3.0) };
@@ -281,7 +303,7 @@ fn product(random: &mut Random) -> Polynomial {
             }
         }
     }
-    Polynomial::trimmed(&coefficients[..=degree])
+    coefficients[..=degree].iter().map(|&coefficient| Bounded::rounded(coefficient)).collect()
 }
 
 /// Every object has its own scale and speed.
@@ -385,59 +407,58 @@ fn bulk(random: &mut Random) -> Motion {
     Motion { x, d, radius: scale * random.log(-3.0, -0.3) }
 }
 
-/// The polynomials of collisions.md 2, with the terms in any order: they need not be those of a trace.
-fn particle_particle(motion: &Motion) -> Vec<Polynomial> {
-    let (x, d) = (motion.x[1] - motion.x[0], motion.d[1] - motion.d[0]);
-    vec![
-        Polynomial::trimmed(&[-dot(d, d), -2.0 * dot(x, d), motion.radius * motion.radius - dot(x, x)]),
-        Polynomial::trimmed(&[-dot(d, d), -dot(d, x)]),
-    ]
+/// A vector that may be off by a rounding.
+fn rounded(v: V) -> Bounded2 {
+    Bounded2::rounded(Vec2::new(v.0, v.1))
 }
 
-fn particle_half_plane(motion: &Motion) -> Vec<Polynomial> {
-    let normal = motion.x[2];
-    let (s, w) = (dot(motion.d[0], normal), dot(motion.x[1] - motion.x[0], normal));
-    let reach = motion.radius * motion.radius * dot(normal, normal);
-    vec![Polynomial::trimmed(&[-s * s, 2.0 * w * s, -w * w + reach]), Polynomial::trimmed(&[-s * s, w * s])]
+/// The polynomials of collisions.md 2, with the terms in any order: they need not be those of a trace.
+fn particle_particle(motion: &Motion) -> Vec<Vec<Bounded>> {
+    let [x1, x2, _] = motion.x.map(rounded);
+    let [d1, d2, _] = motion.d.map(rounded);
+    let (x, d, reach) = (x2 - x1, d2 - d1, Bounded::rounded(motion.radius));
+    vec![vec![-d.dot(d), -2.0 * x.dot(d), reach * reach - x.dot(x)], vec![-d.dot(d), -d.dot(x)]]
+}
+
+fn particle_half_plane(motion: &Motion) -> Vec<Vec<Bounded>> {
+    let [x, point, normal] = motion.x.map(rounded);
+    let (s, w) = (rounded(motion.d[0]).dot(normal), (point - x).dot(normal));
+    let radius = Bounded::rounded(motion.radius);
+    vec![vec![-s * s, 2.0 * w * s, -w * w + radius * radius * normal.dot(normal)], vec![-s * s, w * s]]
 }
 
 #[expect(clippy::many_single_char_names, reason = "the letters of collisions.md 2")]
-fn particle_edge(motion: &Motion) -> Vec<Polynomial> {
-    let [x1, x2, x3] = motion.x;
-    let [d1, d2, d3] = motion.d;
+fn particle_edge(motion: &Motion) -> Vec<Vec<Bounded>> {
+    let [x1, x2, x3] = motion.x.map(rounded);
+    let [d1, d2, d3] = motion.d.map(rounded);
     let (x12, x32, x21, x13, x23) = (x1 - x2, x3 - x2, x2 - x1, x1 - x3, x2 - x3);
     let (d12, d32, d21, d13, d23) = (d1 - d2, d3 - d2, d2 - d1, d1 - d3, d2 - d3);
-    let square = motion.radius * motion.radius;
-    let (a, b, c) = (dot(x12, x32), dot(x12, d32) + dot(d12, x32), dot(d12, d32));
-    let (d, e, f) = (dot(x21, x21), dot(d21, x21), dot(d21, d21));
-    let (g, h, i) = (dot(x32, x32), dot(d32, x32), dot(d32, d32));
-    let distance = [
+    let square = Bounded::rounded(motion.radius) * Bounded::rounded(motion.radius);
+    let (a, b, c) = (x12.dot(x32), x12.dot(d32) + d12.dot(x32), d12.dot(d32));
+    let (d, e, f) = (x21.dot(x21), d21.dot(x21), d21.dot(d21));
+    let (g, h, i) = (x32.dot(x32), d32.dot(x32), d32.dot(d32));
+    let distance = vec![
         c * c - f * i,
         2.0 * b * c - 2.0 * e * i - 2.0 * f * h,
         2.0 * c * a + b * b - d * i - f * g - 4.0 * e * h + square * i,
         2.0 * a * b - 2.0 * d * h - 2.0 * e * g + 2.0 * square * h,
         a * a - d * g + square * g,
     ];
-    let after_first = [c, b, a];
-    let before_second = [dot(d13, d23), dot(d13, x23) + dot(x13, d23), dot(x13, x23)];
-    Vec::from([
-        Polynomial::trimmed(&distance),
-        Polynomial::trimmed(&after_first),
-        Polynomial::trimmed(&before_second),
-        Polynomial::trimmed(&approach(x12, x32, x21, d12, d32, d21)),
-    ])
+    let after_first = vec![c, b, a];
+    let before_second = vec![d13.dot(d23), d13.dot(x23) + x13.dot(d23), x13.dot(x23)];
+    vec![distance, after_first, before_second, approach([x12, x32, x21], [d12, d32, d21])]
 }
 
 /// The quintic, with the original's mistake in its third-power coefficient.
 #[expect(clippy::many_single_char_names, reason = "the letters of collisions.md 2")]
-fn approach(x12: V, x32: V, x21: V, d12: V, d32: V, d21: V) -> [f64; 6] {
-    let (a, b, c) = (dot(x32, x32), dot(x32, d32), dot(d32, d32));
-    let (d, e) = (dot(d21, d21), dot(d21, x21));
-    let (f, g, h) = (dot(x12, x32), dot(x12, d32) + dot(d12, x32), dot(d12, d32));
-    let (i, j) = (dot(d32, x21) + dot(d21, x32), dot(d32, d21));
+fn approach([x12, x32, x21]: [Bounded2; 3], [d12, d32, d21]: [Bounded2; 3]) -> Vec<Bounded> {
+    let (a, b, c) = (x32.dot(x32), x32.dot(d32), d32.dot(d32));
+    let (d, e) = (d21.dot(d21), d21.dot(x21));
+    let (f, g, h) = (x12.dot(x32), x12.dot(d32) + d12.dot(x32), d12.dot(d32));
+    let (i, j) = (d32.dot(x21) + d21.dot(x32), d32.dot(d21));
     let (k, l, m) = (a * f, a * g + 2.0 * b * f, a * h + 2.0 * b * g + c * f);
     let (n, o, p, q) = (c * g + 2.0 * b * h, c * h, b, c);
-    [
+    vec![
         -h * h * q - c * c * d - 2.0 * o * j,
         -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,
         -2.0 * g * h * p

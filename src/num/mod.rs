@@ -1,9 +1,11 @@
 //! Arithmetic whose bits matter: polynomials, the Jenkins-Traub root finder, first satisfaction times, certificates
-//! that make a root search unnecessary, the linear solver of the implicit integrators, elementary functions.
+//! that make a root search unnecessary, decisions that hold whatever rounding did, the linear solver of the implicit
+//! integrators, elementary functions.
 //!
 //! Knows nothing of the rest of the crate, never prints, never touches files or processes, and never allocates in
-//! the functions that run per pair. The mathematics is that of `root-finder.md` (Jenkins and Traub, SIAM J. Numer.
-//! Anal. 7, 1970; Jenkins, Algorithm 493, ACM TOMS 1, 1975), evaluated in the order in which the original does.
+//! the functions that run per pair (but for the integers of [`decision::exact`], the last resort). The mathematics is
+//! that of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493, ACM TOMS 1, 1975),
+//! evaluated in the order in which the original does.
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 

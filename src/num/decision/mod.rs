@@ -106,7 +106,8 @@ pub struct Certified {
     /// The decision.
     pub certainty: Certainty,
     /// For `Yes`: encloses `tau` for every choice of coefficients, a fraction of the step in `[0, 1]`. About as
-    /// wide as the errors of the coefficients move it; wider if the polynomials nearly touch earlier in the step.
+    /// wide as the errors of the coefficients move it; wider if the polynomials nearly touch earlier in the step. For
+    /// `Borderline`: encloses the least `tau` of any choice, if all coefficients are finite. `None` for `No`.
     pub time: Option<[f64; 2]>,
     /// The decision is proved to survive errors of at least this many units `u` of the coefficients' bounds, at least the
     /// `units` that were asked for and at most [`MARGIN_CAP`]; the true number may be greater. 0 for `Borderline`.
@@ -127,17 +128,17 @@ pub struct Certified {
 pub fn decide(polynomials: &[&[Bounded]], units: f64) -> Certified {
     let upper = Problem::new(polynomials, units, Ends::Upper);
     if !upper.is_finite() {
-        return borderline(Level::Range);
+        return borderline(None, Level::Range);
     }
     if let Some((level, slack)) = upper.exclusion() {
         return no(level, units + slack);
     }
     let lower = Problem::new(polynomials, units, Ends::Lower);
     if !lower.is_finite() {
-        return borderline(Level::Range);
+        return borderline(None, Level::Range);
     }
     if lower.starts_positive() {
-        return yes([0.0; 2], units + lower.slack_of_yes(), Level::Range);
+        return yes([0.0; 2], units + lower.slack_of_yes(0.0), Level::Range);
     }
     let outer = pieces::search(&upper);
     if outer.answer == Answer::Never {
@@ -148,8 +149,8 @@ pub fn decide(polynomials: &[&[Bounded]], units: f64) -> Certified {
     }
     let inner = pieces::search(&lower);
     match (outer.answer, inner.answer) {
-        (_, Answer::Reached(time)) => yes([outer.from, time], units + lower.slack_of_yes(), Level::Subdivision),
-        (Answer::Reached(_), Answer::Never) => borderline(Level::Subdivision),
+        (_, Answer::Reached(time)) => yes([outer.from, time], units + lower.slack_of_yes(time), Level::Subdivision),
+        (Answer::Reached(first), Answer::Never) => borderline(Some([outer.from, first]), Level::Subdivision),
         (known, inner) => by_integers(&upper, &lower, units, known != Answer::Unknown, inner == Answer::Never),
     }
 }
@@ -157,7 +158,7 @@ pub fn decide(polynomials: &[&[Bounded]], units: f64) -> Certified {
 /// The decision when all coefficients are exact.
 fn without_errors(problem: &Problem, search: &Search, units: f64) -> Certified {
     match search.answer {
-        Answer::Reached(time) => yes([search.from, time], units + problem.slack_of_yes(), Level::Subdivision),
+        Answer::Reached(time) => yes([search.from, time], units + problem.slack_of_yes(time), Level::Subdivision),
         Answer::Never => no(Level::Subdivision, units + search.slack),
         Answer::Unknown => match exact(problem) {
             ExactAnswer::First { time, .. } => yes(time, units, Level::Exact),
@@ -168,14 +169,14 @@ fn without_errors(problem: &Problem, search: &Search, units: f64) -> Certified {
 
 /// The decision by exact arithmetic; `upper_hits` and `lower_misses` say what is known already.
 fn by_integers(upper: &Problem, lower: &Problem, units: f64, upper_hits: bool, lower_misses: bool) -> Certified {
-    let ExactAnswer::First { time: [from, _], .. } = exact(upper) else {
+    let ExactAnswer::First { time: first, .. } = exact(upper) else {
         debug_assert!(!upper_hits, "the subdivision has proved a hit");
         return no(Level::Exact, units);
     };
     if !lower_misses && let ExactAnswer::First { time: [_, to], .. } = exact(lower) {
-        return yes([from, to], units, Level::Exact);
+        return yes([first[0], to], units, Level::Exact);
     }
-    borderline(Level::Exact)
+    borderline(Some(first), Level::Exact)
 }
 
 /// [`exact_first`] of a problem's coefficients.
@@ -196,6 +197,6 @@ fn no(level: Level, margin: f64) -> Certified {
     Certified { certainty: Certainty::No, time: None, margin: margin.min(MARGIN_CAP), level }
 }
 
-fn borderline(level: Level) -> Certified {
-    Certified { certainty: Certainty::Borderline, time: None, margin: 0.0, level }
+fn borderline(time: Option<[f64; 2]>, level: Level) -> Certified {
+    Certified { certainty: Certainty::Borderline, time, margin: 0.0, level }
 }

@@ -3,7 +3,9 @@
 //! Pieces are visited from left to right and halved by de Casteljau's algorithm. On a piece a polynomial lies between the
 //! least and the greatest of its Bernstein coefficients; each list carries a bound on its rounding, which grows by what
 //! every halving adds. A piece is closed when one polynomial is negative throughout; a time at which all are positive ends
-//! the search. Halving stops where the coefficients are no more than their own rounding: such pieces stay open.
+//! the search. Halving stops where the coefficients are no more than their own rounding: such pieces stay open. Where one
+//! polynomial is left and its coefficients change their sign once, it has exactly one zero there, which bisection by values
+//! brackets faster.
 use super::{
     MAX_POLYNOMIALS, UNIT_ROUNDOFF,
     range::{Control, Problem, slack},
@@ -42,10 +44,10 @@ pub(crate) struct Search {
 
 /// Searches `[0, 1]` for the first time at which all polynomials are positive.
 pub(crate) fn search(problem: &Problem) -> Search {
-    let mut walk = Walk { first_open: None, slack: f64::INFINITY, pieces: 0 };
+    let mut walk = Walk { problem, first_open: None, slack: f64::INFINITY, pieces: 0 };
     let mut controls = Controls::new();
-    for polynomial in problem.polynomials() {
-        controls.push(polynomial.control());
+    for (index, polynomial) in problem.polynomials().iter().enumerate() {
+        controls.push(Control { index, ..polynomial.control() });
     }
     let reached = walk.visit(0.0, 1.0, &controls, 0);
     let answer = match (reached, walk.first_open) {
@@ -65,7 +67,7 @@ struct Controls {
 
 impl Controls {
     const fn new() -> Self {
-        let empty = Control { values: [0.0; super::MAX_COEFFICIENTS], length: 0, error: 0.0, bound: 0.0 };
+        let empty = Control { values: [0.0; super::MAX_COEFFICIENTS], length: 0, error: 0.0, index: 0 };
         Self { list: [empty; MAX_POLYNOMIALS], count: 0 }
     }
 
@@ -90,13 +92,14 @@ impl Controls {
 }
 
 /// The state of a search.
-struct Walk {
+struct Walk<'a> {
+    problem: &'a Problem,
     first_open: Option<f64>,
     slack: f64,
     pieces: u32,
 }
 
-impl Walk {
+impl Walk<'_> {
     /// Visits the piece from `lo` to `hi`; `Some` with the first time at which all were seen to be positive.
     fn visit(&mut self, lo: f64, hi: f64, controls: &Controls, depth: u32) -> Option<f64> {
         self.pieces += 1;
@@ -105,7 +108,7 @@ impl Walk {
         for control in controls.as_slice() {
             match Sign::of(control) {
                 Sign::Negative(distance) => {
-                    self.slack = self.slack.min(slack(distance, control.bound));
+                    self.slack = self.slack.min(slack(distance, self.problem.polynomials()[control.index].bound));
                     return None;
                 }
                 Sign::Positive => {}
@@ -124,6 +127,11 @@ impl Walk {
             self.first_open.get_or_insert(lo);
             return open.end_positive().then_some(hi);
         }
+        if let [single] = open.as_slice()
+            && rises_once(single)
+        {
+            return Some(self.bracket(single, lo, hi));
+        }
         let middle = lo + (hi - lo) * 0.5;
         let (mut left, mut right) = (Controls::new(), Controls::new());
         for control in open.as_slice() {
@@ -133,6 +141,35 @@ impl Walk {
         }
         self.visit(lo, middle, &left, depth + 1).or_else(|| self.visit(middle, hi, &right, depth + 1))
     }
+
+    /// Brackets the only zero of a polynomial that rises through it between two times, all others being positive there:
+    /// notes the time before as the start of an open piece and gives the time after.
+    fn bracket(&mut self, control: &Control, mut lo: f64, mut hi: f64) -> f64 {
+        let polynomial = &self.problem.polynomials()[control.index];
+        loop {
+            let middle = lo + (hi - lo) * 0.5;
+            let (value, error) = polynomial.value_at(middle);
+            // The middle of neighbours is one of them, and ends the loop, too.
+            if value > error && middle < hi {
+                hi = middle;
+            } else if value < -error && middle > lo {
+                lo = middle;
+            } else {
+                break;
+            }
+        }
+        self.first_open.get_or_insert(lo);
+        hi
+    }
+}
+
+/// Whether the Bernstein coefficients are negative up to some place and positive from the next one on, or the next but one:
+/// whatever the sign between, it changes once, so the polynomial does (Descartes' rule of signs).
+fn rises_once(control: &Control) -> bool {
+    let values = &control.values[..control.length];
+    let negative = values.iter().take_while(|&&value| value < -control.error).count();
+    let positive = values.iter().rev().take_while(|&&value| value > control.error).count();
+    negative > 0 && positive > 0 && negative + positive + 1 >= values.len()
 }
 
 /// What the Bernstein coefficients of a piece say.

@@ -41,8 +41,8 @@ pub(crate) struct Control {
     pub(crate) length: usize,
     /// By how much each may be off.
     pub(crate) error: f64,
-    /// As in [`Exactly`].
-    pub(crate) bound: f64,
+    /// Which of the problem's polynomials it is.
+    pub(crate) index: usize,
 }
 
 /// The polynomials of a detection for one extreme choice of coefficients.
@@ -82,7 +82,10 @@ impl Problem {
     /// Whether all coefficients are finite.
     #[inline]
     pub(crate) fn is_finite(&self) -> bool {
-        self.polynomials().iter().all(|polynomial| polynomial.coefficients.iter().all(|value| value.is_finite()))
+        self.polynomials().iter().all(|polynomial| {
+            // A product with 0 is 0 for finite numbers, else NaN.
+            polynomial.coefficients.iter().map(|value| value * 0.0).sum::<f64>() == 0.0
+        })
     }
 
     /// Whether one polynomial alone shows that nothing happens within the step, at which level, and how many further units
@@ -121,14 +124,22 @@ impl Problem {
         })
     }
 
-    /// How many further units of the bounds a hit survives: at the best of 33 equally spaced times, the least of the
-    /// polynomials' values over their bounds. At least 0.
-    pub(crate) fn slack_of_yes(&self) -> f64 {
+    /// How many further units of the bounds a hit survives: at the best of some times from this one on, the least of the
+    /// polynomials' values over their bounds. At least 0. The times are spread evenly over the rest of the step, and ever
+    /// closer after the first, because a hit may be short.
+    pub(crate) fn slack_of_yes(&self, first: f64) -> f64 {
         let slack_at = |t: f64| {
             let slacks = self.polynomials().iter().map(|polynomial| polynomial.slack_at(t));
             slacks.fold(f64::INFINITY, f64::min)
         };
-        (0..=32_u8).map(|step| slack_at(f64::from(step) / 32.0)).fold(0.0, f64::max)
+        let rest = 1.0 - first;
+        let mut best = slack_at(1.0);
+        let mut near = 0.5;
+        for step in 1..16_u8 {
+            near *= 0.25;
+            best = best.max(slack_at(first + rest * (f64::from(step) / 16.0))).max(slack_at(first + rest * near));
+        }
+        best
     }
 }
 
@@ -138,11 +149,13 @@ fn end(coefficient: Bounded, units: f64, ends: Ends) -> f64 {
     if units == 0.0 || coefficient.bound == 0.0 {
         return coefficient.value;
     }
-    // The factor covers the rounding of the products, the neighbour that of the sum and underflow.
-    let reach = units * UNIT_ROUNDOFF * coefficient.bound * (1.0 + 8.0 * UNIT_ROUNDOFF);
+    // The factor and the last two terms cover the rounding of the products, of the sum, and underflow.
+    let reach = units * UNIT_ROUNDOFF * coefficient.bound * (1.0 + 8.0 * UNIT_ROUNDOFF)
+        + coefficient.value.abs() * (2.0 * UNIT_ROUNDOFF)
+        + f64::MIN_POSITIVE;
     match ends {
-        Ends::Upper => (coefficient.value + reach).next_up(),
-        Ends::Lower => (coefficient.value - reach).next_down(),
+        Ends::Upper => coefficient.value + reach,
+        Ends::Lower => coefficient.value - reach,
     }
 }
 
@@ -194,7 +207,7 @@ impl Exactly {
             _ => self.converted([1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
         };
         let size: f64 = self.coefficients.iter().map(|value| value.abs()).sum();
-        Control { values, length: self.length, error: CONVERSION * size + UNDERFLOW, bound: self.bound }
+        Control { values, length: self.length, error: CONVERSION * size + UNDERFLOW, index: 0 }
     }
 
     /// Divides by the binomial coefficients and adds up Pascal's triangle: entry k becomes the sum of (k over i) times
@@ -215,12 +228,17 @@ impl Exactly {
 
     /// How many units of the bound the value at `t` in `[0, 1]` lies above zero, at least 0.
     fn slack_at(&self, t: f64) -> f64 {
+        let (value, error) = self.value_at(t);
+        if value > error { slack(value - error, self.bound) } else { 0.0 }
+    }
+
+    /// The value at `t` in `[0, 1]`, and by how much it may be off.
+    pub(crate) fn value_at(&self, t: f64) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0);
-        for &coefficient in self.coefficients.iter().rev() {
+        for &coefficient in self.coefficients[..self.length].iter().rev() {
             value = value * t + coefficient;
             size = size * t + coefficient.abs();
         }
-        let distance = value - (CONVERSION * size + UNDERFLOW);
-        if distance > 0.0 { slack(distance, self.bound) } else { 0.0 }
+        (value, CONVERSION * size + UNDERFLOW)
     }
 }

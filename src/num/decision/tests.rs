@@ -66,6 +66,8 @@ fn particles_that_hit_miss_leave_and_graze() {
     let arriving = decide_pair(&particle_pair([3.0, 0.0], [-2.0, 0.0], 1.0));
     assert_eq!((graze.certainty, graze.margin), (Certainty::Borderline, 0.0));
     assert_eq!(arriving.certainty, Certainty::Borderline);
+    let [lo, hi] = arriving.time.expect("the earliest time");
+    assert!(1.0 - 1e-12 < lo && lo <= hi && hi <= 1.0, "{lo} {hi}");
     // Already overlapping and approaching.
     let overlapping = decide_pair(&particle_pair([0.5, 0.0], [-1.0, 0.0], 1.0));
     assert_eq!((overlapping.certainty, overlapping.time), (Certainty::Yes, Some([0.0; 2])));
@@ -279,6 +281,13 @@ proptest! {
         let (loose, tight) = (decided(&lists, units), decided(&lists, units * 0.25));
         if loose.certainty == Certainty::Borderline {
             prop_assert_eq!(loose.margin, 0.0);
+            prop_assert!(loose.time.is_some());
+            // The extreme choices, a little further out because the decision rounds outwards, answer differently.
+            let choice = |sign: f64| -> Lists {
+                let end = |value: &f64| value + sign * (units + 8.0) * UNIT_ROUNDOFF * value.abs() + sign * 1e-300;
+                lists.iter().map(|list| list.iter().map(end).collect()).collect()
+            };
+            prop_assert!(hits(&choice(1.0)) && !hits(&choice(-1.0)));
         } else {
             prop_assert_eq!(loose.certainty, tight.certainty);
             prop_assert!(loose.margin >= units);
