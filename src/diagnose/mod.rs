@@ -6,6 +6,8 @@
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod explanation;
+mod known;
 pub mod polynomial;
 
 pub use explanation::{Example, ExampleValue, Explanation};
+pub use known::known;

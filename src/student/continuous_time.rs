@@ -1,15 +1,14 @@
 //! Collision type `continuous-time`: one pass, each contact resolved as soon as it is found (collisions.md 4).
-use crate::num::rpoly::DoesNotTerminate;
-
 use super::{
     catalogue::Mistake,
     detection,
+    integrators::StepFailure,
     response::respond,
     world::{State, StepLog, World},
 };
 
 /// Detects and resolves pair by pair, from `q_start` to wherever the state is by then.
-pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), DoesNotTerminate> {
+pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let student = world.student;
     if student.makes(Mistake::ContinuousDetectAllFirst) {
         return handle_all_at_once(world, q_start, state, log);
@@ -34,12 +33,7 @@ pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepL
     Ok(())
 }
 
-fn handle_all_at_once(
-    world: &World,
-    q_start: &[f64],
-    state: &mut State,
-    log: &mut StepLog,
-) -> Result<(), DoesNotTerminate> {
+fn handle_all_at_once(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let contacts = detection::pass(world, q_start, &state.x, log)?;
     let predicted = state.clone();
     for contact in contacts {

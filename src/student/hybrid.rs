@@ -1,9 +1,8 @@
 //! Collision type `hybrid`: impulses first, and rigid impact zones where they do not suffice (collisions.md 5).
-use crate::num::rpoly::DoesNotTerminate;
-
 use super::{
     catalogue::Mistake,
     detection, failsafe, impulses,
+    integrators::StepFailure,
     world::{State, StepLog, World},
     zones::{self, Zone},
 };
@@ -17,7 +16,7 @@ pub fn handle(
     state: &mut State,
     log: &mut StepLog,
     middle: &mut dyn FnMut(&State, &StepLog),
-) -> Result<(), DoesNotTerminate> {
+) -> Result<(), StepFailure> {
     let resolved = impulses::apply(world, q_start, max_iterations, state, log)?;
     middle(state, log);
     if !resolved && !world.student.makes(Mistake::GeometricEmpty) {
@@ -27,7 +26,7 @@ pub fn handle(
 }
 
 /// Moves impact zones rigidly, and lets them grow, until nothing new collides.
-fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), DoesNotTerminate> {
+fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let student = world.student;
     let prediction = state.clone();
     let contacts = detection::pass(world, q_start, &state.x, log)?;

@@ -1,12 +1,10 @@
 //! The first part of `hybrid`: rounds of detection and impulses, at most `maxiters` of them (collisions.md 5.2).
-use crate::num::{
-    rpoly::DoesNotTerminate,
-    vector::{at, length, put},
-};
+use crate::num::vector::{at, length, put};
 
 use super::{
     catalogue::Mistake,
     detection,
+    integrators::StepFailure,
     response::respond,
     world::{Contact, State, StepLog, World},
 };
@@ -22,7 +20,7 @@ pub fn apply(
     max_iterations: i32,
     state: &mut State,
     log: &mut StepLog,
-) -> Result<bool, DoesNotTerminate> {
+) -> Result<bool, StepFailure> {
     let student = world.student;
     let prediction = state.clone();
     let mut start = q_start.to_vec();
@@ -37,7 +35,7 @@ pub fn apply(
             return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
         }
         Some(Mistake::ImpulsesSuccessWhenZero) if max_iterations <= 0 => return Ok(true),
-        Some(Mistake::ImpulsesOnceWhenZero) if max_iterations <= 0 => rounds = max_iterations - 1,
+        Some(Mistake::ImpulsesOnceWhenZero) if max_iterations <= 0 => rounds = max_iterations.saturating_sub(1),
         _ => {}
     }
     let limit = limit(world, max_iterations);
@@ -65,7 +63,7 @@ pub fn apply(
 /// How many rounds this program allows itself.
 fn limit(world: &World, max_iterations: i32) -> i32 {
     match world.student.mistake() {
-        Some(Mistake::ImpulsesOneFewer) => max_iterations - 1,
+        Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),
         Some(Mistake::ImpulsesOneMore) if max_iterations > 0 => max_iterations.saturating_add(1),
         Some(Mistake::ImpulsesOnlyOne) => max_iterations.min(1),
         Some(Mistake::ImpulsesAlwaysTen) => 10,
@@ -133,7 +131,7 @@ fn finish(
     prediction: &State,
     state: &mut State,
     log: &mut StepLog,
-) -> Result<bool, DoesNotTerminate> {
+) -> Result<bool, StepFailure> {
     match world.student.mistake() {
         Some(Mistake::ImpulsesDetectAfterLast) => {
             return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());

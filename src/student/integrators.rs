@@ -20,6 +20,9 @@ pub enum StepFailure {
     /// A vortex force cannot be integrated implicitly.
     #[error("no addHessXToTotal defined for VortexForce")]
     VortexHessian,
+    /// The guard of [`StepLog`](super::StepLog) refused a polynomial: the caller knows enough.
+    #[error("the caller refused a polynomial, so the step was left")]
+    Refused,
 }
 
 /// Newton's method is given up after this many iterations; the course's program would go on for ever.

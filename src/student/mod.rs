@@ -30,6 +30,6 @@ mod zones;
 
 pub use catalogue::{Area, CATALOGUE, Kind, Mistake, Row, Student, find};
 pub use integrators::StepFailure;
-pub use record::{Record, polynomial_as_logged};
+pub use record::{Record, trace};
 pub use step::step;
-pub use world::{Contact, Object, Pair, State, StepLog, World};
+pub use world::{Contact, Guard, Object, Pair, State, StepLog, World};

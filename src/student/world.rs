@@ -1,5 +1,6 @@
 //! What a step works on: the scene's constants, the moving state, and the pairs that detection looks at.
 use crate::{
+    num::polynomial::Polynomial,
     num::vector::{Vec2, at, put},
     scene::Scene,
 };
@@ -59,13 +60,20 @@ pub struct Contact {
 }
 
 /// What a step leaves for the trace.
-#[derive(Debug, Clone, Default)]
-pub struct StepLog {
+#[derive(Clone, Default)]
+pub struct StepLog<'a> {
     /// The impulses, in the order in which they were applied.
     pub impulses: Vec<Contact>,
     /// The polynomials handed to the root finder, in order.
-    pub polynomials: Vec<crate::num::polynomial::Polynomial>,
+    pub polynomials: Vec<Polynomial>,
+    /// Asked about each polynomial, by its index in the log, before its roots are searched.
+    pub guard: Option<Guard<'a>>,
 }
+
+/// Says whether a step may go on after this polynomial (index in the step's log, coefficients highest power first). Who
+/// looks for a certain step saves the rest of it as soon as it is another one, and bounds loops that mistakes make
+/// endless.
+pub type Guard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
 
 /// Adds `change` to the vector of one particle.
 pub fn add(array: &mut [f64], particle: usize, change: Vec2) {

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use fosssim_oracle::{
     scene::Collision,
-    student::{Contact, Mistake, Object, Record, State, StepLog, Student},
+    student::{Mistake, Record, State, StepLog, Student},
 };
 
 use crate::hostile;
@@ -15,12 +15,14 @@ pub struct Trace<W> {
     student: Student,
     collision: Collision,
     records: u64,
+    /// Buffer of one record.
+    bytes: Vec<u8>,
 }
 
 impl<W: Write> Trace<W> {
     /// A trace for scenes of this collision type.
     pub fn new(output: W, collision: &Collision, student: Student) -> Self {
-        Self { output, student, collision: *collision, records: 0 }
+        Self { output, student, collision: *collision, records: 0, bytes: Vec::new() }
     }
 
     /// Writes one record into the buffer behind the trace.
@@ -29,19 +31,19 @@ impl<W: Write> Trace<W> {
         if self.records == 1 && self.student.makes(Mistake::LogNoInitial) {
             return Ok(());
         }
-        let record = Record::new(self.student, &self.collision, state, log);
-        let hidden = self.student.makes(Mistake::HostileNanState) && self.records > 10;
-        for value in record.x.iter().chain(&record.v) {
-            let value = if hidden { f64::NAN } else { *value };
-            self.output.write_all(&value.to_le_bytes())?;
+        let mut record = Record::new(self.student, &self.collision, state, log);
+        if self.student.makes(Mistake::HostileNanState) && self.records > 10 {
+            record.x.fill(f64::NAN);
+            record.v.fill(f64::NAN);
         }
-        if let Some(impulses) = &record.impulses {
-            self.impulses(impulses)?;
-        }
-        if let Some(polynomials) = &record.polynomials {
-            self.polynomials(polynomials)?;
-        }
-        Ok(())
+        let claim = match self.student.mistake() {
+            Some(Mistake::HostileHugeCounts) => Some(2_000_000_000),
+            Some(Mistake::HostileNegativeCounts) => Some(-1),
+            _ => None,
+        };
+        self.bytes.clear();
+        record.encode(claim, &mut self.bytes);
+        self.output.write_all(&self.bytes)
     }
 
     /// Hands the trace's end over.
@@ -58,42 +60,5 @@ impl<W: Write> Trace<W> {
     /// Writes raw bytes, which no correct program does.
     pub fn raw(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.output.write_all(bytes)
-    }
-
-    fn integer(&mut self, value: usize) -> io::Result<()> {
-        self.output.write_all(&i32::try_from(value).unwrap_or(i32::MAX).to_le_bytes())
-    }
-
-    fn impulses(&mut self, impulses: &[Contact]) -> io::Result<()> {
-        self.integer(impulses.len())?;
-        for impulse in impulses {
-            let (kind, second) = match impulse.pair.object {
-                Object::Particle(index) => (0, index),
-                Object::Edge(index) => (1, index),
-                Object::HalfPlane(index) => (2, index),
-            };
-            for value in [kind, impulse.pair.particle, second] {
-                self.integer(value)?;
-            }
-            for value in [impulse.n.x, impulse.n.y, impulse.time] {
-                self.output.write_all(&value.to_le_bytes())?;
-            }
-        }
-        Ok(())
-    }
-
-    fn polynomials(&mut self, polynomials: &[Vec<f64>]) -> io::Result<()> {
-        match self.student.mistake() {
-            Some(Mistake::HostileHugeCounts) => self.output.write_all(&2_000_000_000_i32.to_le_bytes())?,
-            Some(Mistake::HostileNegativeCounts) => self.output.write_all(&(-1_i32).to_le_bytes())?,
-            _ => self.integer(polynomials.len())?,
-        }
-        for coefficients in polynomials {
-            self.integer(coefficients.len())?;
-            for coefficient in coefficients {
-                self.output.write_all(&coefficient.to_le_bytes())?;
-            }
-        }
-        Ok(())
     }
 }

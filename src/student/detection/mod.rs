@@ -4,12 +4,12 @@
 use crate::num::{
     first_time::first_time,
     polynomial::Polynomial,
-    rpoly::DoesNotTerminate,
     vector::{Vec2, at, length, unit},
 };
 
 use crate::student::{
     catalogue::{Mistake, Student},
+    integrators::StepFailure,
     world::{Contact, Object, Pair, StepLog, World},
 };
 
@@ -117,7 +117,7 @@ pub fn detect(
     q_start: &[f64],
     q_end: &[f64],
     log: &mut StepLog,
-) -> Result<Option<Contact>, DoesNotTerminate> {
+) -> Result<Option<Contact>, StepFailure> {
     let student = world.student;
     let encounter = Encounter::new(world, pair, q_start, q_end);
     if student.makes(Mistake::PairsPruned) && out_of_reach(&encounter) {
@@ -127,7 +127,13 @@ pub fn detect(
     if polynomials.is_empty() {
         return Ok(None);
     }
+    let first = log.polynomials.len();
     log.polynomials.extend_from_slice(&polynomials);
+    if let Some(guard) = log.guard
+        && !polynomials.iter().enumerate().all(|(number, polynomial)| guard(first + number, polynomial.coefficients()))
+    {
+        return Err(StepFailure::Refused);
+    }
     let time = first_time(&polynomials)?;
     if !within_step(student, time, world.scene.time_step) {
         return Ok(None);
@@ -149,12 +155,7 @@ pub fn detect(
 }
 
 /// One pass over all pairs, with no response in between.
-pub fn pass(
-    world: &World,
-    q_start: &[f64],
-    q_end: &[f64],
-    log: &mut StepLog,
-) -> Result<Vec<Contact>, DoesNotTerminate> {
+pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) -> Result<Vec<Contact>, StepFailure> {
     let mut contacts = Vec::new();
     for &pair in &world.pairs {
         contacts.extend(detect(world, pair, q_start, q_end, log)?);

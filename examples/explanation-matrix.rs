@@ -1,0 +1,141 @@
+//! How well known mistakes are recognised: makes the traces of all mistakes and correct variants for the scenes of a
+//! folder, in memory, has each explained, and counts how often the first explanation is the mistake that was made.
+//!
+//! `cargo run --release --example explanation-matrix [FOLDER]`. It prints every confusion, and ends with status 1 when a
+//! correct variant is accused.
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context, ensure};
+use fosssim_oracle::{
+    diagnose::known,
+    scene::{Scene, original},
+    student::{self, CATALOGUE, Kind, Student},
+};
+use rayon::prelude::*;
+
+/// How one trace was explained.
+enum Outcome {
+    /// The trace is the correct one, bit for bit.
+    Same,
+    /// The mistake is named first.
+    First,
+    /// It is among those that this trace can't tell from the first one.
+    Among(String),
+    /// Something else is named.
+    Other(String),
+    /// Nothing is named.
+    Nothing,
+}
+
+fn main() -> anyhow::Result<ExitCode> {
+    let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
+    let scenes = scenes(&folder)?;
+    let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.kind != Kind::Hostile).collect();
+    let results: Vec<Vec<(Outcome, Duration)>> =
+        rows.par_iter().map(|row| scenes.iter().map(|case| explain(case, row)).collect()).collect();
+    let mut accused = false;
+    let (mut wrong, mut best_first, mut best_among) = (0, 0, 0);
+    let (mut traces, mut first, mut among, mut other, mut nothing) = (0_usize, 0_usize, 0_usize, 0_usize, 0_usize);
+    for (row, outcomes) in rows.iter().zip(&results) {
+        let is_wrong = row.kind == Kind::Wrong;
+        let mut confusions = Vec::new();
+        let (mut is_first, mut is_among) = (false, false);
+        for ((name, ..), (outcome, _)) in scenes.iter().zip(outcomes) {
+            match outcome {
+                Outcome::Same => continue,
+                Outcome::First => {
+                    (is_first, first) = (true, first + usize::from(is_wrong));
+                    accused |= !is_wrong;
+                }
+                Outcome::Among(key) => {
+                    (is_among, among) = (true, among + usize::from(is_wrong));
+                    confusions.push(format!("    {name}: like {key}"));
+                }
+                Outcome::Other(key) => {
+                    other += usize::from(is_wrong);
+                    accused |= !is_wrong;
+                    confusions.push(format!("    {name}: ACCUSED OF {key}"));
+                }
+                Outcome::Nothing => {
+                    nothing += usize::from(is_wrong);
+                    if is_wrong {
+                        confusions.push(format!("    {name}: nothing"));
+                    }
+                }
+            }
+            traces += usize::from(is_wrong);
+        }
+        if is_wrong {
+            wrong += 1;
+            best_first += usize::from(is_first);
+            best_among += usize::from(is_first || is_among);
+        }
+        if !confusions.is_empty() {
+            println!("{}{}", row.id, if is_first || !is_wrong { "" } else { "  NEVER FIRST" });
+            confusions.iter().for_each(|line| println!("{line}"));
+        }
+    }
+    let (slowest, row, scene) = rows
+        .iter()
+        .zip(&results)
+        .flat_map(|(row, outcomes)| outcomes.iter().zip(&scenes).map(|((_, time), case)| (*time, row.id, &case.0)))
+        .max()
+        .context("no traces")?;
+    println!(
+        "\nmistakes: {wrong}; first on their best scene: {best_first}; first or the same as the first: {best_among}"
+    );
+    println!(
+        "traces that differ: {traces}; first: {first}; same as the first: {among}; other: {other}; nothing: {nothing}"
+    );
+    println!("slowest: {row} on {scene}, {slowest:.2?}");
+    println!("{}", if accused { "a correct variant is accused" } else { "no correct variant is accused" });
+    Ok(ExitCode::from(u8::from(accused)))
+}
+
+fn explain((_, scene, correct): &(String, Scene, Vec<u8>), row: &student::Row) -> (Outcome, Duration) {
+    let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+    if trace == *correct {
+        return (Outcome::Same, Duration::ZERO);
+    }
+    let begin = Instant::now();
+    let explanations = known(scene, &trace[..]);
+    let time = begin.elapsed();
+    let outcome = match explanations.into_iter().next() {
+        None => Outcome::Nothing,
+        Some(explanation) if explanation.key == row.id => Outcome::First,
+        Some(explanation) if explanation.same_as.iter().any(|id| id == row.id) => Outcome::Among(explanation.key),
+        Some(explanation) => {
+            let (reproduced, samples) = (explanation.reproduced, explanation.samples);
+            Outcome::Other(format!("{} ({reproduced} of {samples} steps)", explanation.key))
+        }
+    };
+    (outcome, time)
+}
+
+/// The scenes of a folder of groups, with their correct traces.
+fn scenes(folder: &Path) -> anyhow::Result<Vec<(String, Scene, Vec<u8>)>> {
+    let mut paths = Vec::new();
+    for group in std::fs::read_dir(folder).with_context(|| format!("{}: can't be read", folder.display()))? {
+        let group = group?.path();
+        if group.is_dir() {
+            for file in std::fs::read_dir(&group)? {
+                paths.push(file?.path());
+            }
+        }
+    }
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
+    paths.sort();
+    ensure!(!paths.is_empty(), "{}: no group of this folder holds a scene", folder.display());
+    paths
+        .into_iter()
+        .map(|path| {
+            let scene = original::read(&std::fs::read(&path)?).with_context(|| path.display().to_string())?.scene;
+            let correct = student::trace(&scene, Student::default()).unwrap_or_else(|(bytes, _)| bytes);
+            Ok((path.strip_prefix(folder)?.with_extension("").display().to_string(), scene, correct))
+        })
+        .collect()
+}

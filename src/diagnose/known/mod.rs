@@ -1,0 +1,72 @@
+//! Which known mistake reproduces a submission: steps are simulated again with each mistake of the catalogue.
+//!
+//! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For some of
+//! them, chosen to be diverse, and for some right ones in which something happens, the second simulator
+//! ([`crate::student`]) starts from the submission's own state and makes one mistake. The mistake explains the submission when
+//! everything that the step logged comes out the same: polynomials up to a positive factor, contacts, the states in the
+//! middle and at the end. It never judges: a step that no mistake reproduces stays wrong all the same. Correct variants of
+//! the catalogue are tried, too, and where one of them reproduces the steps no mistake is named.
+//!
+//! The mathematics is that of the two simulators; the only tolerances are those of [`compare`].
+mod alignment;
+mod candidates;
+mod capture;
+mod compare;
+mod example;
+mod remedy;
+mod scan;
+
+use super::Explanation;
+use crate::{
+    scene::Scene,
+    student::{Kind, Row},
+    trace::Layout,
+};
+use candidates::{Candidates, Score};
+use std::io::Read;
+
+/// Searches the catalogue for the mistake that explains this trace.
+///
+/// The result is empty when all steps are right, when no mistake reproduces at least half of the wrong steps, or when a
+/// correct variant reproduces them as well. Else it holds one explanation; further mistakes that reproduce the same steps
+/// are in [`Explanation::same_as`]. Of those, the first one is the earliest of the assignment's order: polynomials, contact
+/// vectors, decisions, responses, loops, zones, failsafe, trace.
+///
+/// `samples` and `reproduced` count wrong steps; right ones that the mistake would make wrong exclude it. Traces of any
+/// content are accepted; what can't be read, and what follows the first 64 MiB, is passed over.
+#[must_use]
+pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
+    let scan = scan::scan(scene, trace);
+    if let Some(missing) = alignment::missing_record(scene, &scan) {
+        return vec![missing];
+    }
+    if scan.wrong.is_empty() {
+        return Vec::new();
+    }
+    let scores = Candidates::new(scene, &scan).best();
+    let Some(best) = scores.first() else { return Vec::new() };
+    if scores.iter().any(|score| score.row.kind == Kind::Variant) {
+        return Vec::new();
+    }
+    let first = &scan.wrong[0];
+    let mut explanation = explain(best.row, (best.reproduced, best.samples));
+    explanation.example = Some(example::example(scene, Layout::of(scene), first));
+    explanation.same_as = scores[1..].iter().map(|score: &Score| score.row.id.to_owned()).collect();
+    vec![explanation]
+}
+
+/// The explanation that names a row, without an example.
+fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
+    Explanation {
+        key: row.id.to_owned(),
+        what: row.explanation.to_owned(),
+        details: vec![remedy::remedy(row.area).to_owned()],
+        reproduced,
+        samples,
+        example: None,
+        same_as: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,93 @@
+//! Traces with mistakes, made in memory, and what is said of them.
+use super::known;
+use crate::{
+    scene::{Scene, original},
+    student::{self, Student, find},
+};
+
+/// Two balls that meet, an edge that swings about its fixed end, and a half-plane.
+const SCENE: &str = "<scene><duration time=\"1\"/><integrator type=\"symplectic-euler\" dt=\"0.05\"/>\
+    <collision type=\"continuous-time\" COR=\"0.8\"/><simplegravity fx=\"0\" fy=\"-1\"/>\
+    <particle m=\"1\" px=\"-1\" py=\"0.1\" vx=\"2\" vy=\"0\" fixed=\"0\" radius=\"0.3\"/>\
+    <particle m=\"2\" px=\"1\" py=\"0\" vx=\"-1.5\" vy=\"0.25\" fixed=\"0\" radius=\"0.25\"/>\
+    <particle m=\"1\" px=\"-3\" py=\"-1.2\" vx=\"0\" vy=\"0\" fixed=\"1\" radius=\"0.1\"/>\
+    <particle m=\"4\" px=\"3\" py=\"-1\" vx=\"0.25\" vy=\"1\" fixed=\"0\" radius=\"0.1\"/>\
+    <edge i=\"2\" j=\"3\" radius=\"0.15\"/>\
+    <halfplane px=\"0\" py=\"-5\" nx=\"0\" ny=\"1\"/></scene>";
+
+fn scene() -> Scene {
+    original::read(SCENE.as_bytes()).expect("a scene").scene
+}
+
+fn first(id: &str) -> Option<(String, Vec<String>)> {
+    let row = find(id).expect("a row");
+    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+    known(&scene(), &trace[..]).into_iter().next().map(|first| (first.key, first.same_as))
+}
+
+#[test]
+fn a_right_trace_needs_no_explanation() {
+    let trace = student::trace(&scene(), Student::default()).expect("a trace");
+    assert_eq!(known(&scene(), &trace[..]), []);
+}
+
+#[test]
+fn mistakes_of_all_stages_are_named() {
+    for id in [
+        "pp-no-two",
+        "pe-square-no-eh",
+        "ph-no-radius",
+        "handover-negated",
+        "pp-contact-reversed",
+        "decision-never",
+        "response-sign",
+        "ct-two-passes",
+        "log-lowest-first",
+        "log-polynomials-kept",
+        "log-impulses-kept",
+        "log-single-precision",
+        "log-no-mid",
+        "log-no-initial",
+    ] {
+        let Some((key, same_as)) = first(id) else { panic!("{id} is not explained") };
+        assert!(key == id || same_as.iter().any(|other| other == id), "{id} is explained as {key} or {same_as:?}");
+    }
+}
+
+#[test]
+fn correct_variants_are_never_accused() {
+    for row in student::CATALOGUE.iter().filter(|row| row.kind == student::Kind::Variant) {
+        assert_eq!(first(row.id), None, "{}", row.id);
+    }
+}
+
+#[test]
+fn an_example_names_the_first_wrong_step() {
+    let row = find("pp-no-two").expect("a row");
+    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
+    let explanations = known(&scene(), &trace[..]);
+    let [explanation] = &explanations[..] else { panic!("one explanation") };
+    assert_eq!((explanation.key.as_str(), explanation.what.as_str()), (row.id, row.explanation));
+    assert_eq!(explanation.reproduced, explanation.samples);
+    let example = explanation.example.as_ref().expect("an example");
+    assert_eq!((example.step, example.place.as_str()), (1, "particle 0 and particle 1, pass 0, polynomial 1"));
+    assert_eq!(example.expected.len(), 3);
+    assert!((example.expected[1] - 2.0 * example.actual[1]).abs() < 1e-9, "{example:?}");
+}
+
+#[test]
+fn damaged_traces_are_read_as_far_as_they_go() {
+    let row = find("pp-no-two").expect("a row");
+    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
+    for length in [0, 1, 127, 200, trace.len() / 2, trace.len() - 1] {
+        let keys: Vec<String> = known(&scene(), &trace[..length]).into_iter().map(|first| first.key).collect();
+        assert!(keys.iter().all(|key| key == "pp-no-two"), "cut at {length}: {keys:?}");
+        assert!(length < 1000 || keys.len() == 1, "cut at {length}");
+    }
+    // Nonsense in every place: whatever is said, it is said in the end.
+    for place in (0..trace.len()).step_by(trace.len() / 23) {
+        let mut damaged = trace.clone();
+        damaged[place] ^= 0xff;
+        let _explanations = known(&scene(), &damaged[..]);
+    }
+}
