@@ -26,11 +26,25 @@ pub enum Kind {
     Position,
     /// A particle's velocity at the end of the step differs.
     Velocity,
+    /// Fair rules: the time of impact of a collision is wrong.
+    ContactTime,
+    /// Fair rules: a collision is logged more than once.
+    RepeatedCollision,
+    /// Fair rules: a later detection pass of the step looked at wrong positions.
+    PassPositions,
+    /// Fair rules: the two records of a step contradict each other.
+    RecordsDiffer,
+    /// Fair rules: the trace holds what the course's library can't have written.
+    ImpossibleLog,
+    /// Fair rules: coefficients that were lost as too small change a decision.
+    TrimmedDecision,
+    /// Fair rules: the two accepted forms of the approach polynomial are mixed.
+    MixedForms,
 }
 
 impl Kind {
     /// All kinds, in order.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 16] = [
         Self::MissedCollision,
         Self::SuperfluousCollision,
         Self::WrongNormal,
@@ -40,6 +54,13 @@ impl Kind {
         Self::Coefficient,
         Self::Position,
         Self::Velocity,
+        Self::ContactTime,
+        Self::RepeatedCollision,
+        Self::PassPositions,
+        Self::RecordsDiffer,
+        Self::ImpossibleLog,
+        Self::TrimmedDecision,
+        Self::MixedForms,
     ];
 
     /// The key under which JSON and other machine-readable reports know it.
@@ -55,10 +76,18 @@ impl Kind {
             Self::Coefficient => "coefficient",
             Self::Position => "position",
             Self::Velocity => "velocity",
+            Self::ContactTime => "contact_time",
+            Self::RepeatedCollision => "repeated_collision",
+            Self::PassPositions => "pass_positions",
+            Self::RecordsDiffer => "records_differ",
+            Self::ImpossibleLog => "impossible_log",
+            Self::TrimmedDecision => "trimmed_decision",
+            Self::MixedForms => "mixed_forms",
         }
     }
 
-    /// The original's message for it; positions and velocities have none, they only raise residuals.
+    /// The original's message for it; positions and velocities have none, they only raise residuals, and what it does
+    /// not look at has none either.
     #[must_use]
     pub const fn original_message(self) -> Option<&'static str> {
         match self {
@@ -69,7 +98,15 @@ impl Kind {
             Self::PolynomialDegree => Some("Wrong polynomial degree!"),
             Self::VanishingPolynomial => Some("Polynomial coefficients are close to all zero!"),
             Self::Coefficient => Some("Wrong polynomial coefficients!"),
-            Self::Position | Self::Velocity => None,
+            Self::Position
+            | Self::Velocity
+            | Self::ContactTime
+            | Self::RepeatedCollision
+            | Self::PassPositions
+            | Self::RecordsDiffer
+            | Self::ImpossibleLog
+            | Self::TrimmedDecision
+            | Self::MixedForms => None,
         }
     }
 }
@@ -93,12 +130,19 @@ impl Finding {
             Detail::MissedCollision { .. } => Kind::MissedCollision,
             Detail::SuperfluousCollision { .. } => Kind::SuperfluousCollision,
             Detail::WrongNormal { .. } => Kind::WrongNormal,
-            Detail::PolynomialCount { .. } => Kind::PolynomialCount,
+            Detail::PolynomialCount { .. } | Detail::PassCount { .. } => Kind::PolynomialCount,
             Detail::PolynomialDegree { .. } => Kind::PolynomialDegree,
             Detail::VanishingPolynomial { .. } => Kind::VanishingPolynomial,
             Detail::Coefficient { .. } => Kind::Coefficient,
             Detail::Position { .. } => Kind::Position,
             Detail::Velocity { .. } => Kind::Velocity,
+            Detail::ContactTime { .. } => Kind::ContactTime,
+            Detail::RepeatedCollision { .. } => Kind::RepeatedCollision,
+            Detail::PassPositions { .. } => Kind::PassPositions,
+            Detail::RecordsDiffer { .. } => Kind::RecordsDiffer,
+            Detail::ImpossibleLog => Kind::ImpossibleLog,
+            Detail::TrimmedDecision { .. } => Kind::TrimmedDecision,
+            Detail::MixedForms { .. } => Kind::MixedForms,
         }
     }
 }
@@ -133,6 +177,15 @@ pub enum Detail {
         actual: usize,
         /// Polynomials of one detection pass over all pairs, for telling how many passes are too many or too few.
         per_pass: usize,
+    },
+    /// Another number of detection passes in one part of the step (fair rules).
+    PassCount {
+        /// The part.
+        part: Part,
+        /// Passes of the reference.
+        expected: usize,
+        /// Passes in the trace.
+        actual: usize,
     },
     /// Another number of coefficients.
     PolynomialDegree {
@@ -193,6 +246,64 @@ pub enum Detail {
         /// Euclidean distance.
         residual: f64,
     },
+    /// The time of impact is not where the polynomials turn positive (fair rules).
+    ContactTime {
+        /// The reference's collision.
+        expected: Impulse,
+        /// The trace's.
+        actual: LoggedImpulse,
+    },
+    /// A collision that the trace already has (fair rules).
+    RepeatedCollision {
+        /// The repetition.
+        actual: LoggedImpulse,
+    },
+    /// A polynomial of a pair that a response or the failsafe has moved fits neither (fair rules). It may be right: what
+    /// is wrong is where the particles are by then.
+    PassPositions {
+        /// The first such polynomial.
+        place: PolynomialPlace,
+    },
+    /// The mid record and the end record of the step contradict each other (fair rules).
+    RecordsDiffer {
+        /// In what.
+        part: RecordPart,
+    },
+    /// A polynomial with a leading coefficient that the course's library would have dropped (fair rules).
+    ImpossibleLog,
+    /// The trace's polynomials are right, but with their factor the course's library dropped coefficients, and this
+    /// decision hangs on them (fair rules).
+    TrimmedDecision {
+        /// The pair's first polynomial.
+        place: PolynomialPlace,
+        /// Whether the pair collides.
+        collides: bool,
+    },
+    /// The approach polynomial has the other of its two accepted forms than before (fair rules).
+    MixedForms {
+        /// The first such polynomial.
+        place: PolynomialPlace,
+    },
+}
+
+/// A part of a step's collision handling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// What comes before the mid record: the only pass, or the impulse rounds.
+    Impulses,
+    /// Impact zones and the rigid failsafe.
+    Geometric,
+}
+
+/// What two records of a step may contradict each other in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RecordPart {
+    /// Positions or velocities.
+    State,
+    /// The impulse lists.
+    Impulses,
+    /// The polynomial lists.
+    Polynomials,
 }
 
 /// Which polynomial of a step.

@@ -1,5 +1,8 @@
 //! The verdict on one trace.
-use super::finding::{Finding, Kind};
+use super::{
+    fair::{Judgement, Refusal},
+    finding::{Finding, Kind},
+};
 use crate::{
     num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM},
     sim::{SearchCounts, StepError},
@@ -156,6 +159,8 @@ pub struct Outcome {
     pub trailing_bytes: bool,
     /// Root searches of the reference.
     pub searches: SearchCounts,
+    /// What the fair rules say, if they were asked.
+    pub fair: Option<Box<Judgement>>,
 }
 
 impl Outcome {
@@ -175,6 +180,7 @@ impl Outcome {
             damage: None,
             trailing_bytes: false,
             searches: SearchCounts::default(),
+            fair: None,
         }
     }
 
@@ -188,8 +194,23 @@ impl Outcome {
         }
     }
 
+    fn conclude_fair(&mut self) {
+        let Some(fair) = &mut self.fair else { return };
+        let refusal = if self.stop.is_some() {
+            Some(Refusal::Stopped)
+        } else if self.damage.is_some() {
+            Some(Refusal::Damaged)
+        } else if self.trailing_bytes {
+            Some(Refusal::TrailingBytes)
+        } else {
+            None
+        };
+        fair.conclude(refusal, self.steps_judged == self.steps);
+    }
+
     /// Draws the verdict, when nothing stopped judging (oracle-behaviour.md 6).
     pub(super) fn conclude(&mut self) {
+        self.conclude_fair();
         self.examples.sort_by_key(Finding::kind);
         if self.stop.is_some() {
             return;

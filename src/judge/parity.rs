@@ -15,11 +15,13 @@ pub struct Options {
     pub root_search: RootSearch,
     /// Stop after the first step with a finding (a hopeless run is cut short; the outcome then has no verdict).
     pub stop_at_first: bool,
+    /// Judge by the fair rules as well ([`Outcome::fair`]).
+    pub fair: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { threads: 0, root_search: RootSearch::WhereNeeded, stop_at_first: false }
+        Self { threads: 0, root_search: RootSearch::WhereNeeded, stop_at_first: false, fair: false }
     }
 }
 

@@ -4,6 +4,7 @@
 //! own state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
 //! reported, and in which order, does not depend on the number of threads.
 use super::{
+    fair::{self, Context, Records, StepJudgement},
     outcome::{Damage, Outcome, Stop, Unreadable},
     parity::{Options, Progress},
     tally::{self, Buffers, StepResult, Tally},
@@ -35,10 +36,12 @@ struct Slot {
     before: State,
     /// Byte offset of the record that `before` comes from.
     before_at: u64,
-    mid: State,
+    /// The mid record; without its lists, unless the fair rules want them.
+    mid: LenientFrame,
     end: LenientFrame,
     damage: Option<Damage>,
     result: StepResult,
+    fair: StepJudgement,
     error: Option<StepError>,
 }
 
@@ -62,10 +65,11 @@ pub(super) fn judge<R: Read + Send>(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {
-    let mut replay = Replay::new(scene, trace);
+    let mut replay = Replay::new(scene, trace, options.fair);
     if let Err(stop) = replay.read_initial() {
         replay.outcome.damage = replay.damage.take();
         replay.outcome.stop = Some(stop);
+        replay.outcome.conclude();
         return replay.outcome;
     }
     replay.outcome.damage = replay.damage.take();
@@ -87,14 +91,14 @@ pub(super) fn judge<R: Read + Send>(
     loop {
         let mut stop_after = None;
         match &pool {
-            None => judge_batch(&current, &mut workers[..1], replay.shape),
+            None => judge_batch(&current, &mut workers[..1], &replay.shape),
             Some(pool) => {
                 let shape = replay.shape;
                 let read_on = stop.is_none() && !replay.complete();
                 let reader = &mut replay;
                 pool.install(|| {
                     rayon::join(
-                        || judge_batch(&current, &mut workers, shape),
+                        || judge_batch(&current, &mut workers, &shape),
                         || {
                             if read_on {
                                 stop_after = reader.read_batch(&mut next);
@@ -132,15 +136,17 @@ pub(super) fn judge<R: Read + Send>(
 
 /// Which parts of a step are compared.
 #[derive(Debug, Clone, Copy)]
-struct Shape {
+struct Shape<'a> {
     layout: Layout,
     logs_impulses: bool,
+    /// Whether the fair rules are asked, too, and what they need.
+    fair: Option<Context<'a>>,
 }
 
 /// The sequential side: the reader, the state that the next step starts from, and the outcome so far.
-struct Replay<R> {
+struct Replay<'a, R> {
     reader: Lenient<R>,
-    shape: Shape,
+    shape: Shape<'a>,
     /// The end state of the last step that was read.
     state: State,
     /// Byte offset of its record.
@@ -151,18 +157,18 @@ struct Replay<R> {
     outcome: Outcome,
 }
 
-impl<R: Read> Replay<R> {
-    fn new(scene: &Scene, trace: R) -> Self {
+impl<'a, R: Read> Replay<'a, R> {
+    fn new(scene: &'a Scene, trace: R, fair: bool) -> Self {
         let layout = Layout::of(scene);
         let logs_impulses = layout.impulses && !matches!(scene.collision, Collision::Hybrid { .. });
         Self {
             reader: Lenient::new(trace, layout),
-            shape: Shape { layout, logs_impulses },
+            shape: Shape { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
             state: State::default(),
             state_at: 0,
             steps_read: 0,
             damage: None,
-            outcome: Outcome::empty(layout.steps),
+            outcome: Outcome { fair: fair.then(Box::default), ..Outcome::empty(layout.steps) },
         }
     }
 
@@ -175,6 +181,9 @@ impl<R: Read> Replay<R> {
         let mut damage = None;
         let read = self.read_frame(&mut frame, 0, &mut damage);
         self.damage = damage;
+        if let (Ok(()), Some(context), Some(judgement)) = (&read, self.shape.fair, &mut self.outcome.fair) {
+            judgement.add_initial(&fair::judge_initial(&context, &frame));
+        }
         self.state = frame.state;
         read
     }
@@ -230,10 +239,14 @@ impl<R: Read> Replay<R> {
         let mut damage = None;
         let mut read = Ok(());
         if self.shape.layout.polynomials {
-            // The mid record's lists are never compared; the end record's buffer serves for reading them.
-            read = self.read_frame(&mut slot.end, slot.step, &mut damage);
-            if read.is_ok() {
-                copy_state(&mut slot.mid, &slot.end.state);
+            if self.shape.fair.is_some() {
+                read = self.read_frame(&mut slot.mid, slot.step, &mut damage);
+            } else {
+                // Parity never compares the mid record's lists; the end record's buffer serves for reading them.
+                read = self.read_frame(&mut slot.end, slot.step, &mut damage);
+                if read.is_ok() {
+                    copy_state(&mut slot.mid.state, &slot.end.state);
+                }
             }
         }
         if read.is_ok() {
@@ -268,6 +281,9 @@ impl<R: Read> Replay<R> {
             for first in &slot.result.firsts {
                 outcome.keep_first(first);
             }
+            if let Some(judgement) = &mut outcome.fair {
+                judgement.add(&slot.fair);
+            }
             outcome.steps_judged += 1;
             progress.step_judged(slot.step, &slot.result.remarks);
             if slot.result.counts.total() > 0 {
@@ -300,7 +316,7 @@ fn not_finite(slot: &Slot, layout: Layout) -> Option<Damage> {
 }
 
 /// Judges the steps of a batch, each by the next free worker.
-fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: Shape) {
+fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &Shape<'_>) {
     let slots = &batch.slots[..batch.filled];
     let next = AtomicUsize::new(0);
     let run = |worker: &mut Worker| {
@@ -321,18 +337,28 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: Shape) {
     }
 }
 
-fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: Shape) {
-    let Slot { step, before, mid, end, result, error, .. } = slot;
+fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
+    let Slot { step, before, mid, end, result, fair: judged, error, .. } = slot;
     let Worker { simulation, buffers } = worker;
     copy_state(simulation.state_mut(), before);
     simulation.set_steps_done(*step - 1);
     let layout = shape.layout;
     let frame = u64::from(*step) * u64::from(layout.records_per_step());
     let mid = layout.polynomials.then_some(&*mid);
-    let mut tally = Tally::new((*step, frame), end, mid, shape.logs_impulses, buffers, result);
+    let mut tally = Tally::new((*step, frame), end, mid.map(|mid| &mid.state), shape.logs_impulses, buffers, result);
     match simulation.step(&mut tally) {
         Ok(()) => tally.finish(simulation.state(), layout.impulses, layout.polynomials),
         Err(cause) => *error = Some(cause),
+    }
+    if let (Some(context), None) = (&shape.fair, &error) {
+        let records = Records { step: *step, frame, before, mid, end };
+        // Parity had a result; so it is what the trace logged that leads nowhere.
+        *judged = fair::judge(context, simulation, records, result.identical).unwrap_or_else(|_| StepJudgement {
+            step: *step,
+            frame,
+            endless: true,
+            ..StepJudgement::default()
+        });
     }
 }
 

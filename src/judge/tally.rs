@@ -12,9 +12,9 @@ use crate::{
     num::{
         polynomial::{MAX_COEFFICIENTS, Polynomial},
         tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL, PARITY_ZERO_POLYNOMIAL},
-        vector::{at, length},
+        vector::{Vec2, at, length},
     },
-    sim::{Detection, Impulse, Observer, Pass, Stage, State},
+    sim::{Detection, Impulse, Observer, Pass, Resume, Stage, State},
     trace::{LenientFrame, LoggedImpulse},
 };
 
@@ -35,6 +35,9 @@ pub(super) struct StepResult {
     pub(super) firsts: Vec<Finding>,
     /// Residuals of each particle: position, velocity. Summed up in step order by the caller.
     pub(super) residuals: Vec<(f64, f64)>,
+    /// Whether the step's states, impulses and polynomials are the reference's, bit for bit (small leading coefficients
+    /// dropped).
+    pub(super) identical: bool,
 }
 
 impl StepResult {
@@ -43,6 +46,7 @@ impl StepResult {
         self.firsts.clear();
         self.residuals.clear();
         self.counts = Counts::default();
+        self.identical = false;
     }
 
     fn record(&mut self, finding: Finding) {
@@ -101,6 +105,8 @@ pub(super) struct Tally<'a> {
     passes: usize,
     /// Polynomials of the reference so far.
     polynomials: usize,
+    /// Whether all that was compared so far is equal bit for bit.
+    identical: bool,
 }
 
 impl<'a> Tally<'a> {
@@ -127,6 +133,7 @@ impl<'a> Tally<'a> {
             pass: Pass { stage: Stage::Simple, index: 0 },
             passes: 0,
             polynomials: 0,
+            identical: true,
         }
     }
 
@@ -138,6 +145,7 @@ impl<'a> Tally<'a> {
         if index < self.frame.polynomials.len() {
             let actual = self.frame.polynomials.get(index);
             if !equal_and_safe(expected.coefficients(), actual) {
+                self.identical &= equal(expected.coefficients(), actual);
                 self.compare_closely(place(), expected, actual);
             }
         }
@@ -149,8 +157,11 @@ impl<'a> Tally<'a> {
             self.compare_impulses();
         }
         if has_polynomials {
+            self.identical &= self.frame.polynomials.len() == self.polynomials;
             self.settle_polynomials();
         }
+        self.identical &= same_bits(reference, &self.frame.state);
+        self.result.identical = self.identical;
         self.compare_states(reference);
     }
 
@@ -162,6 +173,8 @@ impl<'a> Tally<'a> {
     fn compare_impulses(&mut self) {
         let own = std::mem::take(&mut self.buffers.impulses);
         let theirs = &self.frame.impulses;
+        self.identical &=
+            own.len() == theirs.len() && own.iter().zip(theirs).all(|(own, logged)| same_impulse(own, logged));
         for expected in own.iter().filter(|own| !theirs.iter().any(|logged| same_pair(own, logged))) {
             self.result.remarks.push(Remark::Missed(*expected));
             self.result.record(self.finding(Detail::MissedCollision { expected: *expected }));
@@ -297,11 +310,13 @@ impl Observer for Tally<'_> {
     }
 
     /// Takes over the mid record's state without comparing it (oracle-behaviour.md 4.2).
-    fn synchronise(&mut self, state: &mut State) {
+    fn synchronise(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
+            self.identical &= same_bits(state, mid);
             state.positions.copy_from_slice(&mid.positions);
             state.velocities.copy_from_slice(&mid.velocities);
         }
+        Resume::Own
     }
 }
 
@@ -324,6 +339,22 @@ fn same_pair(own: &Impulse, logged: &LoggedImpulse) -> bool {
     own.pair.kind.code() == logged.kind
         && i64::from(own.pair.first) == i64::from(logged.first)
         && i64::from(own.pair.second) == i64::from(logged.second)
+}
+
+/// Whether both are the same impulse bit for bit, the time included.
+fn same_impulse(own: &Impulse, logged: &LoggedImpulse) -> bool {
+    let bits = |normal: Vec2, time: f64| [normal.x.to_bits(), normal.y.to_bits(), time.to_bits()];
+    same_pair(own, logged) && bits(own.normal, own.time) == bits(logged.normal, logged.time)
+}
+
+/// Whether two states are equal bit for bit.
+fn same_bits(own: &State, other: &State) -> bool {
+    equal(&own.positions, &other.positions) && equal(&own.velocities, &other.velocities)
+}
+
+/// Whether two lists are equal bit for bit.
+fn equal(own: &[f64], other: &[f64]) -> bool {
+    own.len() == other.len() && own.iter().zip(other).all(|(own, other)| own.to_bits() == other.to_bits())
 }
 
 /// The sum of moduli, left to right from zero.

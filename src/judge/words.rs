@@ -2,7 +2,7 @@
 //!
 //! Numbers are written so that reading them back gives the same value. Reports that lay values out side by side use
 //! the fields of [`Detail`] instead.
-use super::finding::{Detail, Finding, Kind, PolynomialPlace, Role};
+use super::finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Role};
 use crate::{
     sim::{Pair, PairKind, Pass, Stage},
     trace::LoggedImpulse,
@@ -55,6 +55,13 @@ impl Display for Detail {
                     None => Ok(()),
                 }
             }
+            Self::PassCount { part, expected, actual } => {
+                let part = match part {
+                    Part::Impulses => "before the mid record",
+                    Part::Geometric => "in the geometric part",
+                };
+                write!(f, "{actual} detection passes {part}, expected {expected}")
+            }
             Self::PolynomialDegree { place, expected, actual_size, .. } => write!(
                 f,
                 "{place}: {actual_size} coefficients, expected {} (leading ones below 1e-12 dropped)",
@@ -76,6 +83,40 @@ impl Display for Detail {
                     f,
                     "particle {particle} ends with velocity ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}"
                 )
+            }
+            Self::ContactTime { expected, actual } => write!(
+                f,
+                "{} collide at time {}, the trace says {}",
+                PairWords(expected.pair),
+                expected.time,
+                actual.time
+            ),
+            Self::RepeatedCollision { actual } => {
+                write!(f, "the collision of {} is logged more than once", LoggedPair(actual))
+            }
+            Self::PassPositions { place } => write!(
+                f,
+                "{place}: belongs to other positions than those that the response or the failsafe before it should lead to"
+            ),
+            Self::RecordsDiffer { part } => f.write_str(match part {
+                RecordPart::State => "the state changes between the step's two records",
+                RecordPart::Impulses => "the step's two records hold different impulses",
+                RecordPart::Polynomials => "the mid record's polynomials are not the first ones of the end record",
+            }),
+            Self::ImpossibleLog => {
+                f.write_str("a polynomial has a leading coefficient below 1e-12, which the course's library drops")
+            }
+            Self::TrimmedDecision { place, collides } => {
+                let outcome = if *collides { "collide" } else { "do not collide" };
+                let pair = PairWords(place.pair);
+                write!(
+                    f,
+                    "{pair} ({}) {outcome}; the trace's polynomials are right up to their factor, but the course's library dropped coefficients below 1e-12 of them, and decides otherwise",
+                    PassWords(place.pass)
+                )
+            }
+            Self::MixedForms { place } => {
+                write!(f, "{place}: the other one of the two accepted forms; a program uses one of them throughout")
             }
         }
     }
@@ -119,6 +160,13 @@ impl Display for Kind {
             Self::Coefficient => "wrong coefficient",
             Self::Position => "wrong position",
             Self::Velocity => "wrong velocity",
+            Self::ContactTime => "wrong time of impact",
+            Self::RepeatedCollision => "repeated collision",
+            Self::PassPositions => "wrong positions within the step",
+            Self::RecordsDiffer => "contradicting records",
+            Self::ImpossibleLog => "impossible log",
+            Self::TrimmedDecision => "decision changed by lost coefficients",
+            Self::MixedForms => "mixed forms of the approach",
         })
     }
 }

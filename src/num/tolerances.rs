@@ -66,3 +66,18 @@ pub const SEARCH_SMALLEST_COEFFICIENT: f64 = 1e-150;
 
 /// Certificate: see [`SEARCH_SMALLEST_COEFFICIENT`].
 pub const SEARCH_LARGEST_COEFFICIENT: f64 = 1e150;
+
+/// Fair: a correct program may be off by this many units of the running error bound (numerics.md 2; LAPACK's test ratios
+/// use 30). Smaller values refuse correct programs that evaluate in another way, larger ones hide small mistakes.
+pub const FAIR_UNITS: f64 = 64.0;
+
+/// Fair: a coefficient may also be off by this many units of all the polynomial's error bounds together. Programs that find
+/// coefficients by interpolation need it; it is far below what changes a decision on [0, 1].
+pub const FAIR_NORM_UNITS: f64 = 16.0;
+
+/// Fair: what a root finder may be off by at the time of impact, in units of the polynomials' error bounds there. Covers
+/// deflation and other solvers than the course's.
+pub const FAIR_ROOT_UNITS: f64 = 1024.0;
+
+/// Fair: how often a step's own sensitivity to roundings of its inputs a state may be off.
+pub const FAIR_SENSITIVITY: f64 = 8.0;

@@ -201,6 +201,14 @@ pub const fn tolerance(kind: Kind) -> Option<f64> {
     }
 }
 
+impl FindingView {
+    /// A finding of the fair rules, whose tolerances depend on the values.
+    #[must_use]
+    pub fn fair(finding: &Finding) -> Self {
+        Self { tolerance: None, ..finding.into() }
+    }
+}
+
 impl From<&Finding> for FindingView {
     fn from(finding: &Finding) -> Self {
         let mut view = Self {
@@ -229,7 +237,7 @@ impl FindingView {
                 self.pair = Some(expected.pair.into());
                 self.expected = Some(Value::Collision(expected.into()));
             }
-            Detail::SuperfluousCollision { actual } => {
+            Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
                 self.pair = Some(actual.into());
                 self.actual = Some(Value::Collision(actual.into()));
             }
@@ -238,7 +246,15 @@ impl FindingView {
                 self.compare(Value::Collision(expected.into()), Value::Collision(actual.into()));
                 self.residual = Some(Number(*residual));
             }
-            Detail::PolynomialCount { expected, actual, .. } => {
+            Detail::ContactTime { expected, actual } => {
+                self.pair = Some(expected.pair.into());
+                self.compare(Value::Collision(expected.into()), Value::Collision(actual.into()));
+            }
+            Detail::PassPositions { place } | Detail::TrimmedDecision { place, .. } | Detail::MixedForms { place } => {
+                self.pair = Some(place.pair.into());
+            }
+            Detail::RecordsDiffer { .. } | Detail::ImpossibleLog => {}
+            Detail::PolynomialCount { expected, actual, .. } | Detail::PassCount { expected, actual, .. } => {
                 self.compare(Value::Count(*expected), Value::Count(*actual));
             }
             Detail::PolynomialDegree { place, expected, actual_size, actual } => {

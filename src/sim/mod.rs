@@ -15,5 +15,5 @@ mod observer;
 mod samples;
 mod simulation;
 
-pub use observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Stage, Time, Zone};
+pub use observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, Time, Zone};
 pub use simulation::{RootSearch, SearchCounts, Simulation, State, StepError};

@@ -10,11 +10,20 @@ use crate::num::{polynomial::Polynomial, vector::Vec2};
 /// at the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part:
 /// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last
 /// `end_step`.
+///
+/// Three methods may steer what they hear: `solve`, `decide` and `synchronise`. By default they change nothing.
 pub trait Observer {
     /// A step begins; steps count from 1.
     fn begin_step(&mut self, _step: u32) {}
     /// A detection pass begins.
     fn begin_pass(&mut self, _pass: Pass) {}
+    /// The polynomials of a pair, trimmed, are about to be searched for a time of impact. An observer may put others in
+    /// their place; search, decision and `detection` then go by those. Not called by `simple`, which has none.
+    fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
+    /// The decision about a pair. The step goes on with the one that is returned.
+    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
+        decision
+    }
     /// A pair was looked at.
     fn detection(&mut self, _detection: &Detection<'_>) {}
     /// The pass is over; `hits` pairs collide.
@@ -22,8 +31,10 @@ pub trait Observer {
     /// A response was applied.
     fn impulse(&mut self, _impulse: &Impulse) {}
     /// The synchronisation point: the state that the mid record holds. What is written here is what the step goes on
-    /// with, except that the geometric part of `hybrid` starts from the simulator's own values (collisions.md 5.4).
-    fn synchronise(&mut self, _state: &mut State) {}
+    /// with; the geometric part of `hybrid` starts from the values that the answer names.
+    fn synchronise(&mut self, _state: &mut State) -> Resume {
+        Resume::Own
+    }
     /// Impact zones after the merge of geometric round `round` (0: before the first failsafe).
     fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
     /// The rigid failsafe is about to move this zone.
@@ -43,6 +54,12 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     fn begin_pass(&mut self, pass: Pass) {
         (**self).begin_pass(pass);
     }
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+        (**self).solve(pair, q_start, q_end, polynomials);
+    }
+    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        (**self).decide(pair, decision)
+    }
     fn detection(&mut self, detection: &Detection<'_>) {
         (**self).detection(detection);
     }
@@ -52,8 +69,8 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     fn impulse(&mut self, impulse: &Impulse) {
         (**self).impulse(impulse);
     }
-    fn synchronise(&mut self, state: &mut State) {
-        (**self).synchronise(state);
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        (**self).synchronise(state)
     }
     fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
         (**self).zones(round, zones);
@@ -66,7 +83,8 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     }
 }
 
-/// Two observers hear the same, the first one first; what it writes at `synchronise` the second one sees.
+/// Two observers hear the same, the first one first; what it puts in place the second one sees. The geometric part
+/// starts from the synchronised state if one of them says so.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     fn begin_step(&mut self, step: u32) {
         self.0.begin_step(step);
@@ -75,6 +93,14 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     fn begin_pass(&mut self, pass: Pass) {
         self.0.begin_pass(pass);
         self.1.begin_pass(pass);
+    }
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+        self.0.solve(pair, q_start, q_end, polynomials);
+        self.1.solve(pair, q_start, q_end, polynomials);
+    }
+    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        let decision = self.0.decide(pair, decision);
+        self.1.decide(pair, decision)
     }
     fn detection(&mut self, detection: &Detection<'_>) {
         self.0.detection(detection);
@@ -88,9 +114,12 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.0.impulse(impulse);
         self.1.impulse(impulse);
     }
-    fn synchronise(&mut self, state: &mut State) {
-        self.0.synchronise(state);
-        self.1.synchronise(state);
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        let first = self.0.synchronise(state);
+        match self.1.synchronise(state) {
+            Resume::Own => first,
+            Resume::Synchronised => Resume::Synchronised,
+        }
     }
     fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
         self.0.zones(round, zones);
@@ -104,6 +133,15 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.0.end_step(step, state);
         self.1.end_step(step, state);
     }
+}
+
+/// What the geometric part of `hybrid` starts from, after the synchronisation point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resume {
+    /// The simulator's own values, as the original grades (collisions.md 5.4).
+    Own,
+    /// The state that the observer left.
+    Synchronised,
 }
 
 /// The kind of a pair; the numbers are those of the trace format.

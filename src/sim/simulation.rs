@@ -162,7 +162,7 @@ mod tests {
         num::vector::Vec2,
         scene::{Collision, Force, Integrator, Particle},
         sim::{
-            Decision, Detection, Impulse, PairKind, Pass, Time, Zone,
+            Decision, Detection, Impulse, PairKind, Pass, Resume, Time, Zone,
             samples::{edge, fixed, half_plane, particle, scene},
         },
     };
@@ -196,11 +196,12 @@ mod tests {
         fn impulse(&mut self, impulse: &Impulse) {
             self.lines.push(format!("impulse {} {}", impulse.normal.x, impulse.normal.y));
         }
-        fn synchronise(&mut self, state: &mut State) {
+        fn synchronise(&mut self, state: &mut State) -> Resume {
             self.lines.push("synchronise".to_owned());
             if let Some(replacement) = &self.replacement {
                 state.clone_from(replacement);
             }
+            Resume::Own
         }
         fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
             self.lines.push(format!("zones {round} {:?}", zones.iter().map(|z| z.particles).collect::<Vec<_>>()));

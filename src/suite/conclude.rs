@@ -120,10 +120,18 @@ fn first_divergence(first: &Finding, hints: Hints) -> String {
         }
         Detail::PolynomialDegree { place, .. }
         | Detail::VanishingPolynomial { place, .. }
-        | Detail::Coefficient { place, .. } => format!(", {place}"),
+        | Detail::Coefficient { place, .. }
+        | Detail::PassPositions { place }
+        | Detail::TrimmedDecision { place, .. }
+        | Detail::MixedForms { place } => format!(", {place}"),
         Detail::Position { particle, .. } | Detail::Velocity { particle, .. } => format!(", particle {particle}"),
-        Detail::SuperfluousCollision { actual } => format!(", objects {} and {}", actual.first, actual.second),
-        Detail::PolynomialCount { .. } => String::new(),
+        Detail::SuperfluousCollision { actual }
+        | Detail::RepeatedCollision { actual }
+        | Detail::ContactTime { actual, .. } => format!(", objects {} and {}", actual.first, actual.second),
+        Detail::PolynomialCount { .. }
+        | Detail::PassCount { .. }
+        | Detail::RecordsDiffer { .. }
+        | Detail::ImpossibleLog => String::new(),
     };
     format!("first divergence: step {}{place}: {}", first.step, first.kind())
 }

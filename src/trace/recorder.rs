@@ -8,7 +8,7 @@ use super::{
     layout::Layout,
     writer::{Encoded, Writer, Written},
 };
-use crate::sim::{Detection, Impulse, Observer, Pass, Stage, State};
+use crate::sim::{Detection, Impulse, Observer, Pass, Resume, Stage, State};
 use std::io::{self, Write};
 
 /// Writes a trace: hand it to [`Simulation::step`](crate::sim::Simulation::step) as the observer of every step, then
@@ -80,10 +80,11 @@ impl<W: Write> Observer for Recorder<W> {
         }
     }
 
-    fn synchronise(&mut self, state: &mut State) {
+    fn synchronise(&mut self, state: &mut State) -> Resume {
         if self.layout.records_per_step() == 2 {
             self.writer.record(state, &self.impulses, &self.polynomials);
         }
+        Resume::Own
     }
 
     fn end_step(&mut self, _step: u32, state: &State) {

@@ -21,6 +21,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
         root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded },
         stop_at_first: false,
+        fair: true,
     };
     let mut bar = console::Bar::new(scene.scene.steps());
     let outcome = parity::judge(&scene.scene, &mut trace.reader, &options, &mut bar);

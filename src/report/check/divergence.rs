@@ -23,10 +23,10 @@ fn side_by_side(detail: &Detail, style: Style) -> String {
         Detail::MissedCollision { expected } => {
             collision(style, Some((expected.normal.x, expected.normal.y, expected.time)), None)
         }
-        Detail::SuperfluousCollision { actual } => {
+        Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
             collision(style, None, Some((actual.normal.x, actual.normal.y, actual.time)))
         }
-        Detail::WrongNormal { expected, actual, .. } => collision(
+        Detail::WrongNormal { expected, actual, .. } | Detail::ContactTime { expected, actual } => collision(
             style,
             Some((expected.normal.x, expected.normal.y, expected.time)),
             Some((actual.normal.x, actual.normal.y, actual.time)),
@@ -68,6 +68,16 @@ fn side_by_side(detail: &Detail, style: Style) -> String {
         Detail::Position { expected, actual, .. } | Detail::Velocity { expected, actual, .. } => {
             vectors(*expected, *actual, style)
         }
+        Detail::PassCount { expected, actual, .. } => {
+            let mut table = Table::new([Align::Left, Align::Right]);
+            table.row(["expected passes".into(), expected.to_string().into()]);
+            table.row(["actual".into(), Cell::looking(Look::Bad, actual.to_string())]);
+            table.render(style)
+        }
+        Detail::PassPositions { place } | Detail::TrimmedDecision { place, .. } | Detail::MixedForms { place } => {
+            logged_by(place)
+        }
+        Detail::RecordsDiffer { .. } | Detail::ImpossibleLog => String::new(),
     }
 }
 

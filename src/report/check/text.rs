@@ -147,11 +147,15 @@ fn advice(finding: &Finding, style: Style) -> String {
             "the contact normal: from the first object to the second, at the time of impact, not normalised",
             "is it taken from the positions at that time, and not from those at the end of the step?",
         ],
-        Detail::PolynomialCount { expected, actual, .. } if actual > expected => &[
-            "the loop over detection passes: it runs too often, or looks at pairs that the reference leaves out",
-            "an earlier response of this step that differs also makes the loop go on",
-        ],
-        Detail::PolynomialCount { .. } => &[
+        Detail::PolynomialCount { expected, actual, .. } | Detail::PassCount { expected, actual, .. }
+            if actual > expected =>
+        {
+            &[
+                "the loop over detection passes: it runs too often, or looks at pairs that the reference leaves out",
+                "an earlier response of this step that differs also makes the loop go on",
+            ]
+        }
+        Detail::PolynomialCount { .. } | Detail::PassCount { .. } => &[
             "the loop over detection passes: it ends too early, or leaves out pairs",
             "an earlier response of this step that differs also makes the loop end",
         ],
@@ -169,6 +173,26 @@ fn advice(finding: &Finding, style: Style) -> String {
         Detail::Position { .. } | Detail::Velocity { .. } => {
             &["the integrator, the forces, or the response: the step starts from the trace's own state, so errors of \
              earlier steps are not to blame"]
+        }
+        Detail::ContactTime { .. } => &[
+            "the time of impact that is stored with the contact: the fraction of the step at which the objects touch",
+            "is it the time that the root finder returned, and not the step's number or the simulation's time?",
+        ],
+        Detail::RepeatedCollision { .. } => &["each pair is looked at once in a step: is it added to the list twice?"],
+        Detail::PassPositions { .. } => &[
+            "the response (or the rigid failsafe) before this detection pass: what it does to the end positions",
+            "which positions the pass is given: those after the responses of the round before",
+        ],
+        Detail::RecordsDiffer { .. } => {
+            &["what is written after the step: the course's code writes both records itself"]
+        }
+        Detail::ImpossibleLog => &["the trace was not written by the course's library as it was handed out"],
+        Detail::TrimmedDecision { .. } => &[
+            "the factor of your polynomials: the course's library drops leading coefficients below 1e-12",
+            "polynomials in the units of the assignment's formulas are not affected",
+        ],
+        Detail::MixedForms { .. } => {
+            &["the approach polynomial: one of its two accepted forms is to be used throughout"]
         }
     };
     let mut text = style.paint(Look::Strong, "What to look at") + "\n";

@@ -3,7 +3,7 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Impulse, Observer, Pass, Stage, Zone},
+        observer::{Impulse, Observer, Pass, Resume, Stage, Zone},
         simulation::{State, StepError},
     },
     continuous_time::respond,
@@ -62,10 +62,13 @@ pub(super) fn handle<O: Observer>(
         observer.synchronise(state);
         return Ok(());
     }
-    // The geometric part goes on with these values, whatever the observer makes of the state.
+    // The geometric part goes on with these values, unless the observer wants the state that it leaves.
     scratch.positions.clone_from(&state.positions);
     scratch.velocities.clone_from(&state.velocities);
-    observer.synchronise(state);
+    if observer.synchronise(state) == Resume::Synchronised {
+        scratch.positions.clone_from(&state.positions);
+        scratch.velocities.clone_from(&state.velocities);
+    }
     geometric(bodies, law, detector, scratch, q_start, observer)?;
     state.positions.clone_from(&scratch.positions);
     state.velocities.clone_from(&scratch.velocities);

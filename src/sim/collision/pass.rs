@@ -180,6 +180,7 @@ impl Detector {
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
         polynomials.iter_mut().for_each(Polynomial::trim);
+        way.observer.solve(pair, way.q_start, way.q_end, polynomials);
         let decision = match self.time(pair, polynomials)? {
             Time::Found(time) if time <= 1.0 => match normal(time) {
                 Some(normal) => Decision::Hit { time, normal },
@@ -188,6 +189,7 @@ impl Detector {
             time => Decision::Miss { time },
         };
         let Way { bodies, q_start, ref q_end, ref mut observer, .. } = *way;
+        let decision = observer.decide(pair, decision);
         observer.detection(&Detection { pair, polynomials, decision, q_start, q_end });
         let Decision::Hit { time, normal } = decision else { return Ok(Reaction::Kept) };
         way.hits += 1;

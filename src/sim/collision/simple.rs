@@ -21,8 +21,9 @@ pub(super) fn handle<O: Observer>(bodies: &Bodies, law: &Law, q_start: &[f64], s
     observer.begin_pass(pass);
     let mut look = |pair: Pair, normal: Option<Vec2>, v: &mut [f64], respond: &dyn Fn(&[f64], Vec2) -> Response| {
         let decision = normal.map_or(Decision::Miss { time: Time::None }, |normal| Decision::Hit { time: 0.0, normal });
+        let decision = observer.decide(pair, decision);
         observer.detection(&Detection { pair, polynomials: &[], decision, q_start, q_end: x });
-        if let Some(normal) = normal {
+        if let Decision::Hit { normal, .. } = decision {
             hits += 1;
             respond(v, normal).apply_velocities(v);
             observer.impulse(&Impulse { pair, normal, time: 0.0 });

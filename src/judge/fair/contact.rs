@@ -1,0 +1,192 @@
+//! Contacts and states: how far they may be off, and which decisions hang on round-off.
+use super::{
+    formulas::{Expected, Motion},
+    probe::Deviation,
+    step::{Context, Records, StepJudgement},
+};
+use crate::{
+    judge::finding::{Detail, Finding},
+    num::{
+        bounded::{Bounded, UNIT_ROUNDOFF},
+        tolerances::{FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_UNITS},
+        vector::{at, length},
+    },
+    scene::Collision,
+    sim::{Impulse, State},
+    trace::LoggedImpulse,
+};
+
+/// A polynomial's value at time `t` and the tolerance of that value, both from bounded coefficients.
+fn value(polynomial: &[Bounded], t: f64) -> (f64, f64) {
+    let (mut value, mut bound) = (0.0, 0.0);
+    for c in polynomial {
+        value = value * t + c.value;
+        bound = bound * t.abs() + c.bound.max(c.value.abs());
+    }
+    (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
+}
+
+/// Whether a pair may be in contact at time `t` first: one polynomial is about to turn positive, none is negative, and
+/// they were not all positive between `t` and the reference's time.
+fn time_fits(expected: &Expected, own: f64, t: f64) -> bool {
+    if !(0.0..=1.0).contains(&t) {
+        return false;
+    }
+    let all = || (0..expected.count()).map(|number| expected.polynomial(number));
+    let is_possible = all().all(|polynomial| {
+        let (value, tolerance) = value(polynomial, t);
+        value >= -tolerance
+    });
+    let turns = t == 0.0
+        || all().any(|polynomial| {
+            let (value, tolerance) = value(polynomial, t);
+            value.abs() <= tolerance
+        });
+    // Between the two times nothing may be decided: else one of them is not the first.
+    let undecided = [0.25, 0.5, 0.75].into_iter().all(|part| {
+        let between = own + part * (t - own);
+        all().any(|polynomial| {
+            let (value, tolerance) = value(polynomial, between);
+            value <= tolerance
+        })
+    });
+    is_possible && turns && undecided
+}
+
+/// Compares a logged contact with the reference's.
+pub(super) fn hit(
+    context: &Context<'_>,
+    records: &Records<'_>,
+    known: Option<(&Motion, &Expected)>,
+    own: Impulse,
+    actual: &LoggedImpulse,
+    judged: &mut StepJudgement,
+) -> Option<Detail> {
+    if actual.time != own.time {
+        let fits = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time));
+        if !fits {
+            return Some(Detail::ContactTime { expected: own, actual: *actual });
+        }
+    }
+    let (normal, bounds) = match known {
+        Some((motion, _)) => {
+            let normal = motion.normal(actual.time);
+            ([normal.x.value, normal.y.value], [normal.x.bound, normal.y.bound])
+        }
+        None => (own.normal.into(), [context.size(records.before); 2]),
+    };
+    for ((right, bound), logged) in normal.into_iter().zip(bounds).zip([actual.normal.x, actual.normal.y]) {
+        let (residual, tolerance) = ((logged - right).abs(), FAIR_UNITS * UNIT_ROUNDOFF * bound);
+        if !(residual <= tolerance) {
+            let expected = Impulse { normal: normal.into(), time: actual.time, ..own };
+            let residual = length(actual.normal - expected.normal);
+            return Some(Detail::WrongNormal { expected, actual: *actual, residual });
+        }
+        if residual > 0.0 {
+            judged.shares.normal = judged.shares.normal.max(residual / tolerance);
+        }
+    }
+    None
+}
+
+/// Compares a logged state with the reference's. A velocity is not charged where the position is wrong: they have the
+/// same cause.
+pub(super) fn states(
+    context: &Context<'_>,
+    judged: &mut StepJudgement,
+    frame: u64,
+    own: &State,
+    logged: &State,
+    sensitivity: Option<&Deviation>,
+) {
+    let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
+    let size = context.size(own);
+    let speed = own.velocities.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    // Where contacts are answered, velocities come from displacements over the time step.
+    let from_positions = match context.scene.collision {
+        Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
+        Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0.0,
+    };
+    let (position_floor, velocity_floor) = (roundings * size, roundings * (speed + from_positions));
+    for particle in 0..own.positions.len() / 2 {
+        let tolerance = |floor: f64, of: fn(&Deviation) -> &Vec<f64>| {
+            let known = sensitivity.map_or(0.0, |known| length(at(of(known), particle)));
+            floor + FAIR_SENSITIVITY * known
+        };
+        let position_tolerance = tolerance(position_floor, |known| &known.positions);
+        let (expected, actual) = (at(&own.positions, particle), at(&logged.positions, particle));
+        let residual = length(expected - actual);
+        if !(residual <= position_tolerance) {
+            let detail = Detail::Position { particle, expected: expected.into(), actual: actual.into(), residual };
+            judged.charge(Finding { step: judged.step, frame, detail });
+            continue;
+        }
+        let velocity_tolerance = tolerance(velocity_floor, |known| &known.velocities);
+        let (expected, actual) = (at(&own.velocities, particle), at(&logged.velocities, particle));
+        let velocity_residual = length(expected - actual);
+        if !(velocity_residual <= velocity_tolerance) {
+            let (expected, actual, residual) = (expected.into(), actual.into(), velocity_residual);
+            let detail = Detail::Velocity { particle, expected, actual, residual };
+            judged.charge(Finding { step: judged.step, frame, detail });
+            continue;
+        }
+        if residual > 0.0 {
+            judged.shares.position = judged.shares.position.max(residual / position_tolerance);
+        }
+        if velocity_residual > 0.0 {
+            judged.shares.velocity = judged.shares.velocity.max(velocity_residual / velocity_tolerance);
+        }
+    }
+}
+
+/// What the exact polynomials decide, where round-off can't change it.
+pub(super) fn decides(expected: &Expected) -> Option<bool> {
+    let (mut possible, mut certain) = (false, false);
+    // Replaced by certified decisions.
+    for k in 0..=4096 {
+        let t = f64::from(k) / 4096.0;
+        let all = (0..expected.count()).map(|number| value(expected.polynomial(number), t));
+        let (mut lower, mut upper) = (f64::INFINITY, f64::INFINITY);
+        for (value, tolerance) in all {
+            lower = f64::min(lower, value - tolerance / 16.0);
+            upper = f64::min(upper, value + tolerance / 16.0);
+        }
+        possible |= upper > 0.0;
+        certain |= lower > 0.0;
+    }
+    if certain {
+        Some(true)
+    } else if possible {
+        None
+    } else {
+        Some(false)
+    }
+}
+
+/// Whether round-off may flip the decision.
+pub(super) fn is_borderline(expected: &Expected) -> bool {
+    decides(expected).is_none()
+}
+
+/// The time at which a pair that does not quite collide comes closest to it.
+pub(super) fn nearest_time(expected: &Expected) -> f64 {
+    let closeness = |t: f64| {
+        let all = (0..expected.count()).map(|number| {
+            let (value, tolerance) = value(expected.polynomial(number), t);
+            value / tolerance
+        });
+        all.fold(f64::INFINITY, f64::min)
+    };
+    let (mut best, mut width) = (0.5, 0.5);
+    for _ in 0..6 {
+        let centre: f64 = best;
+        for k in -32..=32 {
+            let t = (centre + width * f64::from(k) / 32.0).clamp(0.0, 1.0);
+            if closeness(t) > closeness(best) {
+                best = t;
+            }
+        }
+        width /= 16.0;
+    }
+    best
+}
