@@ -8,6 +8,7 @@ use crate::{
     judge::finding::{Detail, Finding},
     num::{
         bounded::{Bounded, UNIT_ROUNDOFF},
+        decision::{Certainty, decide},
         tolerances::{FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_UNITS},
         vector::{at, length},
     },
@@ -139,33 +140,29 @@ pub(super) fn states(
     }
 }
 
-/// What the exact polynomials decide, where round-off can't change it.
-pub(super) fn decides(expected: &Expected) -> Option<bool> {
-    let (mut possible, mut certain) = (false, false);
-    // Replaced by certified decisions.
-    for k in 0..=4096 {
-        let t = f64::from(k) / 4096.0;
-        let all = (0..expected.count()).map(|number| value(expected.polynomial(number), t));
-        let (mut lower, mut upper) = (f64::INFINITY, f64::INFINITY);
-        for (value, tolerance) in all {
-            lower = f64::min(lower, value - tolerance / 16.0);
-            upper = f64::min(upper, value + tolerance / 16.0);
-        }
-        possible |= upper > 0.0;
-        certain |= lower > 0.0;
+/// What the polynomials decide, where round-off can't change it.
+///
+/// Where a parabola's inputs have so few digits that every way to evaluate the formulas is exact, there is no round-off
+/// to excuse anything: touching at the very end of the step is then as certain as anything else.
+pub(super) fn decides(motion: &Motion, expected: &Expected) -> Option<bool> {
+    let mut polynomials: [&[Bounded]; 4] = [&[]; 4];
+    for (number, polynomial) in polynomials.iter_mut().enumerate() {
+        *polynomial = expected.polynomial(number);
     }
-    if certain {
-        Some(true)
-    } else if possible {
-        None
-    } else {
-        Some(false)
+    let units = if motion.is_exact(EXACT_BITS) { 0.0 } else { FAIR_UNITS };
+    match decide(&polynomials[..expected.count()], units).certainty {
+        Certainty::Yes => Some(true),
+        Certainty::No => Some(false),
+        Certainty::Borderline => None,
     }
 }
 
+/// Inputs of so many bits make a parabola's coefficients, of fourth degree in them, and its discriminant exact.
+const EXACT_BITS: u32 = 6;
+
 /// Whether round-off may flip the decision.
-pub(super) fn is_borderline(expected: &Expected) -> bool {
-    decides(expected).is_none()
+pub(super) fn is_borderline(motion: &Motion, expected: &Expected) -> bool {
+    decides(motion, expected).is_none()
 }
 
 /// The time at which a pair that does not quite collide comes closest to it.

@@ -289,10 +289,13 @@ impl<'a> Follower<'a> {
 
     fn charge_polynomial(&mut self, place: PolynomialPlace, number: usize, expected: &Expected, mismatch: Mismatch) {
         let part = self.part();
-        if self.is_moved(place.pair) && self.known_positions().is_none() {
-            if !self.spoilt[part] {
-                self.charge(Detail::PassPositions { place });
-            }
+        let is_known = self.known_positions().is_some();
+        if self.spoilt[part] && !is_known {
+            // Where the particles are by now, nobody knows.
+            return;
+        }
+        if self.is_moved(place.pair) && !is_known {
+            self.charge(Detail::PassPositions { place });
             self.spoilt[part] = true;
             return;
         }
@@ -334,8 +337,10 @@ impl<'a> Follower<'a> {
 
     /// Whether round-off may flip the decision of this call.
     fn is_borderline(&self, call: usize) -> bool {
-        self.sensitivity.is_some_and(|known| known.flipped.contains(&call))
-            || self.expected.as_ref().is_some_and(|(_, expected)| contact::is_borderline(expected))
+        match &self.expected {
+            Some((motion, expected)) => contact::is_borderline(motion, expected),
+            None => self.sensitivity.is_some_and(|known| known.flipped.contains(&call)),
+        }
     }
 
     /// The logged impulse that this decision is about.
@@ -464,8 +469,10 @@ impl Observer for Follower<'_> {
         let collides = matches!(decision, Decision::Hit { .. });
         if self.own_decision.is_some_and(|own| own != collides) {
             // Lost coefficients do not count as round-off: their loss is the factor's fault.
-            let certain =
-                self.expected.as_ref().is_some_and(|(_, expected)| contact::decides(expected) == Some(!collides));
+            let certain = self
+                .expected
+                .as_ref()
+                .is_some_and(|(motion, expected)| contact::decides(motion, expected) == Some(!collides));
             if certain {
                 let place = self.place(pair);
                 self.charge(Detail::TrimmedDecision { place, collides: !collides });

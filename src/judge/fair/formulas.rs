@@ -6,6 +6,7 @@
 use crate::{
     num::{
         bounded::{Bounded, Bounded2, UNIT_ROUNDOFF},
+        decision::all_exact,
         polynomial::MAX_COEFFICIENTS,
         tolerances::{FAIR_SENSITIVITY, FAIR_UNITS},
         vector::{Vec2, at},
@@ -132,6 +133,23 @@ impl Motion {
             Self::HalfPlane(way, ..) => widen(way, particles[0]),
         }
         self
+    }
+
+    /// Whether every way to evaluate the formulas of a parabola is exact: all inputs are multiples of one power of two,
+    /// by less than two to the `bits`. A particle and an edge have higher degrees, whose zeros are never exact.
+    pub fn is_exact(&self, bits: u32) -> bool {
+        let parts = |v: Bounded2| [v.x.value, v.y.value];
+        match self {
+            Self::Particles([one, two], radii) => {
+                let [a, b, c, d] = [one.start, one.shift, two.start, two.shift].map(parts);
+                all_exact(&[a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1], radii.value], bits)
+            }
+            Self::HalfPlane(way, radius, point, q) => {
+                let [a, b] = [way.start, way.shift].map(parts);
+                all_exact(&[a[0], a[1], b[0], b[1], point.x, point.y, q.x, q.y, radius.value], bits)
+            }
+            Self::Edge(..) => false,
+        }
     }
 
     /// The detection polynomials.
