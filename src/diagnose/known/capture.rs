@@ -2,7 +2,7 @@
 use super::compare::{Logged, StepRecords};
 use crate::{
     scene::Collision,
-    sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Stage, State, Zone},
+    sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone},
     trace::PolynomialLog,
 };
 
@@ -96,12 +96,13 @@ impl Observer for Capture {
         }
     }
 
-    fn synchronise(&mut self, state: &mut State) {
-        let StepRecords { mid: Some(mid), end } = &mut self.records else { return };
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        let StepRecords { mid: Some(mid), end } = &mut self.records else { return Resume::Own };
         copy_state(&mut mid.state, state);
         mid.impulses.clone_from(&end.impulses);
         mid.polynomials.coefficients.clone_from(&end.polynomials.coefficients);
         mid.polynomials.ends.clone_from(&end.polynomials.ends);
+        Resume::Own
     }
 
     fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {

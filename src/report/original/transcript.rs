@@ -257,6 +257,7 @@ mod tests {
             damage: None,
             trailing_bytes: false,
             searches: SearchCounts::default(),
+            fair: None,
         }
     }
 
