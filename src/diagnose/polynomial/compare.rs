@@ -63,16 +63,27 @@ pub(super) fn is_sure(coefficient: Bounded) -> bool {
     coefficient.value.abs() > TOLERANCE * coefficient.bound
 }
 
-/// Whether the logged polynomial is right: the expected one times some positive scale.
+/// Whether the logged polynomial is right: the expected one times some positive scale. A program may also get its
+/// coefficients from values of the polynomial, which spreads the rounding of the largest over all.
 pub(super) fn is_right(expected: &[Bounded], logged: &[f64]) -> bool {
-    if matches(expected, logged, 1.0) {
+    let agrees = |scale: f64| matches(expected, logged, scale) || matches(&spread_out(expected), logged, scale);
+    if agrees(1.0) {
         return true;
     }
     if let Some(scale) = fitted_scale(expected, logged) {
-        return matches(expected, logged, scale);
+        return agrees(scale);
     }
     let size = expected.iter().fold(0.0, |size: f64, coefficient| size.max(coefficient.bound));
     !expected.iter().copied().any(is_sure) && logged.iter().all(|value| value.abs() <= ROUNDING_OF_NOTHING * size)
+}
+
+/// The same values, with bounds of at least a quarter of the largest.
+fn spread_out(expected: &[Bounded]) -> Vec<Bounded> {
+    let largest = expected.iter().fold(0.0, |largest: f64, coefficient| largest.max(coefficient.bound));
+    expected
+        .iter()
+        .map(|coefficient| Bounded { value: coefficient.value, bound: coefficient.bound.max(0.25 * largest) })
+        .collect()
 }
 
 #[cfg(test)]

@@ -26,8 +26,11 @@ impl Dictionary {
     /// The dictionary of a way to write a polynomial down.
     pub fn new(subject: Subject, formula: &'static Formula) -> Self {
         let own = formula.letters.len();
-        let extras = extras(subject);
-        let letters: Vec<&Letter> = formula.letters.iter().chain(extras).collect();
+        let is_new = |extra: &&'static Letter| {
+            let bare = extra.name.trim_matches(['(', ')']);
+            formula.letters.iter().all(|letter| letter.name != bare && letter.meaning != bare)
+        };
+        let letters: Vec<&Letter> = formula.letters.iter().chain(extras(subject).iter().filter(is_new)).collect();
         let mut lists: Vec<Vec<usize>> = Vec::new();
         let longest = formula.terms.iter().map(|term| term.letters.len()).max().unwrap_or(1);
         match longest {
@@ -109,9 +112,12 @@ fn foreign_products(subject: Subject, own: usize) -> Vec<Vec<usize>> {
             }
         }
         _ => {
-            for extra in own..own + HALF_PLANE_EXTRAS.len() {
+            for (index, letter) in HALF_PLANE_EXTRAS.iter().enumerate() {
+                let extra = own + index;
                 lists.push(vec![extra]);
-                lists.extend((0..own).map(|letter| vec![letter, extra]));
+                if letter.name != "1" {
+                    lists.extend((0..own).map(|letter| vec![letter, extra]));
+                }
             }
         }
     }

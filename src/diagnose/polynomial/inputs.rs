@@ -180,7 +180,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "radii-squared-apart",
         &[PP, PE],
-        3.5,
+        2.6,
         |inputs| inputs.square = inputs.radii[0] * inputs.radii[0] + inputs.radii[1] * inputs.radii[1],
         "Each radius is squared for itself",
         "r1^2 + r2^2 stands for R^2 = (r1 + r2)^2",
@@ -188,7 +188,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "radius-not-squared",
         &[PP, PE, PH],
-        3.6,
+        2.7,
         |inputs| inputs.square = inputs.radii[0] + inputs.radii[1],
         "The radius, or the sum of the radii, is not squared",
         "R stands for R^2",
@@ -204,7 +204,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "first-radius-only",
         &[PP, PE],
-        3.8,
+        2.75,
         |inputs| inputs.square = inputs.radii[0] * inputs.radii[0],
         "The second object's radius is forgotten",
         "r1^2 stands for R^2 = (r1 + r2)^2",
@@ -212,7 +212,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "second-radius-only",
         &[PP, PE],
-        3.9,
+        2.8,
         |inputs| inputs.square = inputs.radii[1] * inputs.radii[1],
         "The first particle's radius is forgotten",
         "r2^2 stands for R^2 = (r1 + r2)^2",
@@ -220,7 +220,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "first-radius-twice",
         &[PP, PE],
-        4.0,
+        3.1,
         |inputs| inputs.square = 4.0 * (inputs.radii[0] * inputs.radii[0]),
         "The first object's radius is used for both objects",
         "(r1 + r1)^2 stands for R^2 = (r1 + r2)^2",
@@ -228,7 +228,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "second-radius-twice",
         &[PP, PE],
-        4.0,
+        3.1,
         |inputs| inputs.square = 4.0 * (inputs.radii[1] * inputs.radii[1]),
         "The second object's radius is used for both objects",
         "(r2 + r2)^2 stands for R^2 = (r1 + r2)^2",
@@ -247,7 +247,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "diameters",
         &[PP, PE, PH],
-        3.9,
+        3.05,
         |inputs| inputs.square = 4.0 * inputs.square,
         "Diameters stand where radii belong",
         "(2 R)^2 stands for R^2",
@@ -263,7 +263,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "radius-halved",
         &[PP, PE, PH],
-        4.6,
+        4.2,
         |inputs| inputs.square = 0.25 * inputs.square,
         "Half the radius is used",
         "(R/2)^2 stands for R^2",
@@ -279,7 +279,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "no-normal-square",
         &[PH],
-        3.5,
+        2.6,
         |inputs| inputs.normal_square = Bounded::exact(1.0),
         "The radius term is right for unit normals only",
         "r^2 stands for r^2 (n.n)",
@@ -287,7 +287,7 @@ pub(super) const EXCHANGES: &[Exchange] = &[
     exchange(
         "normal-length",
         &[PH],
-        3.6,
+        2.7,
         |inputs| inputs.normal_square = root(inputs.normal_square),
         "The radius term has the length of the normal where its square belongs",
         "r^2 |n| stands for r^2 (n.n)",

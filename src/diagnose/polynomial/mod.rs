@@ -3,7 +3,7 @@
 //! Pure functions over samples: the inputs of a detection and what the submission logged. A guess counts by how many
 //! samples it reproduces to round-off, right ones included. Guesses are, from simple to intricate: the whole list of
 //! coefficients ([`structure`]: reversed, negated, cut, exchanged), the inputs ([`inputs`]: end positions, radii squared
-//! apart), one letter of a formula ([`slips`]), and the terms of single coefficients ([`terms`]: sparse least squares over
+//! apart), misunderstandings with a formula of their own ([`specials`]), one letter of a formula ([`slips`]), and the terms of single coefficients ([`terms`]: sparse least squares over
 //! the products of dot products, with weights that are multiples of 1/4). Correct polynomials are those of
 //! collisions.md 2, up to a positive factor each; the quintic may be the supplied one or the mathematically right one.
 //!
@@ -16,6 +16,7 @@ mod inputs;
 mod sample;
 mod slips;
 mod sparse;
+mod specials;
 mod structure;
 mod study;
 mod terms;
@@ -35,8 +36,11 @@ use study::{Candidate, Study};
 /// So many other keys are told per explanation.
 const MOST_OTHERS: usize = 5;
 
+/// Guesses that are this much less likely than the best (see [`Candidate::cost`]) are not told beside it.
+const AS_LIKELY: f64 = 1.6;
+
 /// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if none
-/// is wrong. A mistake that several polynomials share is told once. Counts are of polynomials. A polynomial for which
+/// is wrong; what is not reproduced everywhere comes last. A mistake that several polynomials share is told once. Counts are of polynomials. A polynomial for which
 /// nothing is found gets an explanation with the key `unexplained` that reproduces nothing.
 ///
 /// Some hundred samples of each kind are enough, of different steps and pairs, right ones among them; samples whose
@@ -57,7 +61,33 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
         open = rest;
     }
     explanations.extend(open.iter().map(Suspect::alone));
+    explanations.extend(missing(&kinds, samples));
+    explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
     explanations
+}
+
+/// Tells that no detection of a kind has all its polynomials.
+fn missing(kinds: &[PairKind], samples: &[Sample]) -> Option<Explanation> {
+    let (mut names, mut details, mut count) = (Vec::new(), Vec::new(), 0);
+    for &kind in kinds {
+        let of_kind = || samples.iter().filter(|sample| sample.motion.kind() == kind);
+        let logged = of_kind().map(|sample| sample.polynomials.len()).max().unwrap_or(usize::MAX);
+        let absent = Subject::of(kind).iter().skip(logged);
+        if logged < kind.polynomials() {
+            details.push(format!("{logged} of {} polynomials per detection", kind.polynomials()));
+            count += of_kind().count() as u64;
+        }
+        names.extend(absent.map(|subject| subject.name()));
+    }
+    (!names.is_empty()).then(|| Explanation {
+        key: "missing-polynomials".to_owned(),
+        what: format!("Polynomials are not handed over: {}.", names.join(", ")),
+        details: distinct(details.into_iter()),
+        reproduced: count,
+        samples: count,
+        example: None,
+        same_as: Vec::new(),
+    })
 }
 
 /// A wrong polynomial with the guesses about it, the best first.
@@ -79,14 +109,17 @@ impl Suspect<'_> {
             return Explanation {
                 key: "unexplained".to_owned(),
                 what: format!("No simple mistake explains the polynomial: {}.", self.study.subject.name()),
-                details: Vec::new(),
+                details: self.study.differences(),
                 reproduced: 0,
                 samples,
                 example: example::smallest(&self.study).map(|(_, example)| example),
                 same_as: Vec::new(),
             };
         };
-        let equal = |other: &&Candidate| other.reproduced == best.reproduced && other.key != best.key;
+        let equal = |other: &&Candidate| {
+            let is_likely = other.cost <= best.cost + AS_LIKELY;
+            is_likely && other.reproduced == best.reproduced && other.key != best.key
+        };
         Explanation {
             key: best.key.clone(),
             what: format!("{}: {}.", best.sentence, self.study.subject.name()),
@@ -103,6 +136,7 @@ impl Suspect<'_> {
 fn candidates(study: &Study) -> Vec<Candidate> {
     let mut all = structure::candidates(study);
     all.extend(exchanged_inputs(study));
+    all.extend(specials::candidates(study));
     all.extend(slips::candidates(study));
     all.extend(terms::candidates(study));
     all.sort_by(|one, two| two.reproduced.cmp(&one.reproduced).then(one.cost.total_cmp(&two.cost)));
@@ -152,7 +186,8 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
     let guesses: Vec<&Candidate> =
         covered.iter().filter_map(|suspect| suspect.full().find(|candidate| candidate.key == key)).collect();
     let names: Vec<&str> = covered.iter().map(|suspect| suspect.study.subject.name()).collect();
-    let others = covered[0].full().map(|candidate| candidate.key.clone()).filter(|other| {
+    let likely = covered[0].full().filter(|candidate| candidate.cost <= guesses[0].cost + AS_LIKELY);
+    let others = likely.map(|candidate| candidate.key.clone()).filter(|other| {
         other != key && covered.iter().all(|suspect| suspect.full().any(|candidate| candidate.key == *other))
     });
     let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();

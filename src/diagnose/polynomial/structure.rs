@@ -5,7 +5,10 @@ use super::{
     sample::Subject,
     study::{Candidate, Case, Study, median, ratio},
 };
-use crate::num::bounded::{Bounded, UNIT_ROUNDOFF};
+use crate::num::{
+    bounded::{Bounded, UNIT_ROUNDOFF},
+    tolerances::LEADING_COEFFICIENT,
+};
 
 /// The relative rounding of a single-precision number.
 const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
@@ -59,7 +62,7 @@ fn properties(study: &Study, found: &mut Vec<Candidate>) {
     check("monic", "The polynomial is divided by its leading coefficient, whose sign gets lost", "", 1.5, &|case| {
         let leading = case.logged.first() == Some(&1.0);
         let power = case.logged.len().saturating_sub(1);
-        leading && matches(&case.expected, case.logged, 1.0 / expected_at(&case.expected, power).value)
+        case.right || leading && matches(&case.expected, case.logged, 1.0 / expected_at(&case.expected, power).value)
     });
     check("too-long", "The polynomial has too high a degree", "", 8.0, &|case| {
         case.right || case.logged.len() > case.expected.len()
@@ -74,13 +77,14 @@ fn is_single(case: &Case) -> bool {
         f64::from(rounded) == value
     };
     let units = TOLERANCE / UNIT_ROUNDOFF * SINGLE_ROUNDOFF;
-    case.logged.iter().all(|&value| single(value))
-        && case.logged.len() <= case.expected.len()
-        && (0..case.logged.len()).all(|power| {
-            let expected = expected_at(&case.expected, power);
-            let value = logged_at(case.logged, power).unwrap_or_default();
-            (value - case.scale * expected.value).abs() <= units * (case.scale * expected.bound + value.abs())
-        })
+    let close = |power: usize| {
+        let expected = expected_at(&case.expected, power);
+        let value = logged_at(case.logged, power).unwrap_or(0.0);
+        let room = units * (case.scale * expected.bound + value.abs());
+        (value - case.scale * expected.value).abs() <= room + LEADING_COEFFICIENT
+    };
+    let is_short = case.logged.len() <= case.expected.len();
+    is_short && case.logged.iter().all(|&value| single(value)) && (0..case.expected.len()).all(close)
 }
 
 fn negated(list: &[Bounded]) -> Vec<Bounded> {

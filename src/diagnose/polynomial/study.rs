@@ -196,6 +196,18 @@ impl<'a> Study<'a> {
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }
 
+    /// In how many samples each coefficient differs, one line per coefficient that does.
+    pub fn differences(&self) -> Vec<String> {
+        let differs = |case: &&Case, power: usize| {
+            !coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), case.scale)
+        };
+        let line = |power: usize| {
+            let count = self.cases.iter().filter(|case| differs(case, power)).count();
+            (count > 0).then(|| format!("t^{power} differs in {count} of {} samples", self.cases.len()))
+        };
+        (0..=self.subject.degree()).rev().filter_map(line).collect()
+    }
+
     /// The ways to write this polynomial down.
     pub fn formulas(&self) -> &'static [Formula] {
         readings(self.subject)

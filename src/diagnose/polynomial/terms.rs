@@ -23,12 +23,17 @@ const LARGEST_WEIGHT: f64 = 64.0;
 /// So many other explanations of a coefficient are told.
 const MOST_ALTERNATIVES: usize = 3;
 
+/// The cost of a coefficient that nothing explains.
+const UNKNOWN: f64 = 20.0;
+
 /// What is wrong with one coefficient.
 enum Edit {
     /// It carries a factor.
     Factor(Bounded),
     /// Products with their additional weights.
     Terms(Vec<(usize, f64)>),
+    /// Nothing was found.
+    Unknown,
 }
 
 /// A guess about one coefficient.
@@ -39,22 +44,21 @@ struct Guess {
     alternatives: Vec<Vec<(usize, f64)>>,
 }
 
-/// What makes each coefficient wrong, where all wrong coefficients can be explained.
+/// What makes each coefficient wrong, where at least one wrong coefficient can be explained.
 pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
     study.formulas().iter().enumerate().filter_map(|(index, formula)| candidate(study, formula, index)).collect()
 }
 
 fn candidate(study: &Study, formula: &'static Formula, reading: usize) -> Option<Candidate> {
-    let mut fitting = Fitting::new(study, formula);
+    let fitting = Fitting::new(study, formula);
     let mut guesses = Vec::new();
     for power in (0..=formula.degree).rev() {
         if fitting.is_wrong(power) {
-            guesses.push(fitting.explain(power)?);
+            guesses.push(fitting.explain(power));
         }
     }
-    if guesses.is_empty() {
-        return None;
-    }
+    // A polynomial of which nothing is known needs no candidate.
+    guesses.iter().find(|guess| !matches!(guess.edit, Edit::Unknown))?;
     let reproduced = (0..study.cases.len())
         .filter(|&index| {
             let case = &study.cases[index];
@@ -114,7 +118,7 @@ impl<'a> Fitting<'a> {
     fn predicted(&self, index: usize, power: usize, edit: Option<&Edit>) -> Bounded {
         let expected = self.coefficient(index, power);
         match edit {
-            None => expected,
+            None | Some(Edit::Unknown) => expected,
             Some(Edit::Factor(factor)) => *factor * expected,
             Some(Edit::Terms(changes)) => {
                 changes.iter().fold(expected, |sum, &(product, weight)| sum + weight * self.products[index][product])
@@ -127,7 +131,7 @@ impl<'a> Fitting<'a> {
     }
 
     /// The likeliest explanation of a coefficient that holds for all samples.
-    fn explain(&mut self, power: usize) -> Option<Guess> {
+    fn explain(&self, power: usize) -> Guess {
         let factor = self.factor(power);
         let mut all = self.term_changes(power);
         all.sort_by(|one, two| one.1.total_cmp(&two.1));
@@ -135,13 +139,13 @@ impl<'a> Fitting<'a> {
         let terms = all.next();
         match (factor, terms) {
             (Some((factor, cost)), terms) if terms.as_ref().is_none_or(|(_, other)| cost < *other) => {
-                Some(Guess { power, edit: Edit::Factor(factor), cost, alternatives: Vec::new() })
+                Guess { power, edit: Edit::Factor(factor), cost, alternatives: Vec::new() }
             }
             (_, Some((changes, cost))) => {
                 let alternatives = all.take(MOST_ALTERNATIVES).map(|(changes, _)| changes).collect();
-                Some(Guess { power, edit: Edit::Terms(changes), cost, alternatives })
+                Guess { power, edit: Edit::Terms(changes), cost, alternatives }
             }
-            (_, None) => None,
+            (_, None) => Guess { power, edit: Edit::Unknown, cost: UNKNOWN, alternatives: Vec::new() },
         }
     }
 
@@ -153,7 +157,8 @@ impl<'a> Fitting<'a> {
             (expected.value.abs() > 1e-3 * expected.bound).then(|| value / (case.scale * expected.value))
         });
         let factor = median(ratios.collect())?;
-        let simple = (factor * 12.0).round() / 12.0;
+        // The sum turns -0 into 0.
+        let simple = (factor * 12.0).round() / 12.0 + 0.0;
         let is_simple = (factor - simple).abs() < 1e-12;
         let factor =
             if is_simple { Bounded::exact(simple) } else { Bounded { value: factor, bound: 16.0 * factor.abs() } };
@@ -166,7 +171,7 @@ impl<'a> Fitting<'a> {
     }
 
     /// All smallest changes of the coefficient's terms that hold for all samples, with their costs.
-    fn term_changes(&mut self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
+    fn term_changes(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
         let rows = self.rows(power);
         let scaled = |index: usize, value: f64| value / self.coefficient(index, power).bound;
         let target: Vec<f64> = rows
@@ -272,6 +277,7 @@ impl Words<'_> {
             Edit::Factor(factor) if factor.value == 0.0 => ("coefficient-zero", "A coefficient is zero"),
             Edit::Factor(factor) if factor.value == -1.0 => ("coefficient-sign", "A coefficient has the wrong sign"),
             Edit::Factor(_) => ("coefficient-factor", "A coefficient has a wrong factor"),
+            Edit::Unknown => ("unexplained", "No simple mistake explains a coefficient"),
             Edit::Terms(changes) => match changes[..] {
                 [change] => match self.weights(*power, change) {
                     (0.0, _) => ("term-foreign", "A coefficient contains a term that does not belong there"),
@@ -298,7 +304,9 @@ impl Words<'_> {
     fn details(&self, guess: &Guess) -> Vec<String> {
         let power = guess.power;
         let changes = match &guess.edit {
+            Edit::Factor(factor) if factor.value == 0.0 => return vec![format!("t^{power}: the coefficient is 0")],
             Edit::Factor(factor) => return vec![format!("t^{power}: multiplied by {}, expected 1", factor.value)],
+            Edit::Unknown => return vec![format!("t^{power}: no simple change explains it")],
             Edit::Terms(changes) => changes,
         };
         let mut lines: Vec<String> = changes.iter().map(|&change| self.line(power, change)).collect();

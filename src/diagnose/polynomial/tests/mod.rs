@@ -1,4 +1,6 @@
 //! Students with one mistake each, on random motions: the explanation has to name it and reproduce everything.
+mod catalogue;
+
 use super::*;
 use crate::num::{polynomial::trim, vector::Vec2};
 use crate::sim::Pair;
@@ -463,7 +465,7 @@ fn small_slips_in_quadratics_are_named() {
         lists[2][1] = (one.start - three.start).dot(&(two.displacement - three.displacement));
         lists
     });
-    only(PairKind::ParticleEdge, "coefficients", "t^0: 1 has weight 1, expected 0", |motion| {
+    only(PairKind::ParticleEdge, "one-unscaled", "1 stands for", |motion| {
         let mut lists = edge_lists(motion);
         lists[2] = lists[1].iter().map(|value| -value).collect();
         lists[2][2] += 1.0;
