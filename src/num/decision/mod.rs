@@ -12,7 +12,7 @@
 //!
 //! * **Yes** exactly if `tau(lower) <= 1`, with `[tau(upper), tau(lower)]` as enclosure of the time;
 //! * **No** exactly if `tau(upper) > 1`;
-//! * **Borderline** otherwise: some choices hit, others do not.
+//! * **Borderline** otherwise: some choices hit, others do not. (Also where a proof would take too long; see [`decide`].)
 //!
 //! So two lists without errors are left to decide. `range` rejects them by signs and by Bernstein coefficients, `pieces`
 //! by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, section 3.3;
@@ -47,6 +47,10 @@ pub const MAX_COEFFICIENTS: usize = 6;
 /// The greatest margin that is reported, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about 1.
 pub const MARGIN_CAP: f64 = 9_007_199_254_740_992.0;
 
+/// Over how many powers of two coefficients may spread for [`decide`] to use integers although there are errors: enough
+/// for the fifth powers of displacements of `1e-20` beside distances of 1. Greater makes hostile input slower.
+const MOST_SPREAD: u64 = 400;
+
 /// Whether the detection hits within the step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Certainty {
@@ -54,7 +58,7 @@ pub enum Certainty {
     Yes,
     /// For every choice `tau > 1`.
     No,
-    /// Some choices hit, others do not; or a coefficient is not finite.
+    /// Some choices hit, others do not; or it could not be shown, see [`decide`].
     Borderline,
 }
 
@@ -107,7 +111,8 @@ pub struct Certified {
     pub certainty: Certainty,
     /// For `Yes`: encloses `tau` for every choice of coefficients, a fraction of the step in `[0, 1]`. About as
     /// wide as the errors of the coefficients move it; wider if the polynomials nearly touch earlier in the step. For
-    /// `Borderline`: encloses the least `tau` of any choice, if all coefficients are finite. `None` for `No`.
+    /// `Borderline`: encloses the least `tau` of any choice (if it is at most 1, where that could not be shown); `None` if a
+    /// coefficient is not finite. `None` for `No`.
     pub time: Option<[f64; 2]>,
     /// The decision is proved to survive errors of at least this many units `u` of the coefficients' bounds, at least the
     /// `units` that were asked for and at most [`MARGIN_CAP`]; the true number may be greater. 0 for `Borderline`.
@@ -120,7 +125,9 @@ pub struct Certified {
 /// coefficients within `units` times [`UNIT_ROUNDOFF`] times their bounds, for none, or for some (see the module's header)?
 ///
 /// Coefficients come highest power first and untrimmed. With `units` 0 (or bounds that are all 0) the answer is that of
-/// [`exact_first`] and never `Borderline`; a coefficient that is not finite makes every answer `Borderline`.
+/// [`exact_first`] and never `Borderline`; a coefficient that is not finite makes every answer `Borderline`. So does, if there
+/// are errors, a polynomial whose coefficients' sizes spread over more than 400 powers of two and which is so close to the
+/// limit that only integers could decide: they might take a tenth of a second.
 ///
 /// # Panics
 /// With more than [`MAX_POLYNOMIALS`] polynomials, or more than [`MAX_COEFFICIENTS`] coefficients in one.
@@ -147,11 +154,15 @@ pub fn decide(polynomials: &[&[Bounded]], units: f64) -> Certified {
     if upper.coefficients_equal(&lower) {
         return without_errors(&upper, &outer, units);
     }
-    let inner = pieces::search(&lower);
+    let (inner, from) = (pieces::search(&lower), outer.from);
     match (outer.answer, inner.answer) {
-        (_, Answer::Reached(time)) => yes([outer.from, time], units + lower.slack_of_yes(time), Level::Subdivision),
-        (Answer::Reached(first), Answer::Never) => borderline(Some([outer.from, first]), Level::Subdivision),
-        (known, inner) => by_integers(&upper, &lower, units, known != Answer::Unknown, inner == Answer::Never),
+        (_, Answer::Reached(time)) => yes([from, time], units + lower.slack_of_yes(time), Level::Subdivision),
+        (Answer::Reached(first), Answer::Never) => borderline(Some([from, first]), Level::Subdivision),
+        (outer, _) if upper.spread().max(lower.spread()) > MOST_SPREAD => {
+            let to = if let Answer::Reached(first) = outer { first } else { 1.0 };
+            borderline(Some([from, to]), Level::Subdivision)
+        }
+        (outer, inner) => by_integers(&upper, &lower, units, outer != Answer::Unknown, inner == Answer::Never),
     }
 }
 

@@ -11,8 +11,11 @@ use super::{
     range::{Control, Problem, slack},
 };
 
-/// After this many halvings a piece stays open; its ends are still exact.
-const DEEPEST: u32 = 50;
+/// After this many halvings a piece stays open.
+const DEEPEST: u32 = 150;
+
+/// A piece that is narrower than this share of its end stays open; all ends are exact until then.
+const NARROWEST: f64 = 1.0 / (1_u64 << 50) as f64;
 
 /// After this many pieces all others stay open. Ordinary searches need some hundred.
 const MOST_PIECES: u32 = 5_000;
@@ -123,7 +126,8 @@ impl Walk<'_> {
         if open.begin_positive() {
             return Some(lo);
         }
-        if !improves || depth == DEEPEST || self.pieces >= MOST_PIECES {
+        let is_last = depth == DEEPEST || hi - lo < NARROWEST * hi || self.pieces >= MOST_PIECES;
+        if !improves || is_last {
             self.first_open.get_or_insert(lo);
             return open.end_positive().then_some(hi);
         }
@@ -135,7 +139,12 @@ impl Walk<'_> {
         let middle = lo + (hi - lo) * 0.5;
         let (mut left, mut right) = (Controls::new(), Controls::new());
         for control in open.as_slice() {
-            let (first, second) = halves(control);
+            let (mut first, second) = halves(control);
+            if lo == 0.0 {
+                // Near 0 small coefficients decide, which large ones have drowned: convert anew.
+                let fresh = self.problem.polynomials()[control.index].control_until(middle);
+                first = Control { index: control.index, ..fresh };
+            }
             left.push(first);
             right.push(second);
         }

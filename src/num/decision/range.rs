@@ -124,6 +124,16 @@ impl Problem {
         })
     }
 
+    /// Over how many powers of two the sizes of one polynomial's coefficients spread, at most; zeros do not count.
+    pub(crate) fn spread(&self) -> u64 {
+        let spread = |polynomial: &Exactly| {
+            let exponents =
+                polynomial.coefficients.iter().filter(|value| **value != 0.0).map(|value| value.abs().to_bits() >> 52);
+            exponents.clone().max().unwrap_or(0) - exponents.min().unwrap_or(0)
+        };
+        self.polynomials().iter().map(spread).max().unwrap_or(0)
+    }
+
     /// How many further units of the bounds a hit survives: at the best of some times from this one on, the least of the
     /// polynomials' values over their bounds. At least 0. The times are spread evenly over the rest of the step, and ever
     /// closer after the first, because a hit may be short.
@@ -208,6 +218,17 @@ impl Exactly {
         };
         let size: f64 = self.coefficients.iter().map(|value| value.abs()).sum();
         Control { values, length: self.length, error: CONVERSION * size + UNDERFLOW, index: 0 }
+    }
+
+    /// The Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1: scaling is exact
+    /// but for underflow.
+    pub(crate) fn control_until(&self, end: f64) -> Control {
+        let (mut stretched, mut power) = (*self, 1.0);
+        for value in &mut stretched.coefficients {
+            *value *= power;
+            power *= end;
+        }
+        stretched.control()
     }
 
     /// Divides by the binomial coefficients and adds up Pascal's triangle: entry k becomes the sum of (k over i) times

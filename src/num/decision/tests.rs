@@ -220,7 +220,16 @@ fn factored() -> impl Strategy<Value = Factored> {
     )
 }
 
-/// Random, grid, touching and nearly touching lists.
+/// Numbers of very different sizes, between `2^-reach` and `2^reach`, and zeros.
+fn number(reach: i32) -> impl Strategy<Value = f64> {
+    (1.0..2.0_f64, -reach..=reach, -4..=4_i32).prop_map(|(mantissa, exponent, sign)| {
+        // In two steps, so that the result may be subnormal.
+        let power = |exponent: i32| f64::from_bits(u64::try_from(1023 + exponent).unwrap_or(0) << 52);
+        f64::from(sign.signum()) * mantissa * power(exponent / 2) * power(exponent - exponent / 2)
+    })
+}
+
+/// Random, spread, grid, touching and nearly touching lists.
 fn lists() -> impl Strategy<Value = Lists> {
     let random = prop::collection::vec(-1.0..1.0_f64, 0..=6);
     let integers = prop::collection::vec((-6..7_i32).prop_map(f64::from), 0..=6);
@@ -240,12 +249,13 @@ fn lists() -> impl Strategy<Value = Lists> {
         }
         list
     });
-    let one = prop_oneof![random, integers, factored().prop_map(|one| one.coefficients()), near, squared];
+    let spread = prop::collection::vec(number(100), 1..=6);
+    let one = prop_oneof![random, spread, integers, factored().prop_map(|one| one.coefficients()), near, squared];
     prop::collection::vec(one, 1..=4)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(20_000))]
+    #![proptest_config(ProptestConfig::with_cases(8_000))]
 
     /// Zeros on a grid: the exact answer is known by counting.
     #[test]
@@ -304,6 +314,24 @@ proptest! {
         prop_assert_eq!(exactly(&lists), exactly(&scaled));
         let (one, other) = (decided(&lists, 64.0), decided(&scaled, 64.0));
         prop_assert_eq!((one.certainty, one.time), (other.certainty, other.time));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1_000))]
+
+    /// Sizes from the subnormal numbers to the largest: overflow and underflow never make a wrong decision.
+    #[test]
+    fn extreme_sizes_are_decided_alike(
+        lists in prop::collection::vec(prop::collection::vec(number(1070).prop_filter("finite", |value| value.is_finite()), 1..=6), 1..=3),
+        scale in 0..1000_i32,
+    ) {
+        let power = f64::from_bits(u64::try_from(1023 - scale).unwrap_or(0) << 52);
+        let lists: Lists = lists.iter().map(|list| list.iter().map(|value| value * power).collect()).collect();
+        let answer = hits(&lists);
+        prop_assert_eq!(decided(&lists, 0.0).certainty == Certainty::Yes, answer);
+        let decision = decided(&lists, 64.0);
+        prop_assert!(decision.certainty == Certainty::Borderline || (decision.certainty == Certainty::Yes) == answer);
     }
 }
 
