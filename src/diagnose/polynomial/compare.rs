@@ -1,16 +1,17 @@
-//! Whether a logged polynomial is a given one, up to a positive scale and round-off (the fair bound of the rule books).
+//! Whether a logged polynomial is a given one, up to a positive scale and round-off.
 //!
+//! What is right is decided by [`crate::judge::fair`]; this asks the same of wrong formulas, within the same bounds.
 //! Coefficients are aligned at the constant one. What the log lacks was dropped by the course's library for being small.
-use crate::num::{
-    bounded::{Bounded, UNIT_ROUNDOFF},
-    tolerances::LEADING_COEFFICIENT,
+use crate::{
+    judge::fair::compare::compare,
+    num::{
+        bounded::{Bounded, UNIT_ROUNDOFF},
+        tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
+    },
 };
 
-/// How many units of its bound a coefficient may be off: room for another order of evaluation.
-pub(super) const TOLERANCE: f64 = 64.0 * UNIT_ROUNDOFF;
-
-/// A polynomial that says nothing is rounding of zero below this share of its terms.
-const ROUNDING_OF_NOTHING: f64 = 1e-9;
+/// How much of its bound a coefficient may be off; both sides round.
+const TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
 /// The logged coefficient of a power, `None` if it was dropped.
 pub(super) fn logged_at(logged: &[f64], power: usize) -> Option<f64> {
@@ -24,17 +25,22 @@ pub(super) fn expected_at(expected: &[Bounded], power: usize) -> Bounded {
 
 /// Whether one logged coefficient is `scale` times the expected one. NaN never is.
 pub(super) fn coefficient_matches(expected: Bounded, logged: Option<f64>, scale: f64) -> bool {
-    let size = scale.abs();
+    let room = TOLERANCE * scale.abs() * expected.bound;
     match logged {
-        Some(value) => (value - scale * expected.value).abs() <= TOLERANCE * (size * expected.bound + value.abs()),
-        None => size * expected.value.abs() <= LEADING_COEFFICIENT + TOLERANCE * size * expected.bound,
+        Some(value) => (value - scale * expected.value).abs() <= room,
+        None => (scale * expected.value).abs() <= LEADING_COEFFICIENT + room,
     }
 }
 
-/// Whether the logged polynomial is `scale` times the expected one.
+/// Whether the logged polynomial is `scale` times the expected one. A program may also get its coefficients from values
+/// of the polynomial, which spreads the rounding of the largest over all.
 pub(super) fn matches(expected: &[Bounded], logged: &[f64], scale: f64) -> bool {
-    (0..expected.len().max(logged.len()))
-        .all(|power| coefficient_matches(expected_at(expected, power), logged_at(logged, power), scale))
+    let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
+    let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / TOLERANCE * norm;
+    (0..expected.len().max(logged.len())).all(|power| {
+        let Bounded { value, bound } = expected_at(expected, power);
+        coefficient_matches(Bounded { value, bound: bound.max(least) }, logged_at(logged, power), scale)
+    })
 }
 
 /// The scale that brings the expected polynomial closest to the logged one, each coefficient weighing as much as it is
@@ -60,30 +66,12 @@ pub(super) fn scale_fitted_to(expected: &[Bounded], logged: &[f64], power: impl 
 
 /// Whether a coefficient is more than rounding.
 pub(super) fn is_sure(coefficient: Bounded) -> bool {
-    coefficient.value.abs() > TOLERANCE * coefficient.bound
+    coefficient.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * coefficient.bound
 }
 
-/// Whether the logged polynomial is right: the expected one times some positive scale. A program may also get its
-/// coefficients from values of the polynomial, which spreads the rounding of the largest over all.
+/// Whether the logged polynomial is right: the expected one times some positive scale.
 pub(super) fn is_right(expected: &[Bounded], logged: &[f64]) -> bool {
-    let agrees = |scale: f64| matches(expected, logged, scale) || matches(&spread_out(expected), logged, scale);
-    if agrees(1.0) {
-        return true;
-    }
-    if let Some(scale) = fitted_scale(expected, logged) {
-        return agrees(scale);
-    }
-    let size = expected.iter().fold(0.0, |size: f64, coefficient| size.max(coefficient.bound));
-    !expected.iter().copied().any(is_sure) && logged.iter().all(|value| value.abs() <= ROUNDING_OF_NOTHING * size)
-}
-
-/// The same values, with bounds of at least a quarter of the largest.
-fn spread_out(expected: &[Bounded]) -> Vec<Bounded> {
-    let largest = expected.iter().fold(0.0, |largest: f64, coefficient| largest.max(coefficient.bound));
-    expected
-        .iter()
-        .map(|coefficient| Bounded { value: coefficient.value, bound: coefficient.bound.max(0.25 * largest) })
-        .collect()
+    compare(expected, logged, 1.0).is_ok()
 }
 
 #[cfg(test)]

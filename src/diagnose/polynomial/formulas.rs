@@ -1,8 +1,9 @@
 //! The formulas of collisions.md 2 as data: each coefficient a sum of weighted products of letters.
 //!
-//! As data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of the
+//! What is right is said by the fair rules' formulas (`judge::fair::formulas`), and a test holds these tables to them. As
+//! data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of the
 //! quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
-use super::sample::{Inputs, Motion, Sample, Subject};
+use super::sample::{Inputs, Subject};
 use crate::num::bounded::{Bounded, Bounded2};
 
 /// A quantity of a formula.
@@ -65,22 +66,6 @@ pub(super) fn product(values: &[Bounded], letters: &[usize]) -> Bounded {
         [] => Bounded::exact(1.0),
         [first, rest @ ..] => rest.iter().fold(values[*first], |product, &letter| product * values[letter]),
     }
-}
-
-/// The polynomials that a detection should have logged, in the trace's order, highest power first and untrimmed, with
-/// their error bounds. The particle-edge approach is the quintic that the course supplies, wrong cubic coefficient included
-/// (collisions.md 2).
-#[must_use]
-pub fn expected(sample: &Sample) -> Vec<Vec<Bounded>> {
-    let inputs = Inputs::new(&sample.motion);
-    Subject::of(sample.motion.kind()).iter().map(|&subject| readings(subject)[0].polynomial(&inputs)).collect()
-}
-
-/// The approach of a particle and an edge with its cubic coefficient put right; `None` for another kind of pair.
-#[must_use]
-pub fn exact_quintic(sample: &Sample) -> Option<Vec<Bounded>> {
-    let inputs = Inputs::new(&sample.motion);
-    matches!(sample.motion, Motion::Edge { .. }).then(|| QUINTICS[1].polynomial(&inputs))
 }
 
 /// The ways to write one polynomial down, all of them right, the assignment's first.

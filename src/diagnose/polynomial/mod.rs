@@ -23,7 +23,6 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-pub use formulas::{exact_quintic, expected};
 pub use sample::{Body, Motion, Sample};
 
 use super::Explanation;

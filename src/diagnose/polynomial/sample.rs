@@ -3,7 +3,10 @@ use crate::num::{
     bounded::{Bounded, Bounded2},
     vector::Vec2,
 };
-use crate::sim::{Pair, PairKind};
+use crate::{
+    judge::fair::formulas::{self, Way},
+    sim::{Pair, PairKind},
+};
 
 /// A point on its even way through the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -160,26 +163,45 @@ pub(super) struct Inputs {
 impl Inputs {
     /// The inputs as they are.
     pub fn new(motion: &Motion) -> Self {
-        let still = |point: Vec2| Body { start: point, displacement: Vec2::zeros() };
-        let (bodies, radii) = match *motion {
-            Motion::Particles { bodies: [one, two], radii } => ([one, two, still(Vec2::zeros())], radii),
-            Motion::Edge { bodies, radii } => (bodies, radii),
-            Motion::HalfPlane { body, radius, point, normal } => ([body, still(point), still(normal)], [radius, 0.0]),
+        let still = |point: Vec2| Way { start: Bounded2::exact(point), shift: Bounded2::default() };
+        let (ways, radii) = match *motion {
+            Motion::Particles { bodies: [one, two], radii } => ([way(&one), way(&two), still(Vec2::zeros())], radii),
+            Motion::Edge { bodies, radii } => (bodies.each_ref().map(way), radii),
+            Motion::HalfPlane { body, radius, point, normal } => {
+                ([way(&body), still(point), still(normal)], [radius, 0.0])
+            }
         };
         let radii = radii.map(Bounded::exact);
         let reach = radii[0] + radii[1];
-        let x = bodies.map(|body| Bounded2::exact(body.start));
+        let (x, d) = (ways.map(|way| way.start), ways.map(|way| way.shift));
         let normal_square =
             if motion.kind() == PairKind::ParticleHalfPlane { x[2].dot(x[2]) } else { Bounded::default() };
-        Self { x, d: bodies.map(|body| displacement(&body)), radii, square: reach * reach, normal_square }
+        Self { x, d, radii, square: reach * reach, normal_square }
     }
 }
 
-/// The displacement, which a correct program may get as a difference of positions in more than one way.
-fn displacement(body: &Body) -> Bounded2 {
-    let component = |start: f64, displacement: f64| Bounded {
-        value: displacement,
-        bound: if displacement == 0.0 { 0.0 } else { start.abs() + (start + displacement).abs() },
-    };
-    Bounded2 { x: component(body.start.x, body.displacement.x), y: component(body.start.y, body.displacement.y) }
+/// The way of a point as the fair rules see it. The displacement's value is the sample's, its bound that of a
+/// difference of positions.
+fn way(body: &Body) -> Way {
+    let (start, end) = (Bounded2::exact(body.start), body.start + body.displacement);
+    let mut shift = Bounded2::rounded(end) - start;
+    (shift.x.value, shift.y.value) = (body.displacement.x, body.displacement.y);
+    Way { start, shift }
+}
+
+impl Motion {
+    /// The motion as the fair rules see it, whose formulas say what is right.
+    pub(super) fn judged(&self) -> formulas::Motion {
+        match self {
+            Self::Particles { bodies, radii } => formulas::Motion::Particles(bodies.each_ref().map(way), sum(radii)),
+            Self::Edge { bodies, radii } => formulas::Motion::Edge(bodies.each_ref().map(way), sum(radii)),
+            Self::HalfPlane { body, radius, point, normal } => {
+                formulas::Motion::HalfPlane(way(body), Bounded::exact(*radius), *point, *normal)
+            }
+        }
+    }
+}
+
+fn sum(radii: &[f64; 2]) -> Bounded {
+    Bounded::exact(radii[0]) + Bounded::exact(radii[1])
 }

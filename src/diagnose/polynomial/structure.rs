@@ -1,13 +1,13 @@
 //! Guesses about the whole list of coefficients: reversed, negated, cut, another polynomial's, not a number.
 use super::{
-    compare::{TOLERANCE, expected_at, logged_at, matches},
+    compare::{expected_at, logged_at, matches},
     formulas::readings,
     sample::Subject,
     study::{Candidate, Case, Study, median, ratio},
 };
 use crate::num::{
-    bounded::{Bounded, UNIT_ROUNDOFF},
-    tolerances::LEADING_COEFFICIENT,
+    bounded::Bounded,
+    tolerances::{FAIR_UNITS, LEADING_COEFFICIENT},
 };
 
 /// The relative rounding of a single-precision number.
@@ -76,7 +76,7 @@ fn is_single(case: &Case) -> bool {
         let rounded = value as f32;
         f64::from(rounded) == value
     };
-    let units = TOLERANCE / UNIT_ROUNDOFF * SINGLE_ROUNDOFF;
+    let units = 2.0 * FAIR_UNITS * SINGLE_ROUNDOFF;
     let close = |power: usize| {
         let expected = expected_at(&case.expected, power);
         let value = logged_at(case.logged, power).unwrap_or(0.0);

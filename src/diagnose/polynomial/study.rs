@@ -24,9 +24,9 @@ pub(super) struct Case<'a> {
     pub logged: &'a [f64],
     /// What goes into the formulas.
     pub inputs: Inputs,
-    /// What should have been logged, by the first reading.
+    /// What should have been logged; of the quintic the supplied form.
     pub expected: Vec<Bounded>,
-    /// Whether what was logged is right, by any reading.
+    /// Whether what was logged is right, in any accepted form.
     pub right: bool,
     /// The positive factor that the submission's polynomials seem to carry here.
     pub scale: f64,
@@ -65,16 +65,16 @@ impl<'a> Study<'a> {
     /// Collects what was logged for a polynomial; `None` if no sample is wrong.
     pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
         let number = Subject::of(subject.kind()).iter().position(|&other| other == subject)?;
-        let formulas = readings(subject);
         let mut cases: Vec<Case<'a>> = samples
             .iter()
             .filter(|sample| sample.motion.kind() == subject.kind())
             .filter_map(|sample| {
                 let logged = sample.polynomials.get(number)?.as_slice();
                 let inputs = Inputs::new(&sample.motion);
-                let expected = formulas[0].polynomial(&inputs);
+                let judged = sample.motion.judged().polynomials();
+                let expected = judged.polynomial(number).to_vec();
                 let right = is_right(&expected, logged)
-                    || formulas[1..].iter().any(|formula| is_right(&formula.polynomial(&inputs), logged));
+                    || judged.other_form(number).is_some_and(|other| is_right(other, logged));
                 let finite = expected.iter().all(|coefficient| coefficient.bound.is_finite());
                 finite.then_some(Case { sample, logged, inputs, expected, right, scale: 1.0 })
             })

@@ -201,31 +201,23 @@ fn the_right_quintic_is_as_good_as_the_supplied_one() {
     assert_eq!(explain(&samples(PairKind::ParticleEdge, 300, student)), []);
 }
 
-/// The exact quintic against `-q (2 q' g - q g') / 2` with `q = e x w` and `g = e.e`, and the supplied one against it.
+/// Every way to write a polynomial down gives what the fair rules expect, the right quintic included.
 #[test]
-fn the_tables_are_the_formulas() {
+fn the_tables_are_the_formulas_of_the_fair_rules() {
     let mut numbers = Numbers(5);
     for kind in KINDS {
         for _ in 0..200 {
             let motion = numbers.motion(kind);
-            let pair = Pair { kind, first: 0, second: 0 };
-            let sample = Sample { step: 1, pass: 0, pair, motion, polynomials: Vec::new() };
-            for (table, plain) in expected(&sample).iter().zip(right_lists(&motion)) {
-                assert!(compare::matches(table, &plain, 1.0), "{table:?} and {plain:?}");
-            }
-            if let Motion::Edge { bodies: [one, two, three], .. } = motion {
-                let at = |t: f64| {
-                    let cross = |a: Vec2, b: Vec2| a.x * b.y - a.y * b.x;
-                    let place = |body: &Body| body.start + t * body.displacement;
-                    let (e, w) = (place(&three) - place(&two), place(&one) - place(&two));
-                    let (e1, w1) = (three.displacement - two.displacement, one.displacement - two.displacement);
-                    let (q, slope) = (cross(e, w), cross(e1, w) + cross(e, w1));
-                    -0.5 * q * (2.0 * slope * e.dot(&e) - q * 2.0 * e.dot(&e1))
-                };
-                let exact = exact_quintic(&sample).expect("the pair has an edge");
-                for t in [0.0, 0.3, 1.0, -2.0] {
-                    let value = exact.iter().fold(0.0, |value, coefficient| value * t + coefficient.value);
-                    assert!((value - at(t)).abs() < 1e-9 * (1.0 + value.abs()), "t = {t}: {value} and {}", at(t));
+            let (judged, inputs) = (motion.judged().polynomials(), sample::Inputs::new(&motion));
+            for (number, &subject) in Subject::of(kind).iter().enumerate() {
+                for (form, formula) in formulas::readings(subject).iter().enumerate() {
+                    let is_other = subject == Subject::EdgeApproach && form == 1;
+                    let right =
+                        if is_other { judged.other_form(number).expect("an edge") } else { judged.polynomial(number) };
+                    let values: Vec<f64> = right.iter().map(|coefficient| coefficient.value).collect();
+                    let table = formula.polynomial(&inputs);
+                    assert!(compare::matches(&table, &values, 1.0), "{subject:?}: {table:?} and {right:?}");
+                    assert_eq!(table.len(), right.len());
                 }
             }
         }
