@@ -12,6 +12,7 @@ use std::{
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
     diagnose::known,
+    judge::parity,
     scene::{Scene, original},
     student::{self, CATALOGUE, Kind, Student},
 };
@@ -27,8 +28,10 @@ enum Outcome {
     Among(String),
     /// Something else is named.
     Other(String),
-    /// Nothing is named.
-    Nothing,
+    /// Nothing is named, though the parity rules find wrong steps.
+    Nothing(u64),
+    /// Nothing is named, and nothing is wrong but for round-off.
+    Unseen,
 }
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -38,7 +41,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let results: Vec<Vec<(Outcome, Duration)>> =
         rows.par_iter().map(|row| scenes.iter().map(|case| explain(case, row)).collect()).collect();
     let mut accused = false;
-    let (mut wrong, mut best_first, mut best_among) = (0, 0, 0);
+    let (mut wrong, mut best_first, mut best_among, mut unseen) = (0, 0, 0, 0_usize);
     let (mut traces, mut first, mut among, mut other, mut nothing) = (0_usize, 0_usize, 0_usize, 0_usize, 0_usize);
     for (row, outcomes) in rows.iter().zip(&results) {
         let is_wrong = row.kind == Kind::Wrong;
@@ -60,10 +63,11 @@ fn main() -> anyhow::Result<ExitCode> {
                     accused |= !is_wrong;
                     confusions.push(format!("    {name}: ACCUSED OF {key}"));
                 }
-                Outcome::Nothing => {
+                Outcome::Unseen => unseen += usize::from(is_wrong),
+                Outcome::Nothing(steps) => {
                     nothing += usize::from(is_wrong);
                     if is_wrong {
-                        confusions.push(format!("    {name}: nothing"));
+                        confusions.push(format!("    {name}: nothing, {steps} wrong steps"));
                     }
                 }
             }
@@ -89,7 +93,7 @@ fn main() -> anyhow::Result<ExitCode> {
         "\nmistakes: {wrong}; first on their best scene: {best_first}; first or the same as the first: {best_among}"
     );
     println!(
-        "traces that differ: {traces}; first: {first}; same as the first: {among}; other: {other}; nothing: {nothing}"
+        "traces that differ: {traces}; first: {first}; same as the first: {among}; other: {other}; nothing: {nothing}; round-off only: {unseen}"
     );
     println!("slowest: {row} on {scene}, {slowest:.2?}");
     println!("{}", if accused { "a correct variant is accused" } else { "no correct variant is accused" });
@@ -105,7 +109,13 @@ fn explain((_, scene, correct): &(String, Scene, Vec<u8>), row: &student::Row) -
     let explanations = known(scene, &trace[..]);
     let time = begin.elapsed();
     let outcome = match explanations.into_iter().next() {
-        None => Outcome::Nothing,
+        None => {
+            let options = parity::Options { threads: 1, ..parity::Options::default() };
+            match parity::judge(scene, &trace[..], &options, &mut ()).wrong_steps {
+                0 => Outcome::Unseen,
+                steps => Outcome::Nothing(steps.into()),
+            }
+        }
         Some(explanation) if explanation.key == row.id => Outcome::First,
         Some(explanation) if explanation.same_as.iter().any(|id| id == row.id) => Outcome::Among(explanation.key),
         Some(explanation) => {

@@ -81,3 +81,23 @@ pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 
 /// Fair: how often a step's own sensitivity to roundings of its inputs a state may be off.
 pub const FAIR_SENSITIVITY: f64 = 8.0;
+
+/// Known mistakes: a re-simulated coefficient may differ by this share of itself ... Larger values of this and the next
+/// four let small mistakes pass for none; smaller ones call other arithmetic wrong.
+pub const KNOWN_COEFFICIENT: f64 = 1e-10;
+
+/// Known mistakes: ... and by this share of its polynomial's largest one, since the terms of a coefficient may cancel.
+pub const KNOWN_COEFFICIENT_FLOOR: f64 = 1e-12;
+
+/// Known mistakes: a coefficient that only one side has dropped is at most this (absolute; see [`LEADING_COEFFICIENT`]).
+pub const KNOWN_DROPPED: f64 = 2.0 * LEADING_COEFFICIENT;
+
+/// Known mistakes: a re-simulated coordinate or velocity may differ by this share of the largest one of its kind plus 1.
+pub const KNOWN_STATE: f64 = 1e-10;
+
+/// Known mistakes: a re-simulated contact vector may differ by this share of its length plus 1.
+pub const KNOWN_NORMAL: f64 = 1e-9;
+
+/// Known mistakes: a re-simulated time of impact may differ by this (fraction of the step). A double zero is known to about
+/// the root of the unit roundoff.
+pub const KNOWN_TIME: f64 = 1e-7;

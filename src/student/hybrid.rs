@@ -7,6 +7,9 @@ use super::{
     zones::{self, Zone},
 };
 
+/// A watched step is left when it has more zones than this, and than particles.
+const MOST_ZONES: usize = 1000;
+
 /// Handles a step's collisions. `middle` is called between the two parts, with the state and the log so far, for the
 /// trace's mid record.
 pub fn handle(
@@ -59,6 +62,10 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
                 detection::pass(world, q_start, &state.x, log)?;
             }
             return Ok(());
+        }
+        // Some mistakes let the list grow with every round; who watches the step does not want to wait for that.
+        if log.guard.is_some() && next.len() > MOST_ZONES.max(world.scene.particles.len()) {
+            return Err(StepFailure::Refused);
         }
         zones = next;
         if student.makes(Mistake::GeometricTwoRounds) {

@@ -6,6 +6,7 @@ mod corpus;
 mod drop_in;
 mod fuzz_replay;
 mod grading;
+mod known;
 mod layers;
 mod parity;
 mod properties;

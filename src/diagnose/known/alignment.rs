@@ -17,9 +17,13 @@ use crate::{
 pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let layout = Layout::of(scene);
     ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
+        let expected = records_without(layout, row);
+        if scan.records.is_some_and(|records| records > expected) {
+            return None;
+        }
         let steps = aligned_steps(scene, layout, &scan.opening, row)?;
         // What never moves is right however it is read; then only the number of records tells.
-        let tells = !scan.wrong.is_empty() || scan.records == Some(records_without(layout, row));
+        let tells = !scan.wrong.is_empty() || scan.records == Some(expected);
         tells.then(|| explain(row, (steps, steps)))
     })
 }

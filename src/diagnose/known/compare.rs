@@ -3,7 +3,13 @@
 //! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
 //! vectors relative to the size of the numbers around them. NaN equals NaN: a mistake may well produce it.
 use crate::{
-    num::{polynomial::trim, vector::Vec2},
+    num::{
+        polynomial::trim,
+        tolerances::{
+            KNOWN_COEFFICIENT, KNOWN_COEFFICIENT_FLOOR, KNOWN_DROPPED, KNOWN_NORMAL, KNOWN_STATE, KNOWN_TIME,
+        },
+        vector::Vec2,
+    },
     sim::State,
     student::{Object, Record},
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
@@ -25,9 +31,14 @@ pub(super) struct Tolerance {
     pub(super) time: f64,
 }
 
-/// Round-off. Larger bounds would let small mistakes pass for none; smaller ones would call other arithmetic wrong.
-pub(super) const ROUND_OFF: Tolerance =
-    Tolerance { coefficient: 1e-10, floor: 1e-12, state: 1e-10, normal: 1e-9, time: 1e-7 };
+/// Round-off.
+pub(super) const ROUND_OFF: Tolerance = Tolerance {
+    coefficient: KNOWN_COEFFICIENT,
+    floor: KNOWN_COEFFICIENT_FLOOR,
+    state: KNOWN_STATE,
+    normal: KNOWN_NORMAL,
+    time: KNOWN_TIME,
+};
 
 /// What is left of a step when its states were rounded to single precision before and after.
 pub(super) const SINGLE_PRECISION: Tolerance =
@@ -158,13 +169,10 @@ fn multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) -> bo
     (0..length).all(|power| {
         let (e, a) = (factor * power_of(expected, power), power_of(actual, power));
         // A coefficient that was dropped on one side only is as small as the bound of dropping.
-        let dropped = if power < expected.len().min(actual.len()) { 0.0 } else { DROPPED * factor.max(1.0) };
+        let dropped = if power < expected.len().min(actual.len()) { 0.0 } else { KNOWN_DROPPED * factor.max(1.0) };
         same_number(e, a, by.coefficient * e.abs() + by.floor * largest + dropped)
     })
 }
-
-/// Coefficients below about this may be dropped in one program and not in another (absolute).
-const DROPPED: f64 = 2e-12;
 
 /// The coefficient of `t^power`; zero where the list ends before it.
 fn power_of(coefficients: &[f64], power: usize) -> f64 {

@@ -19,7 +19,7 @@ mod scan;
 use super::Explanation;
 use crate::{
     scene::Scene,
-    student::{Kind, Row},
+    student::{Kind, Mistake, Row},
     trace::Layout,
 };
 use candidates::{Candidates, Score};
@@ -29,8 +29,8 @@ use std::io::Read;
 ///
 /// The result is empty when all steps are right, when no mistake reproduces at least half of the wrong steps, or when a
 /// correct variant reproduces them as well. Else it holds one explanation; further mistakes that reproduce the same steps
-/// are in [`Explanation::same_as`]. Of those, the first one is the earliest of the assignment's order: polynomials, contact
-/// vectors, decisions, responses, loops, zones, failsafe, trace.
+/// are in [`Explanation::same_as`]. Of those, the first one is a stage that was left empty, if there is one, else the earliest of the
+/// assignment's order: polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
 ///
 /// `samples` and `reproduced` count wrong steps; right ones that the mistake would make wrong exclude it. Traces of any
 /// content are accepted; what can't be read, and what follows the first 64 MiB, is passed over.
@@ -43,7 +43,8 @@ pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
     if scan.wrong.is_empty() {
         return Vec::new();
     }
-    let scores = Candidates::new(scene, &scan).best();
+    let mut scores = Candidates::new(scene, &scan).best();
+    scores.sort_by_key(|score| plausibility(score.row));
     let Some(best) = scores.first() else { return Vec::new() };
     if scores.iter().any(|score| score.row.kind == Kind::Variant) {
         return Vec::new();
@@ -53,6 +54,24 @@ pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
     explanation.example = Some(example::example(scene, Layout::of(scene), first));
     explanation.same_as = scores[1..].iter().map(|score: &Score| score.row.id.to_owned()).collect();
     vec![explanation]
+}
+
+/// Smaller is likelier, among mistakes that a trace can't tell apart: work that was not done at all comes first, and
+/// mistakes that need a special scene to show come last. Rows of the same number keep the catalogue's order.
+fn plausibility(row: &Row) -> u8 {
+    match row.mistake {
+        Mistake::ParticleParticleEmpty
+        | Mistake::ParticleEdgeEmpty
+        | Mistake::HalfPlaneEmpty
+        | Mistake::ImpulsesEmpty
+        | Mistake::GeometricEmpty
+        | Mistake::FailsafeEmpty => 0,
+        Mistake::ImpulsesPassWhenZero
+        | Mistake::ImpulsesTestWhenZero
+        | Mistake::ImpulsesSuccessWhenZero
+        | Mistake::ImpulsesOnceWhenZero => 2,
+        _ => 1,
+    }
 }
 
 /// The explanation that names a row, without an example.

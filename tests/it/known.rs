@@ -1,0 +1,91 @@
+//! Known mistakes are recognised on the built-in scenes. `examples/explanation-matrix.rs` measures it on all of them.
+use std::path::Path;
+
+use fosssim_oracle::{
+    diagnose::known,
+    scene::{Scene, original},
+    student::{self, CATALOGUE, Kind, Student},
+};
+use rayon::prelude::*;
+
+/// Small scenes that show most of the mistakes between them.
+const SCENES: [&str; 10] = [
+    "ContinuousTimeTests/fixed-obstacles",
+    "ContinuousTimeTests/head-on-unequal-masses",
+    "ContinuousTimeTests/row-struck-in-one-step",
+    "ContinuousTimeTests/spinning-edge-sweeps-balls",
+    "GeometricTests/limit-of-two-iterations",
+    "GeometricTests/triangle-of-unequal-masses",
+    "GeometricTests/zone-gains-the-half-plane-later",
+    "HalfPlaneTests/corner-with-failsafe",
+    "HalfPlaneTests/normal-of-length-five",
+    "ImpulsesTests/off-centre-on-turning-edge",
+];
+
+fn scenes() -> Vec<(&'static str, Scene, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    let read = |name: &&'static str| {
+        let text = std::fs::read(folder.join(name).with_extension("xml")).expect("a scene file");
+        let scene = original::read(&text).expect("a scene").scene;
+        let correct = student::trace(&scene, Student::default()).expect("a trace");
+        (*name, scene, correct)
+    };
+    SCENES.iter().map(read).collect()
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Recognised {
+    /// No scene shows the mistake by more than round-off.
+    Unseen,
+    /// It is never named.
+    Never,
+    /// It is among the mistakes that a trace can't tell apart from the one that is named.
+    Among,
+    /// It is named.
+    First,
+}
+
+#[test]
+fn most_mistakes_are_named_on_their_best_scene() {
+    let scenes = scenes();
+    let recognised: Vec<(&str, Recognised)> = CATALOGUE
+        .par_iter()
+        .filter(|row| row.kind == Kind::Wrong)
+        .map(|row| {
+            let outcomes = scenes.iter().map(|(_, scene, correct)| {
+                let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+                if trace == *correct {
+                    return Recognised::Unseen;
+                }
+                match known(scene, &trace[..]).into_iter().next() {
+                    None => Recognised::Unseen,
+                    Some(explanation) if explanation.key == row.id => Recognised::First,
+                    Some(explanation) if explanation.same_as.iter().any(|id| id == row.id) => Recognised::Among,
+                    Some(_) => Recognised::Never,
+                }
+            });
+            (row.id, outcomes.max().unwrap_or(Recognised::Unseen))
+        })
+        .collect();
+    let count = |what: Recognised| recognised.iter().filter(|(_, outcome)| *outcome == what).count();
+    let (first, among) = (count(Recognised::First), count(Recognised::Among));
+    let seen = recognised.len() - count(Recognised::Unseen);
+    assert!(seen * 10 >= recognised.len() * 9, "the scenes show only {seen} of {} mistakes", recognised.len());
+    assert_eq!(first + among, seen, "{recognised:#?}");
+    assert!(first * 10 >= seen * 9, "only {first} of {seen} are named first: {recognised:#?}");
+}
+
+#[test]
+fn no_correct_variant_is_accused() {
+    let accused: Vec<String> = scenes()
+        .par_iter()
+        .flat_map_iter(|(name, scene, _)| {
+            CATALOGUE.iter().filter(|row| row.kind == Kind::Variant).filter_map(move |row| {
+                let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+                let first = known(scene, &trace[..]).into_iter().next()?;
+                Some(format!("{} on {name}: {}", row.id, first.key))
+            })
+        })
+        .collect();
+    assert!(accused.is_empty(), "{accused:#?}");
+}
