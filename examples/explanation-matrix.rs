@@ -1,7 +1,7 @@
 //! How well known mistakes are recognised: makes the traces of all mistakes and correct variants for the scenes of a
 //! folder, in memory, has each explained, and counts how often the first explanation is the mistake that was made.
 //!
-//! `cargo run --release --example explanation-matrix [FOLDER]`. It prints every confusion, and ends with status 1 when a
+//! `cargo run --release --example explanation-matrix [FOLDER [PART-OF-AN-ID]]`. It prints every confusion, and ends with status 1 when a
 //! correct variant is accused.
 use std::{
     path::{Path, PathBuf},
@@ -36,8 +36,9 @@ enum Outcome {
 
 fn main() -> anyhow::Result<ExitCode> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
+    let part = std::env::args().nth(2).unwrap_or_default();
     let scenes = scenes(&folder)?;
-    let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.kind != Kind::Hostile).collect();
+    let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.kind != Kind::Hostile && row.id.contains(&part)).collect();
     let results: Vec<Vec<(Outcome, Duration)>> =
         rows.par_iter().map(|row| scenes.iter().map(|case| explain(case, row)).collect()).collect();
     let mut accused = false;
