@@ -96,13 +96,15 @@ impl<'a> Study<'a> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
-    /// How many samples a predicted polynomial reproduces, with the submission's usual scale and with any positive one;
+    /// How many samples a predicted polynomial reproduces, with the submission's usual scale or none, and with any positive one;
     /// `None` if it reproduces fewer than half of the wrong samples. The flag says that it needed another scale.
     pub fn count(&self, predict: impl Fn(&Case) -> Vec<Bounded>) -> Option<(usize, bool)> {
-        let (usual, free) = (
-            self.count_if(|case| matches(&predict(case), case.logged, case.scale)),
-            self.count_if(|case| fits_at_any_scale(&predict(case), case)),
-        );
+        let at_usual_scale = |case: &Case| {
+            let predicted = predict(case);
+            matches(&predicted, case.logged, case.scale) || matches(&predicted, case.logged, 1.0)
+        };
+        let (usual, free) =
+            (self.count_if(at_usual_scale), self.count_if(|case| fits_at_any_scale(&predict(case), case)));
         match (usual, free) {
             (Some(usual), Some(free)) if free > usual => Some((free, true)),
             (Some(usual), _) => Some((usual, false)),
@@ -183,11 +185,12 @@ impl<'a> Study<'a> {
             .collect()
     }
 
-    /// How many coefficients are as expected with these scales.
+    /// How many logged coefficients are as expected with these scales. Dropped ones say nothing: with a small scale all of
+    /// them could be right.
     fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let agreeing = |(index, case): (usize, &Case)| {
             (0..case.expected.len())
-                .filter(|&power| is_sure(expected_at(&case.expected, power)))
+                .filter(|&power| is_sure(expected_at(&case.expected, power)) && power < case.logged.len())
                 .filter(|&power| {
                     coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), scale(index))
                 })

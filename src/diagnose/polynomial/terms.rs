@@ -11,6 +11,9 @@ use crate::num::bounded::Bounded;
 /// A fit looks at so many wrong samples, and half as many right ones.
 const MOST_ROWS: usize = 240;
 
+/// With fewer samples that have the coefficient, those that lack it are looked at, too.
+const FEWEST_ROWS: usize = 12;
+
 /// Weights are multiples of this.
 const WEIGHT_STEP: f64 = 0.25;
 
@@ -228,13 +231,16 @@ impl<'a> Fitting<'a> {
 
     /// The samples that a fit looks at: where the coefficient is wrong, and some others.
     fn rows(&self, power: usize) -> Vec<usize> {
-        let sure = |&index: &usize| {
-            let bound = self.coefficient(index, power).bound;
-            let present = logged_at(self.case(index).logged, power).unwrap_or(0.0);
-            bound > 0.0 && present.is_finite()
+        let usable = |&index: &usize| {
+            let logged = logged_at(self.case(index).logged, power);
+            self.coefficient(index, power).bound > 0.0 && logged.unwrap_or(0.0).is_finite()
         };
-        let (right, wrong): (Vec<usize>, Vec<usize>) = (0..self.study.cases.len())
-            .filter(sure)
+        let all: Vec<usize> = (0..self.study.cases.len()).filter(usable).collect();
+        // A dropped coefficient is known to 1e-12 only, which spoils a fit.
+        let logged = |&index: &usize| logged_at(self.case(index).logged, power).is_some();
+        let present: Vec<usize> = all.iter().copied().filter(logged).collect();
+        let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < FEWEST_ROWS { all } else { present }
+            .into_iter()
             .partition(|&index| self.holds(index, power, self.coefficient(index, power)));
         let few = |list: &[usize], count: usize| spread(list.len(), count).map(|index| list[index]).collect::<Vec<_>>();
         let mut rows = few(&wrong, MOST_ROWS);
