@@ -1,5 +1,6 @@
 //! The command line as typed. What it means is decided by the commands.
 use super::grading::{Demo, Doctor, Grade, Selftest, Suite};
+use crate::judge;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
@@ -48,6 +49,27 @@ pub(super) enum Format {
     Json,
 }
 
+/// Which rule books are asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Rules {
+    /// The original's rules alone.
+    Parity,
+    /// The fair rules give the verdict: round-off, scale and the course's own slip can't change it.
+    Fair,
+    /// The original's rules give the verdict, and the report says where the fair ones differ, and why.
+    Both,
+}
+
+impl From<Rules> for judge::Rules {
+    fn from(rules: Rules) -> Self {
+        match rules {
+            Rules::Parity => Self::Parity,
+            Rules::Fair => Self::Fair,
+            Rules::Both => Self::Both,
+        }
+    }
+}
+
 /// Simulates a scene, and records its trace.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -67,7 +89,7 @@ pub(super) struct Simulate {
     pub(super) format: Format,
 }
 
-/// Grades a trace by the original's rules, and says what is wrong and where.
+/// Grades a trace by the original's rules and by fair ones: what is wrong, and where.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -78,6 +100,9 @@ pub(super) struct Check {
     pub(super) scene: PathBuf,
     /// The trace, a file, - for standard input, or asset:Group/name.
     pub(super) trace: PathBuf,
+    /// The rule books.
+    #[arg(long, value_enum, default_value_t = Rules::Both)]
+    pub(super) rules: Rules,
     /// How the report is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,

@@ -11,9 +11,11 @@ mod outcome;
 pub mod parity;
 pub mod recorded;
 mod replay;
+mod rules;
 mod tally;
 mod words;
 
 pub use finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Role};
 pub use outcome::{Counts, Damage, Outcome, Overall, Residuals, Stop, Unreadable};
+pub use rules::{Account, Book, Rules, Ruling};
 pub use words::{PairWords, PassWords, Power, passes};

@@ -151,6 +151,8 @@ pub struct Outcome {
     pub steps_judged: u32,
     /// Steps of the scene.
     pub steps: u32,
+    /// Records per step: 2 where the trace has mid records.
+    pub records_per_step: u32,
     /// Why grading stopped early.
     pub stop: Option<Stop>,
     /// The first damage that the original's reading passes over in silence, see [`Damage`].
@@ -176,6 +178,7 @@ impl Outcome {
             first_divergence: None,
             steps_judged: 0,
             steps,
+            records_per_step: 1,
             stop: None,
             damage: None,
             trailing_bytes: false,

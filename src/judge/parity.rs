@@ -1,5 +1,5 @@
 //! The original's rule book: lock-step comparison (oracle-behaviour.md 4 to 6).
-use super::{finding::Kind, outcome::Outcome};
+use super::{finding::Kind, outcome::Outcome, rules::Book};
 use crate::{
     scene::Scene,
     sim::{Impulse, RootSearch},
@@ -15,13 +15,21 @@ pub struct Options {
     pub root_search: RootSearch,
     /// Stop after the first step with a finding (a hopeless run is cut short; the outcome then has no verdict).
     pub stop_at_first: bool,
+    /// The book that decides where that is.
+    pub stop_by: Book,
     /// Judge by the fair rules as well ([`Outcome::fair`]).
     pub fair: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { threads: 0, root_search: RootSearch::WhereNeeded, stop_at_first: false, fair: false }
+        Self {
+            threads: 0,
+            root_search: RootSearch::WhereNeeded,
+            stop_at_first: false,
+            stop_by: Book::Parity,
+            fair: false,
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use super::{
     fair::{self, Context, Records, StepJudgement},
     outcome::{Damage, Outcome, Stop, Unreadable},
     parity::{Options, Progress},
+    rules::Book,
     tally::{self, Buffers, StepResult, Tally},
 };
 use crate::{
@@ -108,7 +109,7 @@ pub(super) fn judge<R: Read + Send>(
                 });
             }
         }
-        if replay.deliver(&mut current, progress, options.stop_at_first) {
+        if replay.deliver(&mut current, progress, options) {
             break;
         }
         if let Some(stop) = stop {
@@ -168,7 +169,11 @@ impl<'a, R: Read> Replay<'a, R> {
             state_at: 0,
             steps_read: 0,
             damage: None,
-            outcome: Outcome { fair: fair.then(Box::default), ..Outcome::empty(layout.steps) },
+            outcome: Outcome {
+                fair: fair.then(Box::default),
+                records_per_step: layout.records_per_step(),
+                ..Outcome::empty(layout.steps)
+            },
         }
     }
 
@@ -261,7 +266,7 @@ impl<'a, R: Read> Replay<'a, R> {
     }
 
     /// Hands the batch's results on in the order of the steps. Whether judging is over.
-    fn deliver(&mut self, batch: &mut Batch, progress: &mut dyn Progress, stop_at_first: bool) -> bool {
+    fn deliver(&mut self, batch: &mut Batch, progress: &mut dyn Progress, options: &Options) -> bool {
         for slot in &mut batch.slots[..batch.filled] {
             let slot = lock(slot);
             progress.step_begins(slot.step);
@@ -288,9 +293,13 @@ impl<'a, R: Read> Replay<'a, R> {
             progress.step_judged(slot.step, &slot.result.remarks);
             if slot.result.counts.total() > 0 {
                 outcome.wrong_steps += 1;
-                if stop_at_first {
-                    return true;
-                }
+            }
+            let is_hopeless = match options.stop_by {
+                Book::Fair if outcome.fair.is_some() => !slot.fair.findings.is_empty() || slot.fair.endless,
+                Book::Parity | Book::Fair => slot.result.counts.total() > 0,
+            };
+            if is_hopeless && options.stop_at_first {
+                return true;
             }
         }
         false

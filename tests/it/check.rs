@@ -1,7 +1,7 @@
 //! `check`: reports on right, wrong and damaged traces.
 use super::workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace, finish, trace_of};
 use fosssim_oracle::{
-    judge::parity,
+    judge::{Rules, parity},
     report::{check::Check, style::Style},
     scene,
     trace::{Frame, Layout, Reader, Writer},
@@ -150,7 +150,7 @@ fn colours_only_decorate() {
     let scene = scene::read("scene", BOUNCE.as_bytes()).unwrap().scene;
     let trace = changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0));
     let outcome = parity::judge(&scene, &trace[..], &parity::Options::default(), &mut ());
-    let check = Check { scene: "s", trace: "t", outcome: &outcome, audit: true };
+    let check = Check { scene: "s", trace: "t", outcome: &outcome, rules: Rules::Both, audit: true };
     let coloured = check.text(Style::Colour);
     let mut plain = String::new();
     for piece in coloured.split('\x1b') {

@@ -15,6 +15,7 @@ mod recorded;
 mod recordings;
 mod root_props;
 mod root_vectors;
+mod rules;
 mod samples;
 mod sandbox;
 mod scenes_corpus;

@@ -32,7 +32,7 @@ fn judge(
     root_search: RootSearch,
 ) -> (Outcome, String) {
     let mut heard = Heard::default();
-    let options = Options { threads, root_search, stop_at_first: false, fair: false };
+    let options = Options { threads, root_search, stop_at_first: false, ..Options::default() };
     let outcome = parity::judge(scene, trace, &options, &mut heard);
     // NaN is not equal to itself, so what was heard is compared as text.
     (outcome, format!("{heard:?}"))

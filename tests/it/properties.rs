@@ -25,7 +25,7 @@ fn simulate(scene: &Scene) -> Vec<u8> {
 }
 
 fn judge(scene: &Scene, trace: &[u8], threads: usize, root_search: RootSearch) -> Outcome {
-    parity::judge(scene, trace, &Options { threads, root_search, stop_at_first: false, fair: false }, &mut ())
+    parity::judge(scene, trace, &Options { threads, root_search, stop_at_first: false, ..Options::default() }, &mut ())
 }
 
 #[test]
@@ -48,7 +48,8 @@ fn a_run_can_be_cut_short_at_its_first_wrong_step() {
     let scene = embedded(library::names().find(|name| name.starts_with("SimpleTests/")).expect("a scene"));
     let mut trace = simulate(&scene);
     trace[..8].copy_from_slice(&1e3_f64.to_le_bytes());
-    let options = Options { threads: 1, root_search: RootSearch::WhereNeeded, stop_at_first: true, fair: false };
+    let options =
+        Options { threads: 1, root_search: RootSearch::WhereNeeded, stop_at_first: true, ..Options::default() };
     let outcome = parity::judge(&scene, &trace[..], &options, &mut ());
     assert_eq!((outcome.steps_judged, outcome.wrong_steps, outcome.overall), (1, 1, Overall::Failed));
 }

@@ -5,7 +5,7 @@ use crate::{
         console, exit, input,
         output::Output,
     },
-    judge::{Stop, Unreadable, parity},
+    judge::{Rules, Stop, Unreadable, parity},
     report::{self, style::Style},
     sim::{RootSearch, StepError},
 };
@@ -17,11 +17,12 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
+    let rules: Rules = arguments.rules.into();
     let options = parity::Options {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
         root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded },
-        stop_at_first: false,
-        fair: true,
+        fair: rules.ask_fair(),
+        ..parity::Options::default()
     };
     let mut bar = console::Bar::new(scene.scene.steps());
     let outcome = parity::judge(&scene.scene, &mut trace.reader, &options, &mut bar);
@@ -45,7 +46,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         }
     }
     let (scene, trace) = (scene.name.as_str(), trace.name.as_str());
-    let check = report::check::Check { scene, trace, outcome: &outcome, audit: arguments.audit };
+    let check = report::check::Check { scene, trace, outcome: &outcome, rules, audit: arguments.audit };
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let text = match arguments.format {
         Format::Text => check.text(style),

@@ -19,6 +19,7 @@
 //! [`FAIR_UNITS`]: crate::num::tolerances::FAIR_UNITS
 //! [`FAIR_SENSITIVITY`]: crate::num::tolerances::FAIR_SENSITIVITY
 
+mod cause;
 pub(crate) mod compare;
 mod contact;
 mod follow;
@@ -27,5 +28,6 @@ mod judgement;
 mod probe;
 mod step;
 
+pub use cause::{Cause, cause};
 pub use judgement::{Borderline, Form, Judgement, Refusal, Shares, Verdict};
 pub(super) use step::{Context, Records, StepJudgement, judge, judge_initial};

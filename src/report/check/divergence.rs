@@ -12,7 +12,10 @@ use crate::{
 /// The block about one finding, with a heading and without advice.
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     let record = if finding.frame == 2 * u64::from(finding.step) { " (end record)" } else { "" };
-    let heading = format!("First divergence: step {} of {steps}, frame {}{record}", finding.step, finding.frame);
+    let heading = match finding.step {
+        0 => "First divergence: the first record".to_owned(),
+        step => format!("First divergence: step {step} of {steps}, frame {}{record}", finding.frame),
+    };
     let mut text = format!("{}\n  {}\n", style.paint(Look::Strong, &heading), finding.detail);
     text += &side_by_side(&finding.detail, style);
     text

@@ -1,17 +1,20 @@
-//! The report on one trace: verdict, residuals, findings, first divergence.
+//! The report on one trace: verdict, residuals, the fair rules, findings, first divergence.
 //!
 //! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both say the
 //! same and depend on nothing but the outcome.
 
 mod divergence;
+mod fair;
+mod fair_view;
 mod text;
 
 use super::{
     describe::step_error,
     style::Style,
-    view::{FindingView, Number, SCHEMA},
+    view::{CHECK_SCHEMA, FindingView, Number},
 };
-use crate::judge::{Finding, Kind, Outcome, Overall, Stop, Unreadable};
+use crate::judge::{Book, Kind, Outcome, Overall, Rules, Ruling, Stop, Unreadable};
+use fair_view::{CauseView, CountedView, FairView};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -24,6 +27,8 @@ pub struct Check<'a> {
     pub trace: &'a str,
     /// What judging yielded.
     pub outcome: &'a Outcome,
+    /// Which rule books were asked.
+    pub rules: Rules,
     /// Whether certificates were audited, so that the counts of root searches are worth showing.
     pub audit: bool,
 }
@@ -32,17 +37,18 @@ impl Check<'_> {
     /// Whether the trace is accepted.
     #[must_use]
     pub fn accepted(&self) -> bool {
-        self.outcome.overall == Overall::Passed
+        self.outcome.ruling(self.book()) == Ruling::Accepted
     }
 
-    /// The verdict in words: `accepted`, `wrong answer` or `bad trace`.
+    /// The official verdict in words: `accepted`, `wrong answer` or `bad trace`.
     #[must_use]
-    pub const fn verdict(&self) -> &'static str {
-        match self.outcome.overall {
-            Overall::Passed => "accepted",
-            Overall::Failed => "wrong answer",
-            Overall::None => "bad trace",
-        }
+    pub fn verdict(&self) -> &'static str {
+        self.outcome.ruling(self.book()).words()
+    }
+
+    /// The official book.
+    const fn book(&self) -> Book {
+        self.rules.official()
     }
 
     /// The report for people.
@@ -61,11 +67,17 @@ impl Check<'_> {
     fn view(&self) -> View<'_> {
         let outcome = self.outcome;
         let residuals = outcome.residuals;
+        let account = outcome.account(self.book());
+        let finding = |finding| match self.book() {
+            Book::Parity => FindingView::from(finding),
+            Book::Fair => FindingView::fair(finding),
+        };
         View {
-            schema: SCHEMA,
+            schema: CHECK_SCHEMA,
             scene: self.scene,
             trace: self.trace,
-            rules: "parity",
+            rules: self.rules.name(),
+            official: self.book().name(),
             verdict: self.verdict(),
             parity: Parity {
                 overall: match outcome.overall {
@@ -80,11 +92,17 @@ impl Check<'_> {
                 collisions_passed: outcome.collisions_passed,
                 messages: messages(outcome),
             },
-            first_divergence: outcome.first_divergence.as_ref().map(FindingView::from),
-            findings: outcome.examples.iter().map(|example| Counted::new(outcome, example)).collect(),
+            fair: outcome.fair.as_deref().map(FairView::from),
+            difference: CauseView::of(outcome),
+            first_divergence: account.first_divergence.map(finding),
+            findings: account
+                .examples
+                .iter()
+                .map(|first| CountedView { count: account.counts.get(first.kind()), first: finding(first) })
+                .collect(),
             steps: outcome.steps,
             steps_judged: outcome.steps_judged,
-            wrong_steps: outcome.wrong_steps,
+            wrong_steps: account.wrong_steps,
             problem: outcome.stop.as_ref().map(Problem::from),
             damage: outcome.damage.as_ref().map(|damage| Place {
                 step: damage.step,
@@ -131,10 +149,13 @@ struct View<'a> {
     scene: &'a str,
     trace: &'a str,
     rules: &'static str,
+    official: &'static str,
     verdict: &'static str,
     parity: Parity,
+    fair: Option<FairView>,
+    difference: Option<CauseView>,
     first_divergence: Option<FindingView>,
-    findings: Vec<Counted>,
+    findings: Vec<CountedView>,
     steps: u32,
     steps_judged: u32,
     wrong_steps: u64,
@@ -154,20 +175,6 @@ struct Parity {
     maximum_velocity_residual: Number,
     collisions_passed: Option<bool>,
     messages: BTreeMap<&'static str, u64>,
-}
-
-/// All findings of one kind: how many, and the first.
-#[derive(Serialize)]
-struct Counted {
-    count: u64,
-    #[serde(flatten)]
-    first: FindingView,
-}
-
-impl Counted {
-    fn new(outcome: &Outcome, example: &Finding) -> Self {
-        Self { count: outcome.counts.get(example.kind()), first: example.into() }
-    }
 }
 
 /// Why judging stopped early.

@@ -6,19 +6,24 @@ use super::{
         style::{Look, Style},
         table::{Align, Cell, Table},
     },
-    Check, divergence,
+    Check, divergence, fair,
 };
-use crate::judge::{Detail, Finding, Outcome, Overall, Stop, Unreadable};
+use crate::judge::{Account, Book, Detail, Finding, Outcome, Overall, Ruling, Stop, Unreadable};
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let outcome = check.outcome;
     let mut parts = vec![head(check, style)];
     parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
     parts.push(residuals(outcome, style));
-    if outcome.counts.total() > 0 {
-        parts.push(findings(outcome, style));
+    parts.extend(fair::render(outcome, style));
+    let account = outcome.account(check.book());
+    // The fair section holds its own findings.
+    if account.counts.total() > 0 && check.book() == Book::Parity {
+        parts.push(findings(account, style));
     }
-    if let Some(first) = &outcome.first_divergence {
+    // What the official book has nothing against is worth a look where the other one has.
+    let other = outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
+    if let Some(first) = account.first_divergence.or(other) {
         parts.push(divergence::render(first, outcome.steps, style));
         parts.push(advice(first, style));
     }
@@ -31,7 +36,7 @@ fn head(check: &Check<'_>, style: Style) -> String {
     let look = if check.accepted() { Look::Good } else { Look::Bad };
     let verdict = style.paint(look, &check.verdict().to_uppercase());
     let steps = count(u64::from(outcome.steps));
-    let summary = match outcome.overall {
+    let parity = match outcome.overall {
         Overall::Passed if outcome.steps == 0 => "the scene has no step; there is nothing to get wrong".to_owned(),
         Overall::Passed => format!("all {steps} steps are right by the original's rules"),
         Overall::Failed if outcome.wrong_steps == 0 => {
@@ -46,6 +51,13 @@ fn head(check: &Check<'_>, style: Style) -> String {
             let judged = count(u64::from(outcome.steps_judged));
             format!("judged {judged} of {steps} steps, then the trace could not be followed")
         }
+    };
+    let summary = match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {
+        (Book::Parity, ..) | (_, None, _) => parity,
+        (Book::Fair, Some(_), Ruling::Accepted) if outcome.steps > 0 => {
+            format!("all {steps} steps are right by the fair rules")
+        }
+        (Book::Fair, Some(fair), _) => fair::summary(fair, outcome),
     };
     format!("{verdict}: {summary}\n  scene {}\n  trace {}\n", check.scene, check.trace)
 }
@@ -120,21 +132,22 @@ fn used(value: f64, bound: f64) -> String {
     }
 }
 
-fn findings(outcome: &Outcome, style: Style) -> String {
+fn findings(account: Account<'_>, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
-    for example in &outcome.examples {
+    for example in account.examples {
         let kind = example.kind();
-        table.row([kind.to_string().into(), count(outcome.counts.get(kind)).into(), example.to_string().into()]);
+        table.row([kind.to_string().into(), count(account.counts.get(kind)).into(), example.to_string().into()]);
     }
-    let plural = if outcome.wrong_steps == 1 { "step" } else { "steps" };
-    let heading = format!("Findings: {} in {} {plural}", count(outcome.counts.total()), count(outcome.wrong_steps));
+    let plural = if account.wrong_steps == 1 { "step" } else { "steps" };
+    let heading = format!("Findings: {} in {} {plural}", count(account.counts.total()), count(account.wrong_steps));
     format!("{}\n{}", style.paint(Look::Strong, &heading), table.render(style))
 }
 
 /// What to look at, by the kind of the first finding: what comes later often follows from it.
 fn advice(finding: &Finding, style: Style) -> String {
     let words: &[&str] = match finding.detail {
+        _ if finding.step == 0 => &["the first record: the scene's own positions and velocities, before any step"],
         Detail::MissedCollision { .. } => &[
             "the detection of this pair: the trace's own state at the start of the step leads to this impact",
             "do its polynomials agree? then the choice of the time of impact, or the test of the normal, is wrong",

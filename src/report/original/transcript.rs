@@ -253,6 +253,7 @@ mod tests {
             first_divergence: None,
             steps_judged: 0,
             steps: 0,
+            records_per_step: 1,
             stop,
             damage: None,
             trailing_bytes: false,

@@ -1,0 +1,89 @@
+//! The two rule books side by side, as users meet them: what each says about correct variants and about garbage.
+use super::workspace::{Run, Workspace};
+use fosssim_oracle::suite::library;
+use serde_json::Value;
+use std::path::Path;
+
+/// A workspace with an embedded scene and the trace that the sample program writes for it.
+fn sampled(scene: &str, mistake: &str) -> Workspace {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", library::scene(scene).expect("an embedded scene"));
+    sample(&workspace.path("scene.xml"), &workspace.path("trace.bin"), mistake);
+    workspace
+}
+
+#[expect(clippy::disallowed_types, reason = "these tests are about a program, so they start it")]
+fn sample(scene: &Path, trace: &Path, mistake: &str) {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_fosssim-sample"));
+    let output = command.arg("-s").arg(scene).arg("-o").arg(trace).args(["--mistake", mistake]).output();
+    assert!(output.expect("the sample starts").status.success());
+}
+
+/// The report as JSON, checked against its schema, and the run.
+fn report(workspace: &Workspace, rules: &str) -> (Run, Value) {
+    let run = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json", "--rules", rules]);
+    let value: Value = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{}", run.shown()));
+    let schema: Value = serde_json::from_str(include_str!("../../schemas/check.schema.json")).unwrap();
+    if let Err(error) = jsonschema::validate(&schema, &value) {
+        panic!("{error}\n{value:#}");
+    }
+    (run, value)
+}
+
+#[test]
+fn correct_programs_that_the_original_fails_are_accepted_and_the_rule_is_named() {
+    for (scene, mistake, cause) in [
+        ("GeometricTests/tiny-edge-just-missed", "scale-2", "dropped_coefficients"),
+        ("ContinuousTimeTests/bullet-through-thin-obstacles", "scale-1000", "absolute_coefficients"),
+        ("ImpulsesTests/off-centre-on-turning-edge", "quintic-right", "approach_form"),
+    ] {
+        let workspace = sampled(scene, mistake);
+        let (run, json) = report(&workspace, "both");
+        assert_eq!((run.code, &json["verdict"]), (Some(1), &"wrong answer".into()), "{scene} {mistake}");
+        assert_eq!(json["fair"]["verdict"], "accepted", "{scene} {mistake}");
+        assert_eq!(json["difference"]["key"], cause, "{scene} {mistake}");
+        // The official book decides everything at the top.
+        let (run, json) = report(&workspace, "fair");
+        assert_eq!((run.code, &json["verdict"]), (Some(0), &"accepted".into()), "{scene} {mistake}");
+        assert_eq!((&json["official"], &json["wrong_steps"]), (&"fair".into(), &0.into()), "{scene} {mistake}");
+        assert_eq!(json["first_divergence"], Value::Null, "{scene} {mistake}");
+        assert_eq!(json["parity"]["overall"], "failed", "{scene} {mistake}");
+    }
+}
+
+#[test]
+fn garbage_that_the_original_passes_is_rejected_and_the_rule_is_named() {
+    let scene = "ContinuousTimeTests/oblique-glancing-blow";
+    for (mistake, cause, verdict) in [
+        ("log-tiny", "small_errors", "wrong answer"),
+        ("log-nan", "not_a_number", "wrong answer"),
+        ("log-duplicate-impulses", "repeated_collision", "wrong answer"),
+        ("trailing-bytes", "trailing_bytes", "bad trace"),
+    ] {
+        let workspace = sampled(scene, mistake);
+        let (run, json) = report(&workspace, "both");
+        assert_eq!((run.code, &json["verdict"]), (Some(0), &"accepted".into()), "{mistake}");
+        assert_eq!((&json["difference"]["key"], &json["fair"]["verdict"]), (&cause.into(), &"rejected".into()));
+        let (run, json) = report(&workspace, "fair");
+        assert_eq!((run.code, &json["verdict"]), (Some(1), &verdict.into()), "{mistake}");
+    }
+}
+
+#[test]
+fn parity_alone_says_nothing_of_fairness() {
+    let workspace = sampled("ContinuousTimeTests/oblique-glancing-blow", "log-tiny");
+    let (run, json) = report(&workspace, "parity");
+    assert_eq!((run.code, &json["fair"], &json["difference"]), (Some(0), &Value::Null, &Value::Null));
+    let text = workspace.run(["check", "scene.xml", "trace.bin", "--rules", "parity"]);
+    assert!(!text.out().contains("Fair rules"), "{}", text.shown());
+}
+
+#[test]
+fn the_text_says_why_the_books_differ() {
+    let workspace = sampled("GeometricTests/tiny-edge-just-missed", "scale-2");
+    insta::assert_snapshot!("scale_two", workspace.run(["check", "scene.xml", "trace.bin"]).shown());
+    let fair = workspace.run(["check", "scene.xml", "trace.bin", "--rules", "fair"]);
+    insta::assert_snapshot!("scale_two_fair", fair.shown());
+    let workspace = sampled("ContinuousTimeTests/oblique-glancing-blow", "log-duplicate-impulses");
+    insta::assert_snapshot!("duplicate_impulses", workspace.run(["check", "scene.xml", "trace.bin"]).shown());
+}
