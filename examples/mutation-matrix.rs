@@ -2,8 +2,8 @@
 //! judges the traces under each rule book. `scripts/mutation-matrix` builds and calls it.
 //!
 //! It prints one matrix per rule book, the mistakes that no scene catches, the variants that are refused, and a small
-//! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all:
-//! then no rule book could ever see it.
+//! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all (then
+//! no rule book could ever see it), when the fair rules miss one, and when they refuse a correct variant.
 use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
@@ -12,7 +12,7 @@ use std::{
 
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
-    judge::{Overall, parity},
+    judge::{Outcome, Overall, fair::Verdict, parity},
     scene::{Scene, original},
 };
 use rayon::prelude::*;
@@ -22,11 +22,22 @@ use serde::Deserialize;
 type Rules = fn(&Scene, &[u8]) -> bool;
 
 /// All rule books.
-const RULE_BOOKS: &[(&str, Rules)] = &[("parity", accepted_by_parity)];
+const RULE_BOOKS: &[(&str, Rules)] = &[("parity", accepted_by_parity), ("fair", accepted_by_fair)];
+
+/// The book that must catch every mistake and accept every correct variant.
+const FAIR: usize = 1;
 
 fn accepted_by_parity(scene: &Scene, trace: &[u8]) -> bool {
-    let options = parity::Options { threads: 1, ..parity::Options::default() };
-    parity::judge(scene, trace, &options, &mut ()).overall == Overall::Passed
+    judge(scene, trace, false).overall == Overall::Passed
+}
+
+fn accepted_by_fair(scene: &Scene, trace: &[u8]) -> bool {
+    judge(scene, trace, true).fair.is_some_and(|fair| fair.verdict == Verdict::Accepted)
+}
+
+fn judge(scene: &Scene, trace: &[u8], fair: bool) -> Outcome {
+    let options = parity::Options { threads: 1, fair, ..parity::Options::default() };
+    parity::judge(scene, trace, &options, &mut ())
 }
 
 #[derive(Deserialize)]
@@ -84,7 +95,18 @@ fn main() -> anyhow::Result<ExitCode> {
         .map(|(row, _)| row.id.as_str())
         .collect();
     print_list("mistakes that change no trace (must be none)", &invisible);
-    Ok(ExitCode::from(u8::from(!invisible.is_empty())))
+    let uncaught = ids(&rows, &matrix, FAIR, "wrong", false).len();
+    let accused = ids(&rows, &matrix, FAIR, "variant", true).len();
+    Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accused > 0)))
+}
+
+/// The rows of a kind that some scene catches under a rule book, or that none does.
+fn ids<'a>(rows: &'a [Row], matrix: &[Vec<Cell>], book: usize, kind: &str, caught: bool) -> Vec<&'a str> {
+    rows.iter()
+        .zip(matrix)
+        .filter(|(row, cells)| row.kind == kind && caught == cells.iter().any(|cell| refused(cell, book)))
+        .map(|(row, _)| row.id.as_str())
+        .collect()
 }
 
 fn cases(folder: &Path, sample: &Path) -> anyhow::Result<Vec<Case>> {
@@ -152,16 +174,20 @@ fn print_book(name: &str, book: usize, rows: &[Row], cases: &[Case], matrix: &[V
         println!("  {:36} {marks}", row.id);
     }
     println!();
-    let chosen = |kind: &str, caught: bool| -> Vec<&str> {
-        rows.iter()
-            .zip(matrix)
-            .filter(|(row, cells)| row.kind == kind && caught == cells.iter().any(|cell| refused(cell, book)))
-            .map(|(row, _)| row.id.as_str())
-            .collect()
-    };
-    println!("  {} mistakes caught\n", chosen("wrong", true).len());
-    print_list("mistakes that no scene catches", &chosen("wrong", false));
-    print_list("correct variants that a scene refuses", &chosen("variant", true));
+    println!("  {} mistakes caught\n", ids(rows, matrix, book, "wrong", true).len());
+    print_list("mistakes that no scene catches", &ids(rows, matrix, book, "wrong", false));
+    let accused: Vec<String> = rows
+        .iter()
+        .zip(matrix)
+        .filter(|(row, _)| row.kind == "variant")
+        .filter_map(|(row, cells)| {
+            let scenes = cases.iter().zip(cells).filter(|(_, cell)| refused(cell, book));
+            let scenes: Vec<&str> = scenes.map(|(case, _)| case.name.as_str()).collect();
+            (!scenes.is_empty()).then(|| format!("{}: {}", row.id, scenes.join(", ")))
+        })
+        .collect();
+    let accused: Vec<&str> = accused.iter().map(String::as_str).collect();
+    print_list("correct variants that a scene refuses", &accused);
     let subset: Vec<&str> =
         sufficient(book, rows, cases.len(), matrix).into_iter().map(|index| cases[index].name.as_str()).collect();
     print_list("scenes that together catch all of these mistakes", &subset);

@@ -269,7 +269,7 @@ pub enum Detail {
         /// In what.
         part: RecordPart,
     },
-    /// A polynomial with a leading coefficient that the course's library would have dropped (fair rules).
+    /// A polynomial with more coefficients than any detection has (fair rules).
     ImpossibleLog,
     /// The trace's polynomials are right, but with their factor the course's library dropped coefficients, and this
     /// decision hangs on them (fair rules).

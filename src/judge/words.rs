@@ -103,9 +103,7 @@ impl Display for Detail {
                 RecordPart::Impulses => "the step's two records hold different impulses",
                 RecordPart::Polynomials => "the mid record's polynomials are not the first ones of the end record",
             }),
-            Self::ImpossibleLog => {
-                f.write_str("a polynomial has a leading coefficient below 1e-12, which the course's library drops")
-            }
+            Self::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
             Self::TrimmedDecision { place, collides } => {
                 let outcome = if *collides { "collide" } else { "do not collide" };
                 let pair = PairWords(place.pair);

@@ -34,8 +34,8 @@ pub(crate) enum Mismatch {
 }
 
 /// Compares. `expected` is complete; `actual` is as logged, its small leading coefficients dropped by the course's
-/// library. `hint` is the factor of other polynomials of the same kind, for those that hold nothing but round-off.
-pub(crate) fn compare(expected: &[Bounded], actual: &[f64], hint: f64) -> Result<Match, Mismatch> {
+/// library. `hints` are the factors of other polynomials, for those that hold too little to tell their own.
+pub(crate) fn compare(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     let degree = expected.len().max(actual.len()).max(1) - 1;
     if actual.len() > MAX_COEFFICIENTS {
         return Err(Mismatch::TooLong);
@@ -48,12 +48,21 @@ pub(crate) fn compare(expected: &[Bounded], actual: &[f64], hint: f64) -> Result
     let (right, logged) = (&right[MAX_COEFFICIENTS - whole..], &logged[MAX_COEFFICIENTS - whole..]);
     let missing = whole.saturating_sub(actual.len());
     let matched = |scale: f64| judge(right, logged, missing, scale).map(|share| Match { scale: Some(scale), share });
+    let hinted = || {
+        let mut matches = hints.iter().map(|&hint| judge(right, logged, missing, hint));
+        matches.find_map(Result::ok).map(|share| Match { scale: None, share })
+    };
     let Some(fitted) = fit(right, logged, missing) else {
-        return judge(right, logged, missing, hint).map(|share| Match { scale: None, share });
+        let first = hints.first().copied().unwrap_or(1.0);
+        return hinted().ok_or(()).or_else(|()| matched(first));
     };
     let first = matched(fitted);
     if first.is_ok() {
         return first;
+    }
+    // What is left of a polynomial may tell the factor only roughly.
+    if let Some(found) = hinted() {
+        return Ok(found);
     }
     // One wrong coefficient spoils the fit; the factor on which most coefficients agree says which one it is.
     let mut best = (wrong(right, logged, missing, fitted), first);
@@ -113,15 +122,19 @@ fn norm(right: &[Bounded]) -> f64 {
     right.iter().map(|c| c.bound).sum()
 }
 
-/// The smallest factor with which a logged polynomial is round-off of one that should vanish; infinite when none is.
-pub(crate) fn vanishing_scale(expected: &[Bounded], actual: &[f64]) -> f64 {
-    let least = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
-    let missing = actual.len().saturating_sub(expected.len());
-    let all = expected[expected.len().saturating_sub(actual.len())..].iter().zip(&actual[missing..]);
-    let needed = all
-        .map(|(r, s)| s.abs() / (least * r.bound))
-        .fold(0.0, |most: f64, scale| if scale <= most { most } else { scale });
-    if missing == 0 { needed } else { f64::INFINITY }
+/// The factors with which a logged polynomial would be right although it does not tell its own: at least so large that
+/// what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it tells.
+pub(crate) fn possible_factors(expected: &[Bounded], actual: &[f64]) -> Option<[f64; 2]> {
+    let missing = expected.len().checked_sub(actual.len())?;
+    let unit = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
+    let (dropped, held) = expected.split_at(missing);
+    if held.iter().any(is_significant) {
+        return None;
+    }
+    let largest = dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - unit * r.bound));
+    let needed = held.iter().zip(actual).map(|(r, s)| s.abs() / (unit * r.bound));
+    let least = needed.fold(0.0, |most: f64, factor| if factor <= most { most } else { factor });
+    least.is_finite().then_some([least, LEADING_COEFFICIENT / largest])
 }
 
 /// How many coefficients are wrong with this factor.
@@ -160,11 +173,11 @@ mod tests {
         let right = parabola();
         for factor in [1.0, 3.0, 1e-6, 1e9, 0.1] {
             let logged = right.map(|c| factor * c.value);
-            let found = compare(&right, &logged, 1.0).expect("right");
+            let found = compare(&right, &logged, &[1.0]).expect("right");
             assert!((found.scale.expect("a factor") / factor - 1.0).abs() < 1e-15);
         }
         for factor in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
-            assert!(compare(&right, &right.map(|c| factor * c.value), 1.0).is_err(), "{factor}");
+            assert!(compare(&right, &right.map(|c| factor * c.value), &[1.0]).is_err(), "{factor}");
         }
     }
 
@@ -173,7 +186,7 @@ mod tests {
         let right = parabola();
         let mut logged = right.map(|c| 3.0 * c.value);
         logged[1] *= 2.0;
-        let Err(Mismatch::Coefficient { power, expected, actual, .. }) = compare(&right, &logged, 1.0) else {
+        let Err(Mismatch::Coefficient { power, expected, actual, .. }) = compare(&right, &logged, &[1.0]) else {
             panic!("a wrong coefficient")
         };
         assert_eq!((power, actual), (1, logged[1]));
@@ -185,32 +198,32 @@ mod tests {
         let right = parabola();
         let mut logged = right.map(|c| c.value);
         logged[2] *= 1.0 + 1e-9;
-        assert!(compare(&right, &logged, 1.0).is_err());
+        assert!(compare(&right, &logged, &[1.0]).is_err());
         logged[2] = right[2].value * (1.0 + 1e-15);
-        assert!(compare(&right, &logged, 1.0).expect("round-off").share > 0.0);
+        assert!(compare(&right, &logged, &[1.0]).expect("round-off").share > 0.0);
     }
 
     /// Small leading coefficients are dropped after scaling; others can't be missing.
     #[test]
     fn only_small_leading_coefficients_may_be_missing() {
         let right = [1e-7, 2.2, -0.71].map(|value: f64| Bounded { value, bound: 8.0 * value.abs() });
-        assert!(compare(&right, &[2.2e-6, -0.71e-6], 1.0).is_ok(), "dropped at scale 1e-6: 1e-13");
-        assert!(compare(&right, &[2.2, -0.71], 1.0).is_err(), "not small at scale 1");
+        assert!(compare(&right, &[2.2e-6, -0.71e-6], &[1.0]).is_ok(), "dropped at scale 1e-6: 1e-13");
+        assert!(compare(&right, &[2.2, -0.71], &[1.0]).is_err(), "not small at scale 1");
     }
 
     #[test]
     fn nothing_but_round_off_goes_by_the_factor_of_others() {
         let right = [1e-16, 0.0].map(|value: f64| Bounded { value, bound: 1.0 });
-        assert_eq!(compare(&right, &[], 1.0).expect("empty").scale, None);
-        assert!(compare(&right, &[1e-11], 1.0).is_err());
-        assert!(compare(&right, &[1e-11], 1e6).is_ok());
+        assert_eq!(compare(&right, &[], &[1.0]).expect("empty").scale, None);
+        assert!(compare(&right, &[1e-11], &[1.0]).is_err());
+        assert!(compare(&right, &[1e-11], &[1e6]).is_ok());
     }
 
     #[test]
     fn garbage_of_constant_size_check() {
         assert!(compare(&parabola(), &[1e-11; 3], 1.0).is_err());
         assert!(compare(&parabola(), &[0.0; 3], 1.0).is_err());
-        assert!(compare(&parabola(), &[], 1.0).is_err());
+        assert!(compare(&parabola(), &[], &[1.0]).is_err());
         assert!(compare(&parabola(), &[1.0; 9], 1.0).is_err());
     }
 }

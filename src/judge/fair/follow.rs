@@ -1,6 +1,6 @@
 //! The observer that follows a submission through one step, and charges what can't be followed.
 use super::{
-    compare::{Match, Mismatch, compare, vanishing_scale},
+    compare::{Match, Mismatch, compare, possible_factors},
     contact,
     formulas::{Expected, Motion},
     judgement::row,
@@ -158,18 +158,33 @@ impl<'a> Follower<'a> {
     /// Judges what holds nothing but round-off by the factors of other polynomials.
     fn settle_deferred(&mut self) {
         for (place, number, expected) in std::mem::take(&mut self.deferred) {
-            let hint = self.hints[row(place.pair.kind)][number];
+            let (hints, count) = self.hints(row(place.pair.kind), number);
+            let hints = &hints[..count];
             let actual = self.records.end.polynomials.get(place.index);
-            let Err(mismatch) = compare(expected.polynomial(number), actual, hint.unwrap_or(1.0)) else { continue };
-            let scale = vanishing_scale(expected.polynomial(number), actual);
-            if hint.is_some() || !scale.is_finite() {
-                self.charge_polynomial(place, number, &expected, mismatch);
-            } else {
-                let detail = self.wrong_polynomial(place, number, &expected, mismatch);
-                let finding = Finding { step: self.records.step, frame: self.records.frame, detail };
-                self.judged.pending.push(Pending { finding, place: (row(place.pair.kind), number), scale });
+            let Err(mismatch) = compare(expected.polynomial(number), actual, hints) else { continue };
+            match possible_factors(expected.polynomial(number), actual) {
+                Some(factors) if self.hints[row(place.pair.kind)][number].is_none() => {
+                    let detail = self.wrong_polynomial(place, number, &expected, mismatch);
+                    let finding = Finding { step: self.records.step, frame: self.records.frame, detail };
+                    self.judged.pending.push(Pending { finding, place: (row(place.pair.kind), number), factors });
+                }
+                _ => self.charge_polynomial(place, number, &expected, mismatch),
             }
         }
+    }
+
+    /// The factors that a polynomial may have which does not tell its own: that of the same polynomial of other pairs,
+    /// then those of other polynomials, or 1.
+    fn hints(&self, row: usize, number: usize) -> ([f64; 13], usize) {
+        let mut hints = [1.0; 13];
+        let mut count = 0;
+        for hint in std::iter::once(self.hints[row][number]).chain(self.hints.into_iter().flatten()).flatten() {
+            if !hints[..count].contains(&hint) {
+                hints[count] = hint;
+                count += 1;
+            }
+        }
+        (hints, count.max(1))
     }
 
     /// Charges impulses that belong to no decision.
@@ -226,22 +241,23 @@ impl<'a> Follower<'a> {
         let mut seen = motion(q_end, bounds);
         let mut expected = seen.polynomials();
         let log = &self.records.end.polynomials;
-        let matches = |expected: &Expected, hints: &[Option<f64>; 4]| -> [Result<Match, Mismatch>; 4] {
+        let hints: [_; 4] = std::array::from_fn(|number| self.hints(row(pair.kind), number));
+        let matches = |expected: &Expected| -> [Result<Match, Mismatch>; 4] {
             std::array::from_fn(|number| {
                 if number >= count {
                     return Ok(Match { scale: None, share: 0.0 });
                 }
-                compare(expected.polynomial(number), log.get(index + number), hints[number].unwrap_or(1.0))
+                let (hints, known) = &hints[number];
+                compare(expected.polynomial(number), log.get(index + number), &hints[..*known])
             })
         };
-        let hints = self.hints[row(pair.kind)];
-        let mut results = matches(&expected, &hints);
+        let mut results = matches(&expected);
         if results.iter().any(Result::is_err)
             && let Some(known) = self.known_positions()
         {
             let other_motion = motion(known, None);
             let other = other_motion.polynomials();
-            let others = matches(&other, &hints);
+            let others = matches(&other);
             if others.iter().filter(|result| result.is_err()).count()
                 < results.iter().filter(|result| result.is_err()).count()
             {
@@ -253,7 +269,7 @@ impl<'a> Follower<'a> {
                 PolynomialPlace { pass: self.pass, pair, role: Role::of(pair.kind, number), index: index + number };
             let mut result = result;
             if let Some(right) = expected.other_form(number) {
-                let other = compare(right, log.get(place.index), hints[number].unwrap_or(1.0));
+                let other = compare(right, log.get(place.index), &hints[number].0[..hints[number].1]);
                 match (&result, &other) {
                     (Ok(_), Err(_)) => self.judged.course_form = self.judged.course_form.or(Some(place)),
                     (Err(_), Ok(_)) => {
@@ -275,8 +291,8 @@ impl<'a> Follower<'a> {
                     }
                 }
                 Err(mismatch) => {
-                    let vanishes = expected.is_round_off(number);
-                    if vanishes {
+                    let tells_no_factor = possible_factors(expected.polynomial(number), log.get(place.index)).is_some();
+                    if tells_no_factor {
                         self.deferred.push((place, number, expected));
                     } else {
                         self.charge_polynomial(place, number, &expected, mismatch);

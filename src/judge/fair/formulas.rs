@@ -84,11 +84,6 @@ impl Expected {
         self.sizes.iter().filter(|&&size| size > 0).count()
     }
 
-    /// Whether polynomial `number` holds nothing but round-off.
-    pub fn is_round_off(&self, number: usize) -> bool {
-        self.polynomial(number).iter().all(|c| c.value.abs() <= FAIR_UNITS * UNIT_ROUNDOFF * c.bound)
-    }
-
     fn set(&mut self, number: usize, coefficients: &[Bounded]) {
         self.polynomials[number][MAX_COEFFICIENTS - coefficients.len()..].copy_from_slice(coefficients);
         self.sizes[number] = coefficients.len();

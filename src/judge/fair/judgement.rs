@@ -113,8 +113,19 @@ pub struct Judgement {
     pub lost: u64,
     /// Used shares of the tolerances.
     pub shares: Shares,
-    /// For each polynomial of a pair what hangs on its factor: the first finding, the largest factor, how many there are.
-    pending: [[Option<(Finding, f64, u64)>; 4]; 3],
+    /// For each polynomial of a pair what hangs on its factor.
+    pending: [[Option<Hanging>; 4]; 3],
+}
+
+/// Findings that hang on the factor of a program's polynomials.
+#[derive(Debug, Clone, Copy)]
+struct Hanging {
+    /// The first one.
+    finding: Finding,
+    /// How many there are.
+    count: u64,
+    /// They are none if the factor lies within these.
+    factors: [f64; 2],
 }
 
 impl Judgement {
@@ -151,9 +162,11 @@ impl Judgement {
         self.lost += step.lost;
         for pending in &step.pending {
             let (row, number) = pending.place;
-            let (_, scale, count) = self.pending[row][number].get_or_insert((pending.finding, 0.0, 0));
-            *scale = scale.max(pending.scale);
+            let first = Hanging { finding: pending.finding, count: 0, factors: [0.0, f64::INFINITY] };
+            let Hanging { count, factors: [low, high], .. } = self.pending[row][number].get_or_insert(first);
             *count += 1;
+            *low = low.max(pending.factors[0]);
+            *high = high.min(pending.factors[1]);
         }
         if step.endless {
             self.refusal = Some(Refusal::Stopped);
@@ -189,12 +202,14 @@ impl Judgement {
 
     /// Charges what is no round-off with the factors that the trace uses.
     fn settle_pending(&mut self) {
-        let largest = self.scales.iter().flatten().flatten().map(|range| range[1]).fold(1.0, f64::max);
+        let all = self.scales.iter().flatten().flatten().copied();
+        let all = all.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([1.0; 2]);
         for row in 0..self.pending.len() {
             for number in 0..self.pending[row].len() {
-                let Some((finding, scale, count)) = self.pending[row][number].take() else { continue };
-                let used = self.scales[row][number].map_or(largest, |[_, high]| high);
-                if !(scale <= used * (1.0 + 1e-9)) {
+                let Some(Hanging { finding, count, factors }) = self.pending[row][number].take() else { continue };
+                let [low, high] = self.scales[row][number].unwrap_or(all);
+                let room = 1e-9;
+                if !(factors[0] <= high * (1.0 + room) && factors[1] >= low * (1.0 - room)) {
                     self.charge(finding);
                     self.counts.add(finding.kind(), count - 1);
                     self.wrong_steps = self.wrong_steps.max(1);

@@ -11,6 +11,7 @@ use crate::{
         finding::{Detail, Finding, Kind, PolynomialPlace, RecordPart},
         outcome::Counts,
     },
+    num::polynomial::MAX_COEFFICIENTS,
     scene::{Collision, Scene},
     sim::{Pair, PairKind, Pass, Simulation, State, StepError},
     trace::LenientFrame,
@@ -74,15 +75,15 @@ pub(in crate::judge) struct Records<'a> {
     pub end: &'a LenientFrame,
 }
 
-/// A polynomial that is right if the program's polynomials have a large factor.
+/// A polynomial that is right if the program's polynomials have a factor within bounds.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::judge) struct Pending {
     /// What is wrong otherwise.
     pub finding: Finding,
     /// Row and number of the polynomial in [`Scales`].
     pub place: (usize, usize),
-    /// The least factor.
-    pub scale: f64,
+    /// The least and the largest factor.
+    pub factors: [f64; 2],
 }
 
 /// What judging one step yields.
@@ -108,8 +109,7 @@ pub(in crate::judge) struct StepJudgement {
     pub course_form: Option<PolynomialPlace>,
     /// A polynomial that is of the right form and not of the course's.
     pub right_form: Option<PolynomialPlace>,
-    /// Polynomials that should vanish and do not, with the least factor that makes them round-off: whether the program uses
-    /// such a factor, only the whole trace says.
+    /// Polynomials that are right with some factors only: whether the program uses such a one, only the whole trace says.
     pub pending: Vec<Pending>,
     /// The trace's polynomials lead the step into a search without end.
     pub endless: bool,
@@ -222,7 +222,7 @@ fn follow(
 fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
     let Records { step, frame, mid, end, .. } = records;
     let mut charge = |detail| judged.charge(Finding { step, frame, detail });
-    if end.note.is_none() && !end.plain || mid.is_some_and(|mid| mid.note.is_none() && !mid.plain) {
+    if is_overlong(end) || mid.is_some_and(is_overlong) {
         charge(Detail::ImpossibleLog);
     }
     let Some(mid) = mid else { return };
@@ -236,6 +236,23 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     if !same {
         charge(Detail::RecordsDiffer { part: RecordPart::Polynomials });
     }
+}
+
+/// Whether a polynomial has more coefficients than any detection has. Small leading ones that were not dropped do no harm:
+/// some builds of the course's library keep them.
+fn is_overlong(frame: &LenientFrame) -> bool {
+    if frame.plain || frame.note.is_some() {
+        return (0..frame.polynomials.len()).any(|index| frame.polynomials.get(index).len() > MAX_COEFFICIENTS);
+    }
+    let mut rest = &frame.raw[..];
+    while let Some((size, after)) = rest.split_first_chunk::<4>() {
+        let size = usize::try_from(i32::from_le_bytes(*size)).unwrap_or(0);
+        if size > MAX_COEFFICIENTS {
+            return true;
+        }
+        rest = after.get(8 * size..).unwrap_or_default();
+    }
+    false
 }
 
 fn same_impulse((a, b): (&crate::trace::LoggedImpulse, &crate::trace::LoggedImpulse)) -> bool {
