@@ -269,7 +269,8 @@ pub enum Detail {
         /// In what.
         part: RecordPart,
     },
-    /// A polynomial with more coefficients than any detection has (fair rules).
+    /// A polynomial with more coefficients than any detection has, or with small leading ones, which the course's library
+    /// drops (fair rules).
     ImpossibleLog,
     /// The trace's polynomials are right, but with their factor the course's library dropped coefficients, and this
     /// decision hangs on them (fair rules).

@@ -442,6 +442,7 @@ catalogue! {
         LogNoMid "log-no-mid": "The record in the middle of a step is missing.";
         LogNoInitial "log-no-initial": "The initial record is missing.";
         LogSinglePrecision "log-single-precision": "Positions and velocities are logged as float.";
+        LogPadded "log-padded": "Every logged polynomial has a leading zero, which the course's library never writes.";
     }
     Variant Handover {
         ScaleTwo "scale-2": "All polynomials are multiplied by 2.";
@@ -482,7 +483,6 @@ catalogue! {
         FailsafeRotationMatrix "rotation-matrix": "The rotation is written as a matrix, and the sum in another order.";
     }
     Variant Trace {
-        LogPadded "padded": "Every logged polynomial has a leading zero, which changes nothing of its value.";
         LogImpulsesReversed "impulses-reversed": "The impulses of a step are logged in the opposite order.";
     }
     Hostile Process {

@@ -71,7 +71,7 @@ pub(super) fn is_sure(coefficient: Bounded) -> bool {
 
 /// Whether the logged polynomial is right: the expected one times some positive scale.
 pub(super) fn is_right(expected: &[Bounded], logged: &[f64]) -> bool {
-    compare(expected, logged, 1.0).is_ok()
+    compare(expected, logged, &[1.0]).is_ok()
 }
 
 #[cfg(test)]

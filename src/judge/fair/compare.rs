@@ -221,9 +221,9 @@ mod tests {
 
     #[test]
     fn garbage_of_constant_size_check() {
-        assert!(compare(&parabola(), &[1e-11; 3], 1.0).is_err());
-        assert!(compare(&parabola(), &[0.0; 3], 1.0).is_err());
+        assert!(compare(&parabola(), &[1e-11; 3], &[1.0]).is_err());
+        assert!(compare(&parabola(), &[0.0; 3], &[1.0]).is_err());
         assert!(compare(&parabola(), &[], &[1.0]).is_err());
-        assert!(compare(&parabola(), &[1.0; 9], 1.0).is_err());
+        assert!(compare(&parabola(), &[1.0; 9], &[1.0]).is_err());
     }
 }

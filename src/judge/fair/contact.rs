@@ -165,25 +165,12 @@ pub(super) fn is_borderline(motion: &Motion, expected: &Expected) -> bool {
     decides(motion, expected).is_none()
 }
 
-/// The time at which a pair that does not quite collide comes closest to it.
-pub(super) fn nearest_time(expected: &Expected) -> f64 {
-    let closeness = |t: f64| {
-        let all = (0..expected.count()).map(|number| {
-            let (value, tolerance) = value(expected.polynomial(number), t);
-            value / tolerance
-        });
-        all.fold(f64::INFINITY, f64::min)
-    };
-    let (mut best, mut width) = (0.5, 0.5);
-    for _ in 0..6 {
-        let centre: f64 = best;
-        for k in -32..=32 {
-            let t = (centre + width * f64::from(k) / 32.0).clamp(0.0, 1.0);
-            if closeness(t) > closeness(best) {
-                best = t;
-            }
-        }
-        width /= 16.0;
+/// A time of impact for a pair that may collide or not.
+pub(super) fn possible_time(expected: &Expected) -> f64 {
+    let mut polynomials: [&[Bounded]; 4] = [&[]; 4];
+    for (number, polynomial) in polynomials.iter_mut().enumerate() {
+        *polynomial = expected.polynomial(number);
     }
-    best
+    let earliest = decide(&polynomials[..expected.count()], FAIR_UNITS).time;
+    earliest.map_or(1.0, |[low, high]| low.midpoint(high).clamp(0.0, 1.0))
 }

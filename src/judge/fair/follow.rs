@@ -506,7 +506,7 @@ impl Observer for Follower<'_> {
                 Decision::Miss { .. } => {
                     self.judged.borderline(self.pass, pair, true);
                     self.expected.as_ref().map_or(decision, |(motion, expected)| {
-                        let time = contact::nearest_time(expected);
+                        let time = contact::possible_time(expected);
                         let normal = motion.normal(time);
                         Decision::Hit { time, normal: Vec2::new(normal.x.value, normal.y.value) }
                     })

@@ -222,7 +222,7 @@ fn follow(
 fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
     let Records { step, frame, mid, end, .. } = records;
     let mut charge = |detail| judged.charge(Finding { step, frame, detail });
-    if is_overlong(end) || mid.is_some_and(is_overlong) {
+    if is_impossible(end) || mid.is_some_and(is_impossible) {
         charge(Detail::ImpossibleLog);
     }
     let Some(mid) = mid else { return };
@@ -238,21 +238,11 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     }
 }
 
-/// Whether a polynomial has more coefficients than any detection has. Small leading ones that were not dropped do no harm:
-/// some builds of the course's library keep them.
-fn is_overlong(frame: &LenientFrame) -> bool {
-    if frame.plain || frame.note.is_some() {
-        return (0..frame.polynomials.len()).any(|index| frame.polynomials.get(index).len() > MAX_COEFFICIENTS);
-    }
-    let mut rest = &frame.raw[..];
-    while let Some((size, after)) = rest.split_first_chunk::<4>() {
-        let size = usize::try_from(i32::from_le_bytes(*size)).unwrap_or(0);
-        if size > MAX_COEFFICIENTS {
-            return true;
-        }
-        rest = after.get(8 * size..).unwrap_or_default();
-    }
-    false
+/// Whether the record holds what the course's library does not write: small leading coefficients that were not dropped, or
+/// more coefficients than any detection has.
+fn is_impossible(frame: &LenientFrame) -> bool {
+    let log = &frame.polynomials;
+    frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)
 }
 
 fn same_impulse((a, b): (&crate::trace::LoggedImpulse, &crate::trace::LoggedImpulse)) -> bool {
