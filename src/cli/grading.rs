@@ -1,4 +1,5 @@
 //! Arguments of the commands that run programs, as typed.
+use super::arguments::Rules;
 use clap::{Args, Subcommand};
 use std::{num::NonZeroUsize, path::PathBuf};
 
@@ -23,6 +24,9 @@ pub(super) struct Grade {
     /// The suite: a file, or one that comes with the program (t2m2, earlier).
     #[arg(long, value_name = "SUITE", default_value = "t2m2")]
     pub(super) suite: String,
+    /// The rule books; by default the suite's.
+    #[arg(long, value_enum)]
+    pub(super) rules: Option<Rules>,
     /// The folder for results, logs and the journal.
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,

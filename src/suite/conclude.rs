@@ -4,7 +4,10 @@
 //! clean exit does not excuse a wrong trace.
 use super::{config::Hints, grade::SceneGrade, verdict::Verdict};
 use crate::{
-    judge::{Counts, Detail, Finding, Kind, Outcome, Overall, PairWords, Stop, Unreadable},
+    judge::{
+        Account, Counts, Detail, Finding, Kind, Outcome, PairWords, Rules, Ruling, Stop, Unreadable,
+        fair::{self, Refusal},
+    },
     sandbox::{self, Ended},
 };
 
@@ -14,7 +17,7 @@ const KEPT_OUTPUT: usize = 4096;
 /// The verdict on one scene.
 ///
 /// `trace_bytes` is what arrived of the trace; `cut_short` says that the grader itself stopped the program, because
-/// the trace could no longer be right.
+/// the trace could no longer be right. The official one of the `rules` gives verdict, findings and right steps.
 #[must_use]
 pub fn conclude(
     scene: &str,
@@ -22,10 +25,12 @@ pub fn conclude(
     judged: &Outcome,
     trace_bytes: u64,
     cut_short: bool,
+    rules: Rules,
     hints: Hints,
 ) -> SceneGrade {
     let (of_program, program_says) = verdict_of_program(&program.ended, cut_short);
-    let (of_trace, trace_says) = verdict_of_trace(judged, trace_bytes);
+    let (of_trace, trace_says) = verdict_of_trace(judged, rules, trace_bytes);
+    let account = judged.account(rules.official());
     // A program that was stopped has a trace without end; saying so too would blame it twice.
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
     let (verdict, summary) = if of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace) {
@@ -37,23 +42,24 @@ pub fn conclude(
     };
     let mut details = Vec::new();
     if hints > Hints::None {
-        details.extend(judged.first_divergence.as_ref().map(|first| first_divergence(first, hints)));
-        details.extend(counts(&judged.counts));
+        details.extend(account.first_divergence.map(|first| first_divergence(first, hints)));
+        details.extend(counts(account.counts));
         if let Some(damage) = &judged.damage {
             details.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.message));
         }
         if judged.trailing_bytes {
-            details.push("bytes follow the last record; they were not looked at".to_owned());
+            details.push("bytes follow the last record".to_owned());
         }
     }
     SceneGrade {
         scene: scene.to_owned(),
         verdict,
         summary,
+        differs: fair::cause(judged),
         details,
         points: 0.0,
         max_points: 0.0,
-        right_steps: judged.steps_judged - u32::try_from(judged.wrong_steps).unwrap_or(judged.steps_judged),
+        right_steps: judged.steps_judged - u32::try_from(account.wrong_steps).unwrap_or(judged.steps_judged),
         steps: judged.steps,
         cpu: program.cpu,
         wall: program.wall,
@@ -80,8 +86,8 @@ fn verdict_of_program(ended: &Ended, cut_short: bool) -> (Verdict, String) {
 }
 
 /// What the trace alone says.
-fn verdict_of_trace(judged: &Outcome, trace_bytes: u64) -> (Verdict, String) {
-    match (&judged.stop, judged.overall) {
+fn verdict_of_trace(judged: &Outcome, rules: Rules, trace_bytes: u64) -> (Verdict, String) {
+    match (&judged.stop, judged.ruling(rules.official())) {
         (Some(Stop::Trace { .. }), _) if trace_bytes == 0 => {
             (Verdict::NoOutput, "the program wrote no trace; it has to write the file that -o names".to_owned())
         }
@@ -94,18 +100,32 @@ fn verdict_of_trace(judged: &Outcome, trace_bytes: u64) -> (Verdict, String) {
             (Verdict::BadTrace, format!("{what}: frame {frame} (step {step}), byte {offset}: {message}"))
         }
         (Some(Stop::Step(error)), _) => (Verdict::BadTrace, format!("the trace's own states lead nowhere: {error}")),
-        (None, Overall::Passed) => (Verdict::Accepted, format!("all {} steps are right", judged.steps)),
-        (None, _) => (Verdict::WrongAnswer, wrong(judged)),
+        (None, Ruling::Accepted) => (Verdict::Accepted, format!("all {} steps are right", judged.steps)),
+        (None, Ruling::WrongAnswer) => (Verdict::WrongAnswer, wrong(judged.account(rules.official()), judged.steps)),
+        (None, Ruling::BadTrace) => (Verdict::BadTrace, refusal(judged)),
     }
 }
 
-fn wrong(judged: &Outcome) -> String {
-    match &judged.first_divergence {
+fn wrong(account: Account<'_>, steps: u32) -> String {
+    match account.first_divergence {
+        Some(first) if first.step == 0 && account.wrong_steps == 0 => {
+            format!("the first record is wrong: {}", first.kind())
+        }
         Some(first) => {
-            let share = format!("{} of {} steps are wrong", judged.wrong_steps, judged.steps);
+            let share = format!("{} of {steps} steps are wrong", account.wrong_steps);
             format!("{share}, first step {}: {}", first.step, first.kind())
         }
         None => "small errors add up beyond the tolerance".to_owned(),
+    }
+}
+
+/// Why the fair rules refuse a trace that the original reads to its end.
+fn refusal(judged: &Outcome) -> String {
+    match judged.fair.as_ref().and_then(|fair| fair.refusal) {
+        Some(Refusal::Damaged) => "the trace is damaged".to_owned(),
+        Some(Refusal::TrailingBytes) => "bytes follow the trace's last record".to_owned(),
+        Some(Refusal::Stopped) => "the trace's own polynomials lead into a search without end".to_owned(),
+        None => "the trace was not judged to its end".to_owned(),
     }
 }
 

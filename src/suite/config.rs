@@ -2,6 +2,7 @@
 //!
 //! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
 //! that `suite init` writes ([`TEMPLATE`]).
+use crate::judge::Rules;
 use serde::Deserialize;
 use std::{ops::Range, time::Duration};
 use toml::Spanned;
@@ -16,6 +17,8 @@ pub struct Suite {
     pub name: String,
     /// How the program is run; `{program}`, `{scene}` and `{trace}` are replaced.
     pub run: Vec<String>,
+    /// The rule books to ask; the official one gives verdicts and points.
+    pub rules: Rules,
     /// How much a report tells.
     pub hints: Hints,
     /// The build step.
@@ -261,11 +264,10 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
             format!("schema {} is not known: this version reads schema 1", raw.schema.get_ref()),
         );
     }
-    if let Some(rules) = &raw.rules
-        && rules.get_ref() != "parity"
-    {
-        checker
-            .problem(rules.span(), format!("rules \"{}\" is not known: the rule book is \"parity\"", rules.get_ref()));
+    let rules = raw.rules.as_ref().map_or(Some(Rules::default()), |rules| Rules::from_name(rules.get_ref()));
+    if let (None, Some(rules)) = (rules, &raw.rules) {
+        let known = "there are \"parity\", \"fair\" and \"both\"";
+        checker.problem(rules.span(), format!("rules \"{}\" is not known: {known}", rules.get_ref()));
     }
     if raw.name.get_ref().trim().is_empty() {
         checker.problem(raw.name.span(), "the suite's name is empty".to_owned());
@@ -286,7 +288,15 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
         }
     }
     if checker.problems.is_empty() {
-        Ok(Suite { name: raw.name.into_inner(), run, hints: raw.hints.unwrap_or(Hints::What), build, limits, groups })
+        Ok(Suite {
+            name: raw.name.into_inner(),
+            run,
+            rules: rules.unwrap_or_default(),
+            hints: raw.hints.unwrap_or(Hints::What),
+            build,
+            limits,
+            groups,
+        })
     } else {
         checker.problems.sort_by_key(|(at, _)| (at.line, at.column));
         Err(SuiteError { problems: checker.problems })
@@ -394,6 +404,7 @@ mod tests {
         let suite = read(TEMPLATE).expect("the template");
         assert_eq!(suite.limits, RunLimits::default());
         assert_eq!(suite.run, default_run());
+        assert_eq!(suite.rules, Rules::Both);
         assert!(!suite.groups.is_empty());
     }
 
@@ -404,7 +415,7 @@ mod tests {
         insta::assert_snapshot!(read(text).expect_err("wrong"), @r#"
         1:10: schema 2 is not known: this version reads schema 1
         2:8: the suite's name is empty
-        3:9: rules "kind" is not known: the rule book is "parity"
+        3:9: rules "kind" is not known: there are "parity", "fair" and "both"
         4:7: run has no {program}: the program would not get it
         4:7: run has no {trace}: the program would not get it
         4:7: run has to begin with {program}

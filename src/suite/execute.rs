@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     judge::{
-        Outcome,
+        Outcome, Rules,
         parity::{self, Options, Progress, Remark},
         recorded::{self, RecordingError},
     },
@@ -54,6 +54,8 @@ pub struct Runner<'a> {
     pub run: &'a [String],
     /// Limits of each run.
     pub limits: &'a RunLimits,
+    /// The rule books to ask.
+    pub rules: Rules,
     /// How much the result tells.
     pub hints: Hints,
     /// Whether a run is cut short at its first wrong step.
@@ -105,14 +107,22 @@ impl Runner<'_> {
         let canceller = running.canceller();
         let _registered = self.cancellation.register(canceller.clone());
         let bytes = AtomicU64::new(0);
-        let options = Options { stop_at_first: self.fail_fast, threads: 1, ..Options::default() };
+        let options = Options {
+            stop_at_first: self.fail_fast,
+            stop_by: self.rules.official(),
+            threads: 1,
+            fair: self.rules.ask_fair(),
+            ..Options::default()
+        };
         let mut watch = Watch { on_step };
         let mut cut_short = false;
         let judged = match running.trace() {
             Some(inner) => {
                 let mut trace = Counted { inner, bytes: &bytes };
                 let judged = self.judge(task, &mut trace, &options, &mut watch)?;
-                cut_short = self.fail_fast && judged.wrong_steps > 0 && judged.steps_judged < judged.steps;
+                cut_short = self.fail_fast
+                    && judged.account(self.rules.official()).wrong_steps > 0
+                    && judged.steps_judged < judged.steps;
                 if cut_short {
                     canceller.cancel();
                 }
@@ -124,7 +134,7 @@ impl Runner<'_> {
             None => self.judge(task, io::empty(), &options, &mut watch)?,
         };
         let outcome = running.wait()?;
-        Ok(conclude(&task.name, &outcome, &judged, bytes.load(Ordering::Relaxed), cut_short, self.hints))
+        Ok(conclude(&task.name, &outcome, &judged, bytes.load(Ordering::Relaxed), cut_short, self.rules, self.hints))
     }
 
     fn judge(
@@ -177,6 +187,7 @@ pub fn not_run(scene: &str, steps: u32, verdict: Verdict, summary: String) -> Sc
         scene: scene.to_owned(),
         verdict,
         summary,
+        differs: None,
         details: Vec::new(),
         points: 0.0,
         max_points: 0.0,

@@ -1,5 +1,6 @@
 //! The grade: what one submission got, scene by scene.
 use super::{config::Visibility, verdict::Verdict};
+use crate::judge::{Rules, fair::Cause};
 use std::time::Duration;
 
 /// The grade of one submission on one suite.
@@ -9,8 +10,8 @@ pub struct Grade {
     pub submission: String,
     /// The suite's name.
     pub suite: String,
-    /// The rule book that gave the verdicts.
-    pub rules: &'static str,
+    /// The rule books that were asked; verdicts and points are by the official one.
+    pub rules: Rules,
     /// The worst verdict of all scenes.
     pub verdict: Verdict,
     /// Points reached; `None` when the grader failed, which is nobody's zero.
@@ -39,6 +40,12 @@ impl Grade {
     #[must_use]
     pub fn is_our_fault(&self) -> bool {
         self.verdict == Verdict::JudgeError
+    }
+
+    /// How many scenes the two rule books judge differently.
+    #[must_use]
+    pub fn differing(&self) -> usize {
+        self.scenes().filter(|scene| scene.differs.is_some()).count()
     }
 
     /// How many scenes have this verdict.
@@ -85,6 +92,8 @@ pub struct SceneGrade {
     pub verdict: Verdict,
     /// One sentence that says what happened.
     pub summary: String,
+    /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
+    pub differs: Option<Cause>,
     /// More lines of explanation: the first divergence, counts, hints. Plain text.
     pub details: Vec<String>,
     /// Points reached.

@@ -4,6 +4,7 @@
 //! opening. Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene,
 //! rule or version is simply not found. A lock keeps two graders out of one folder.
 use super::{grade::SceneGrade, verdict::Verdict};
+use crate::judge::fair::Cause;
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -148,6 +149,7 @@ struct Entry {
     scene: String,
     verdict: String,
     summary: String,
+    differs: Option<String>,
     details: Vec<String>,
     right_steps: u32,
     steps: u32,
@@ -166,6 +168,7 @@ impl Entry {
             scene: grade.scene.clone(),
             verdict: grade.verdict.words().to_owned(),
             summary: grade.summary.clone(),
+            differs: grade.differs.map(|cause| cause.key().to_owned()),
             details: grade.details.clone(),
             right_steps: grade.right_steps,
             steps: grade.steps,
@@ -185,6 +188,7 @@ impl Entry {
             scene: self.scene,
             verdict,
             summary: self.summary,
+            differs: self.differs.as_deref().and_then(Cause::from_key),
             details: self.details,
             points: 0.0,
             max_points: 0.0,
@@ -210,6 +214,7 @@ mod tests {
             scene: "Group/scene".to_owned(),
             verdict,
             summary: "a summary".to_owned(),
+            differs: Some(Cause::ContactTime),
             details: vec!["a detail".to_owned()],
             points: 0.0,
             max_points: 0.0,

@@ -5,7 +5,7 @@ use super::{
     library,
     score::Stakes,
 };
-use crate::scene;
+use crate::{judge::Rules, scene};
 use std::{collections::BTreeMap, path::Path};
 
 /// The suites that come with the program: name and text.
@@ -18,6 +18,8 @@ pub struct Plan {
     pub name: String,
     /// The command line.
     pub run: Vec<String>,
+    /// The rule books to ask.
+    pub rules: Rules,
     /// How much a report tells.
     pub hints: Hints,
     /// The build step.
@@ -109,6 +111,7 @@ pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
     Ok(Plan {
         name: suite.name.clone(),
         run: suite.run.clone(),
+        rules: suite.rules,
         hints: suite.hints,
         build: suite.build.clone(),
         limits: suite.limits,

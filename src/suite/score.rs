@@ -59,6 +59,7 @@ mod tests {
             scene: "a/b".to_owned(),
             verdict,
             summary: String::new(),
+            differs: None,
             details: Vec::new(),
             points: 0.0,
             max_points: 0.0,

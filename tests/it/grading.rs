@@ -77,6 +77,30 @@ fn against_recordings_the_right_program_passes_too() {
 }
 
 #[test]
+fn the_rules_decide_the_points_and_reports_say_where_they_differ() {
+    let Some(workspace) = workspace() else { return };
+    submit(&workspace, &["scale-1000"]);
+    let grade = |rules: &[&str]| {
+        let fixed = ["grade", "submissions/fosssim-sample.scale-1000", "--suite", "suite.toml", "--output", "out"];
+        workspace.run(fixed.iter().chain(rules))
+    };
+    let both = grade(&[]);
+    assert_eq!(both.code, Some(1), "{}", both.shown());
+    assert!(both.out().contains("the rule books differ: the original fails it, the fair rules accept it"));
+    assert!(both.out().contains("rules parity (the fair rules differ in "), "{}", both.shown());
+    let scenes = String::from_utf8(workspace.read("out/scenes.csv")).expect("text");
+    assert!(scenes.contains(",absolute_coefficients"), "{scenes}");
+    // The same folder: results by other rules are not taken for these.
+    let fair = grade(&["--rules", "fair"]);
+    assert_eq!(fair.code, Some(0), "{}", fair.shown());
+    let parity = grade(&["--rules", "parity"]);
+    assert_eq!(parity.code, Some(1), "{}", parity.shown());
+    assert!(!parity.out().contains("differ"), "{}", parity.shown());
+    let recorded = grade(&["--rules", "fair", "--recorded"]);
+    assert_eq!(recorded.code, Some(2), "{}", recorded.shown());
+}
+
+#[test]
 fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() {
     let Some(workspace) = workspace() else { return };
     let cast = [

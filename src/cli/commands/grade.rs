@@ -2,6 +2,7 @@
 use super::{display::Display, submissions};
 use crate::{
     cli::{console, exit, grading::Grade as Arguments, output},
+    judge::Rules,
     report::grade::{self, Format},
     sandbox::{Backend, Supervisor},
     suite::{
@@ -25,7 +26,13 @@ use std::{
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
-    let plan = load_suite(&arguments.suite)?;
+    let mut plan = load_suite(&arguments.suite)?;
+    if let Some(rules) = arguments.rules {
+        plan.rules = rules.into();
+    }
+    if arguments.recorded && plan.rules == Rules::Fair {
+        bail!("the fair rules follow the submission, so they can't judge against recordings: leave --recorded out");
+    }
     let reports = reports(&arguments.format)?;
     let submissions = submissions::find(arguments, plan.build.is_some())?;
     if submissions.len() > 1
@@ -284,7 +291,11 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         output::write(&folder.join("build.log"), &[], text.as_bytes())?;
     }
     for scene in grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun) {
-        let details: String = scene.details.iter().map(|line| format!("{}\n", grade::plain(line))).collect();
+        let details: String = grade::difference(scene)
+            .iter()
+            .chain(&scene.details)
+            .map(|line| format!("{}\n", grade::plain(line)))
+            .collect();
         let text = format!(
             "{}: {}\n{details}\n--- standard output ---\n{}\n--- standard error ---\n{}\n",
             scene.verdict,

@@ -5,6 +5,7 @@ use crate::{
         console, exit,
         grading::{Suite, SuiteCheck, SuiteInit},
     },
+    judge::Rules,
     report::grade::points,
     suite::{config, library, plan},
 };
@@ -26,6 +27,15 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
     };
     console::print(text.as_bytes())?;
     Ok(exit::ACCEPTED)
+}
+
+/// What the choice of rule books means.
+const fn rules(rules: Rules) -> &'static str {
+    match rules {
+        Rules::Parity => "parity: the original's verdict counts, the fair rules are not asked",
+        Rules::Fair => "fair: the fair rules' verdict counts",
+        Rules::Both => "both: the original's verdict counts, reports say where the fair rules differ and why",
+    }
 }
 
 fn explain(plan: &plan::Plan) -> String {
@@ -52,6 +62,7 @@ fn explain(plan: &plan::Plan) -> String {
         limits.output >> 20,
         limits.trace >> 20,
     );
+    let _ = writeln!(text, "rules: {}", rules(plan.rules));
     for group in &plan.groups {
         let _ = writeln!(
             text,

@@ -1,10 +1,10 @@
 //! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
 use super::{one_line, points};
-use crate::suite::Grade;
+use crate::{judge::fair::Cause, suite::Grade};
 
 /// One row per scene.
 pub(super) fn scenes(grades: &[Grade]) -> String {
-    let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary";
+    let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,rules_differ";
     let rows = grades.iter().flat_map(|grade| {
         grade.groups.iter().flat_map(move |group| {
             group.scenes.iter().map(move |scene| {
@@ -20,6 +20,7 @@ pub(super) fn scenes(grades: &[Grade]) -> String {
                     format!("{:.3}", scene.cpu.as_secs_f64()),
                     format!("{:.3}", scene.wall.as_secs_f64()),
                     safe(&scene.summary),
+                    scene.differs.map_or("", Cause::key).to_owned(),
                 ]
             })
         })
@@ -27,11 +28,11 @@ pub(super) fn scenes(grades: &[Grade]) -> String {
     write(head.split(',').map(str::to_owned).collect(), rows)
 }
 
-/// One row per submission, with a column per group. Points are empty when the grader failed.
+/// One row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge differently. Points are empty when the grader failed.
 #[must_use]
 pub fn submissions(grades: &[Grade]) -> String {
     let mut head: Vec<String> =
-        ["submission", "verdict", "points", "max_points", "accepted_scenes", "scenes", "wall_seconds"]
+        ["submission", "verdict", "points", "max_points", "accepted_scenes", "scenes", "wall_seconds", "rules_differ"]
             .map(str::to_owned)
             .into();
     if let Some(first) = grades.first() {
@@ -46,6 +47,7 @@ pub fn submissions(grades: &[Grade]) -> String {
             grade.scenes().filter(|scene| scene.verdict.is_accepted()).count().to_string(),
             grade.scenes().count().to_string(),
             format!("{:.3}", grade.wall.as_secs_f64()),
+            grade.differing().to_string(),
         ];
         row.extend(grade.groups.iter().map(|group| points(group.points)));
         row

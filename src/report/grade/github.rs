@@ -1,5 +1,5 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
-use super::{one_line, points};
+use super::{difference, one_line, points};
 use crate::suite::{Grade, Verdict};
 use std::fmt::Write;
 
@@ -20,6 +20,11 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
             let _ = writeln!(text, "::{level} title={title}::{}", data(&scene.summary));
+        }
+        for scene in grade.scenes() {
+            let Some(words) = difference(scene) else { continue };
+            let title = property(&format!("{}: {}", grade.submission, scene.scene));
+            let _ = writeln!(text, "::warning title={title}::{}", data(&words));
         }
     }
     text
@@ -59,7 +64,10 @@ pub(super) fn summary(grades: &[Grade]) -> String {
         }
         let _ = writeln!(text, "| scene | verdict | points | what happened |\n|---|---|---:|---|");
         for scene in grade.scenes() {
-            let (name, words) = (cell(&scene.scene), cell(&scene.summary));
+            let name = cell(&scene.scene);
+            let words: Vec<String> =
+                std::iter::once(&scene.summary).chain(&difference(scene)).map(|words| cell(words)).collect();
+            let words = words.join("; ");
             let _ = writeln!(text, "| {name} | {} | {} | {words} |", scene.verdict, points(scene.points));
         }
         text.push('\n');

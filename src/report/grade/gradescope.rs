@@ -1,5 +1,5 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::{plain, points};
+use super::{difference, plain, points};
 use crate::suite::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
@@ -93,6 +93,7 @@ fn overall(grade: &Grade) -> String {
 
 fn output(scene: &SceneGrade) -> String {
     let mut lines = vec![format!("{}: {}", scene.verdict, plain(&scene.summary))];
+    lines.extend(difference(scene));
     lines.extend(scene.details.iter().map(|detail| plain(detail)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(format!("The program's error output:\n{}", plain(&scene.stderr)));

@@ -4,7 +4,7 @@ use crate::suite::{Grade, GroupGrade, SceneGrade};
 use serde::Serialize;
 
 /// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 #[derive(Serialize)]
 struct Document {
@@ -18,6 +18,8 @@ struct GradeView {
     submission: String,
     suite: String,
     rules: &'static str,
+    /// The book that gives verdicts and points.
+    official: &'static str,
     verdict: &'static str,
     code: &'static str,
     /// `null` when the grader failed: that is nobody's zero.
@@ -53,6 +55,7 @@ struct SceneView {
     verdict: &'static str,
     code: &'static str,
     summary: String,
+    difference: Option<DifferenceView>,
     details: Vec<String>,
     points: f64,
     max_points: f64,
@@ -64,6 +67,13 @@ struct SceneView {
     stdout: String,
     stderr: String,
     cached: bool,
+}
+
+/// Why the two rule books judge a scene differently.
+#[derive(Serialize)]
+struct DifferenceView {
+    key: &'static str,
+    text: String,
 }
 
 /// All grades in one document.
@@ -87,7 +97,8 @@ fn view(grade: &Grade) -> GradeView {
     GradeView {
         submission: plain(&grade.submission),
         suite: plain(&grade.suite),
-        rules: grade.rules,
+        rules: grade.rules.name(),
+        official: grade.rules.official().name(),
         verdict: grade.verdict.words(),
         code: grade.verdict.code(),
         points: grade.points,
@@ -121,6 +132,7 @@ fn scene(scene: &SceneGrade) -> SceneView {
         verdict: scene.verdict.words(),
         code: scene.verdict.code(),
         summary: plain(&scene.summary),
+        difference: scene.differs.map(|cause| DifferenceView { key: cause.key(), text: cause.to_string() }),
         details: scene.details.iter().map(|detail| plain(detail)).collect(),
         points: scene.points,
         max_points: scene.max_points,

@@ -1,5 +1,5 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
-use super::plain;
+use super::{difference, plain};
 use crate::suite::{Grade, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -13,6 +13,11 @@ pub(super) fn render(grades: &[Grade]) -> String {
                 suite.add_property(quick_junit::Property::new(format!("warning.{number}"), plain(warning)));
             }
             for scene in &group.scenes {
+                // A case of its own has no place for what is neither its result nor the program's output.
+                if let Some(words) = difference(scene) {
+                    let name = format!("rules_differ.{}", plain(&scene.scene));
+                    suite.add_property(quick_junit::Property::new(name, words));
+                }
                 suite.add_test_case(case(grade, scene));
             }
             report.add_test_suite(suite);

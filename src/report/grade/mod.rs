@@ -11,7 +11,7 @@ mod junit;
 mod prairielearn;
 mod text;
 
-use crate::suite::Grade;
+use crate::suite::{Grade, SceneGrade};
 
 /// The formats, in the order in which help lists them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,6 +96,19 @@ pub fn plain(text: &str) -> String {
         }
     }
     plain
+}
+
+/// The sentence about a scene that the two rule books judge differently.
+#[must_use]
+pub fn difference(scene: &SceneGrade) -> Option<String> {
+    scene.differs.map(|cause| {
+        let verdicts = if cause.original_fails() {
+            "the original fails it, the fair rules accept it"
+        } else {
+            "the original passes it, the fair rules reject it"
+        };
+        format!("the rule books differ: {verdicts}: {cause}")
+    })
 }
 
 /// [`plain`] on one line.

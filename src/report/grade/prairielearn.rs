@@ -1,5 +1,5 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
-use super::{one_line, plain};
+use super::{difference, one_line, plain};
 use crate::suite::{Grade, GroupGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
@@ -36,7 +36,7 @@ pub(super) fn render(grade: &Grade) -> String {
             points: scene.points,
             max_points: scene.max_points,
             message: cut(&scene.summary),
-            output: cut(&scene.details.join("\n")),
+            output: cut(&difference(scene).iter().chain(&scene.details).cloned().collect::<Vec<_>>().join("\n")),
         })
         .collect();
     let build = grade.build.as_ref().filter(|build| !build.succeeded);

@@ -1,4 +1,5 @@
 //! Grades for tests: one good, one bad in every way, with hostile words in it.
+use crate::judge::{Rules, fair::Cause};
 use crate::suite::{
     Build, Grade, GroupGrade, SceneGrade, Verdict,
     config::{Credit, Visibility},
@@ -11,6 +12,7 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneGrade {
         scene: name.to_owned(),
         verdict,
         summary: summary.to_owned(),
+        differs: None,
         details: Vec::new(),
         points: 0.0,
         max_points: 0.0,
@@ -34,7 +36,7 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
     Grade {
         submission: submission.to_owned(),
         suite: "Theme 2, Milestone 2".to_owned(),
-        rules: "parity",
+        rules: Rules::Both,
         verdict,
         points: (verdict != Verdict::JudgeError).then(|| groups.iter().map(|group| group.points).sum()),
         max_points: groups.iter().map(|group| group.max_points).sum(),
@@ -64,6 +66,7 @@ pub(crate) fn good() -> Grade {
 pub(crate) fn bad() -> Grade {
     let mut wrong =
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
+    wrong.differs = Some(Cause::AbsoluteCoefficients);
     wrong.details = vec!["first divergence: step 3: overlap polynomial of particles 0 and 1".to_owned()];
     let mut crash = scene("Detection/b", Verdict::RuntimeError, "the program ended by signal 11");
     crash.stderr =

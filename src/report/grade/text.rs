@@ -1,6 +1,9 @@
 //! Grades for people at a terminal: a table per submission, then what went wrong.
-use super::{one_line, plain, points};
-use crate::suite::{Grade, Verdict};
+use super::{difference, one_line, plain, points};
+use crate::{
+    judge::Rules,
+    suite::{Grade, Verdict},
+};
 use std::fmt::Write;
 
 /// Program output is shown up to so many lines.
@@ -24,7 +27,7 @@ fn submission(text: &mut String, grade: &Grade) {
         None => "no points: the grader failed, which is not the submission's fault".to_owned(),
     };
     let _ = writeln!(text, "{}: {}, {reached}", one_line(&grade.submission), grade.verdict);
-    let _ = writeln!(text, "suite {}, rules {}", one_line(&grade.suite), grade.rules);
+    let _ = writeln!(text, "suite {}, rules {}", one_line(&grade.suite), rules(grade));
     for warning in &grade.warnings {
         let _ = writeln!(text, "warning: {}", plain(warning));
     }
@@ -44,6 +47,9 @@ fn submission(text: &mut String, grade: &Grade) {
                 points(scene.points),
                 one_line(&scene.summary),
             );
+            if let Some(line) = difference(scene) {
+                let _ = writeln!(text, "      {line}");
+            }
             for detail in &scene.details {
                 let _ = writeln!(text, "      {}", one_line(detail));
             }
@@ -53,6 +59,17 @@ fn submission(text: &mut String, grade: &Grade) {
         }
     }
     text.push('\n');
+}
+
+/// The books, and which one counts.
+fn rules(grade: &Grade) -> String {
+    let (rules, differing) = (grade.rules, grade.differing());
+    match (rules, differing) {
+        (Rules::Both, 0) => "parity (the fair rules agree)".to_owned(),
+        (Rules::Both, 1) => "parity (the fair rules differ in 1 scene)".to_owned(),
+        (Rules::Both, many) => format!("parity (the fair rules differ in {many} scenes)"),
+        (Rules::Parity | Rules::Fair, _) => rules.name().to_owned(),
+    }
 }
 
 /// Lines of program output, marked so that they can't be taken for ours.

@@ -11,7 +11,7 @@ use super::{
     staging::{self, Staged, StagingError},
     verdict::Verdict,
 };
-use crate::sandbox::Backend;
+use crate::{judge::Rules, sandbox::Backend};
 use std::{
     path::{Path, PathBuf},
     sync::{
@@ -147,6 +147,7 @@ pub fn run(
                     backend,
                     run: &plan.run,
                     limits: &plan.limits,
+                    rules: effective_rules(plan, options),
                     hints: plan.hints,
                     fail_fast: options.fail_fast,
                     recorded: options.recorded,
@@ -234,7 +235,8 @@ pub fn run(
                             Some(Ok(staged)) => staged.build.clone(),
                             _ => None,
                         };
-                        let grade = assemble(plan, &submissions[submission], backend, scenes, build, wall);
+                        let rules = effective_rules(plan, options);
+                        let grade = assemble(plan, &submissions[submission], rules, backend, scenes, build, wall);
                         on_event(Event::Graded { submission, grade: &grade });
                         grades[submission] = Some(grade);
                     }
@@ -281,12 +283,17 @@ fn plan_words(plan: &Plan, options: BatchOptions, backend: &Backend) -> Vec<Stri
         backend.layers().iter().filter(|report| report.active).map(|report| report.layer.name()).collect();
     vec![
         walls.join(","),
-        "parity".to_owned(),
+        effective_rules(plan, options).name().to_owned(),
         plan.run.join("\u{1f}"),
         format!("{:?}", plan.limits),
         format!("{:?}", plan.hints),
         format!("fail_fast={} recorded={}", options.fail_fast, options.recorded),
     ]
+}
+
+/// Against recordings there is nothing but the original's rules: the fair ones follow the submission.
+const fn effective_rules(plan: &Plan, options: BatchOptions) -> Rules {
+    if options.recorded { Rules::Parity } else { plan.rules }
 }
 
 fn stage(
@@ -307,6 +314,7 @@ fn stage(
 fn assemble(
     plan: &Plan,
     submission: &Submission,
+    rules: Rules,
     backend: &Backend,
     scenes: Vec<SceneGrade>,
     build: Option<Build>,
@@ -323,7 +331,7 @@ fn assemble(
     Grade {
         submission: submission.name.clone(),
         suite: plan.name.clone(),
-        rules: "parity",
+        rules,
         verdict,
         points: (verdict != Verdict::JudgeError).then(|| groups.iter().map(|group| group.points).sum()),
         max_points: plan.max_points(),

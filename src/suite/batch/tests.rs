@@ -1,5 +1,6 @@
 use super::*;
 use crate::{
+    judge::fair::Cause,
     sandbox::{Ended, FakeRun, Job},
     sim::{RootSearch, Simulation},
     suite::plan,
@@ -38,6 +39,7 @@ fn act(job: &Job) -> FakeRun {
             trace[..8].copy_from_slice(&(x + 1.0).to_le_bytes());
             FakeRun::wrote(trace)
         }
+        Some("trailing") => FakeRun::wrote([&right_trace(job)[..], b"more"].concat()),
         Some("crash-after-right-trace") => FakeRun { ended: Ended::Signalled(11), ..FakeRun::wrote(right_trace(job)) },
         Some("exit-1-after-right-trace") => FakeRun { ended: Ended::Exited(1), ..FakeRun::wrote(right_trace(job)) },
         Some("nothing") => FakeRun::wrote([]),
@@ -167,4 +169,43 @@ fn a_changed_program_is_graded_anew() {
     assert!(grade(&submissions)[0].scenes().all(|scene| scene.cached));
     std::fs::write(&submissions[0].path, "another build").expect("changed");
     assert!(grade(&submissions)[0].scenes().all(|scene| !scene.cached));
+}
+
+#[test]
+fn the_official_book_gives_verdict_and_points_and_results_are_not_mixed_up() {
+    let stage = Stage::new();
+    let submissions = stage.submissions(&["trailing"]);
+    let results = tempfile::tempdir().expect("folder");
+    let grade = |rules: Rules, recorded: bool| {
+        let plan = Plan { rules, ..small_plan() };
+        let options = BatchOptions { jobs: 2, fail_fast: false, recorded };
+        let mut journal = Journal::open(results.path(), false).expect("journal");
+        let never = Cancellation::default();
+        run(&plan, &submissions, &stage.backend, Some(&mut journal), options, &never, &mut |_| {}).grades.remove(0)
+    };
+    let both = grade(Rules::Both, false);
+    assert_eq!((both.verdict, both.points), (Verdict::Accepted, Some(15.0)));
+    assert!(both.scenes().all(|scene| scene.differs == Some(Cause::TrailingBytes)), "{both:?}");
+    let fair = grade(Rules::Fair, false);
+    assert_eq!((fair.verdict, fair.points), (Verdict::BadTrace, Some(0.0)));
+    assert!(fair.scenes().all(|scene| !scene.cached && scene.summary == "bytes follow the trace's last record"));
+    let parity = grade(Rules::Parity, false);
+    assert_eq!((parity.verdict, parity.differing()), (Verdict::Accepted, 0));
+    // What was kept says the same, and recordings know parity only.
+    let again = grade(Rules::Both, false);
+    assert!(again.scenes().all(|scene| scene.cached && scene.differs == Some(Cause::TrailingBytes)));
+    assert_eq!(grade(Rules::Both, true).rules, Rules::Parity);
+}
+
+#[test]
+fn a_wrong_first_record_costs_by_the_fair_rules_what_follows_from_it() {
+    let stage = Stage::new();
+    let submissions = stage.submissions(&["wrong"]);
+    let plan = Plan { rules: Rules::Fair, ..small_plan() };
+    let options = BatchOptions { jobs: 2, fail_fast: false, recorded: false };
+    let grade =
+        run(&plan, &submissions, &stage.backend, None, options, &Cancellation::default(), &mut |_| {}).grades.remove(0);
+    let scene = grade.scenes().next().expect("a scene");
+    assert_eq!((grade.verdict, scene.right_steps), (Verdict::WrongAnswer, scene.steps - 1));
+    assert!(scene.details[0].starts_with("first divergence: step 0: particle 0"), "{scene:?}");
 }
