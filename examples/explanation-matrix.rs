@@ -114,7 +114,7 @@ fn explain((_, scene, correct): &(String, Scene, Vec<u8>), row: &student::Row) -
             let options = parity::Options { threads: 1, ..parity::Options::default() };
             match parity::judge(scene, &trace[..], &options, &mut ()).wrong_steps {
                 0 => Outcome::Unseen,
-                steps => Outcome::Nothing(steps.into()),
+                steps => Outcome::Nothing(steps),
             }
         }
         Some(explanation) if explanation.key == row.id => Outcome::First,

@@ -96,22 +96,38 @@ pub struct Row {
 
 /// The program's author: makes one mistake, or none.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Student(Option<Mistake>);
+pub struct Student {
+    mistake: Option<Mistake>,
+    right_approach: bool,
+}
 
 impl Student {
     /// A student who makes this mistake.
     pub fn new(mistake: Option<Mistake>) -> Self {
-        Self(mistake)
+        Self { mistake, right_approach: false }
     }
 
     /// Whether the student makes this mistake.
     pub fn makes(self, mistake: Mistake) -> bool {
-        self.0 == Some(mistake)
+        self.mistake == Some(mistake)
     }
 
     /// The mistake, where many are told apart in one place.
     pub fn mistake(self) -> Option<Mistake> {
-        self.0
+        self.mistake
+    }
+
+    /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too, and
+    /// independent of the mistake.
+    #[must_use]
+    pub fn with_right_approach(self) -> Self {
+        Self { right_approach: true, ..self }
+    }
+
+    /// Whether the particle-edge approach is mathematically right, not the supplied one.
+    #[must_use]
+    pub fn approach_is_right(self) -> bool {
+        self.right_approach || self.makes(Mistake::QuinticRightRearranged)
     }
 }
 

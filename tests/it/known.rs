@@ -89,3 +89,29 @@ fn no_correct_variant_is_accused() {
         .collect();
     assert!(accused.is_empty(), "{accused:#?}");
 }
+
+/// A right particle-edge approach differs from the supplied one in every step, and is accepted.
+#[test]
+fn a_right_approach_hides_no_mistake() {
+    let all = scenes();
+    let (_, scene, _) = all.iter().find(|(name, ..)| name.ends_with("spinning-edge-sweeps-balls")).expect("the scene");
+    let trace = |mistake| {
+        let student = Student::new(mistake).with_right_approach();
+        student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
+    };
+    let correct = trace(None);
+    assert_eq!(known(scene, &correct[..]), []);
+    let rows = CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong && !row.id.starts_with("pe-approach"));
+    let (mut seen, mut named) = (0, 0);
+    for row in rows {
+        let trace = trace(Some(row.mistake));
+        if trace != correct {
+            seen += 1;
+            let first = known(scene, &trace[..]).into_iter().next();
+            named += usize::from(
+                first.is_some_and(|first| first.key == row.id || first.same_as.contains(&row.id.to_owned())),
+            );
+        }
+    }
+    assert!(seen > 80 && named * 20 >= seen * 19, "{named} of {seen} mistakes are named");
+}

@@ -18,6 +18,26 @@ const WORK: u64 = 1_500_000;
 /// What a step costs besides its polynomials, in polynomials.
 const STEP_WORK: u64 = 10;
 
+/// What a submission does right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Correct {
+    /// It uses the particle-edge approach that the course supplies.
+    Supplied,
+    /// It has put that right.
+    RightApproach,
+}
+
+impl Correct {
+    /// Such a program with a mistake.
+    pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
+        let student = Student::new(mistake);
+        match self {
+            Self::Supplied => student,
+            Self::RightApproach => student.with_right_approach(),
+        }
+    }
+}
+
 /// A row, and how many of the wrong steps it reproduces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Score {
@@ -44,12 +64,14 @@ pub(super) struct Candidates<'a> {
 
 impl<'a> Candidates<'a> {
     /// Sets the programs up.
-    pub(super) fn new(scene: &Scene, scan: &'a Scan) -> Self {
+    ///
+    /// `correct` is the program that the mistakes are added to.
+    pub(super) fn new(scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
         let candidates = CATALOGUE
             .iter()
             .filter(|row| row.kind != Kind::Hostile)
             .filter(|row| !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid))
-            .map(|row| Candidate { row, world: World::new(scene.clone(), Student::new(Some(row.mistake))) })
+            .map(|row| Candidate { row, world: World::new(scene.clone(), correct.with(Some(row.mistake))) })
             .collect();
         let mut signatures = BTreeSet::new();
         let (mut probes, mut others) = (Vec::new(), Vec::new());

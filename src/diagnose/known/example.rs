@@ -1,21 +1,30 @@
 //! The first place at which a wrong step differs from the reference.
-use super::{capture::Capture, compare::Difference, scan::Sample};
+use super::{
+    candidates::{Correct, resimulate},
+    capture::Capture,
+    compare::Difference,
+    scan::Sample,
+};
 use crate::{
     diagnose::Example,
     num::vector::at,
     scene::Scene,
     sim::{Pair, PairKind, RootSearch, Simulation, State},
-    trace::Layout,
+    student::{StepLog, World},
 };
 
 /// The example of a wrong step: where it differs first, what was expected there and what the submission logged.
-pub(super) fn example(scene: &Scene, layout: Layout, sample: &Sample) -> Example {
+pub(super) fn example(scene: &Scene, correct: Correct, sample: &Sample) -> Example {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut capture = Capture::new(&scene.collision);
     simulation.state_mut().clone_from(&sample.before);
     simulation.set_steps_done(sample.step - 1);
     // The step was simulated before, so it does not fail; if it did, the lists below would be empty.
     let _outcome = simulation.step(&mut capture);
+    if correct == Correct::RightApproach {
+        let world = World::new(scene.clone(), correct.with(None));
+        capture.records = resimulate(&world, &sample.before, StepLog::default()).unwrap_or_default();
+    }
     let (ours, theirs) = (&capture.records, &sample.records);
     let (place, expected, actual) = match sample.difference {
         Some(Difference::Polynomial(index)) => {
@@ -38,10 +47,7 @@ pub(super) fn example(scene: &Scene, layout: Layout, sample: &Sample) -> Example
             (same_number.to_owned(), count(ours), count(theirs))
         }
         Some(Difference::MidState(particle)) => match (&ours.mid, &theirs.mid) {
-            (Some(ours), Some(theirs)) => {
-                let when = if layout.polynomials { "mid record" } else { "step" };
-                state(particle, when, &ours.state, &theirs.state)
-            }
+            (Some(ours), Some(theirs)) => state(particle, "mid record", &ours.state, &theirs.state),
             _ => (format!("particle {particle}, mid record"), Vec::new(), Vec::new()),
         },
         Some(Difference::EndState(particle)) => state(particle, "end record", &ours.end.state, &theirs.end.state),

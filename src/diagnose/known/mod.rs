@@ -20,9 +20,9 @@ use super::Explanation;
 use crate::{
     scene::Scene,
     student::{Kind, Mistake, Row},
-    trace::Layout,
 };
-use candidates::{Candidates, Score};
+use candidates::{Candidates, Correct, Score};
+use scan::Scan;
 use std::io::Read;
 
 /// Searches the catalogue for the mistake that explains this trace.
@@ -43,17 +43,39 @@ pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
     if scan.wrong.is_empty() {
         return Vec::new();
     }
-    let mut scores = Candidates::new(scene, &scan).best();
-    scores.sort_by_key(|score| plausibility(score.row));
-    let Some(best) = scores.first() else { return Vec::new() };
-    if scores.iter().any(|score| score.row.kind == Kind::Variant) {
-        return Vec::new();
+    let supplied = best(scene, &scan, Correct::Supplied);
+    if supplied.complete {
+        return supplied.explanation.into_iter().collect();
     }
-    let first = &scan.wrong[0];
+    // The fair rules accept the right approach as well as the supplied one; behind it may be a mistake of another kind.
+    let right =
+        scan.with_right_approach(scene).map(|scan| best(scene, &scan, Correct::RightApproach)).unwrap_or_default();
+    let explanation = if right.complete { right.explanation } else { supplied.explanation.or(right.explanation) };
+    explanation.into_iter().collect()
+}
+
+/// What the catalogue says about a trace.
+#[derive(Debug, Default)]
+struct Found {
+    /// The mistake; `None` when no row reproduces the steps, or a correct variant does.
+    explanation: Option<Explanation>,
+    /// Whether a row reproduces all steps.
+    complete: bool,
+}
+
+/// Tries the catalogue on the kept steps.
+fn best(scene: &Scene, scan: &Scan, correct: Correct) -> Found {
+    let mut scores = Candidates::new(scene, scan, correct).best();
+    scores.sort_by_key(|score| plausibility(score.row));
+    let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return Found::default() };
+    let complete = best.reproduced == best.samples;
+    if scores.iter().any(|score| score.row.kind == Kind::Variant) {
+        return Found { explanation: None, complete };
+    }
     let mut explanation = explain(best.row, (best.reproduced, best.samples));
-    explanation.example = Some(example::example(scene, Layout::of(scene), first));
+    explanation.example = Some(example::example(scene, correct, first));
     explanation.same_as = scores[1..].iter().map(|score: &Score| score.row.id.to_owned()).collect();
-    vec![explanation]
+    Found { explanation: Some(explanation), complete }
 }
 
 /// Smaller is likelier, among mistakes that a trace can't tell apart: work that was not done at all comes first, and

@@ -1,11 +1,13 @@
 //! Reads a trace once, finds its wrong steps, and keeps some of them, as diverse as possible.
 use super::{
+    candidates::{Correct, resimulate},
     capture::{Capture, kind_number},
     compare::{Difference, Logged, ROUND_OFF, SINGLE_PRECISION, StepRecords, first_difference, same_polynomial},
 };
 use crate::{
     scene::Scene,
     sim::{RootSearch, Simulation, State},
+    student::{StepLog, World},
     trace::{Cause, Layout, Lenient, LenientFrame},
 };
 use std::{collections::BTreeMap, io::Read};
@@ -66,6 +68,32 @@ pub(super) struct Scan {
     /// How many records the trace has, when its end was reached.
     pub(super) records: Option<u64>,
 }
+
+impl Scan {
+    /// The same steps as seen by a program whose particle-edge approach is mathematically right: many that were wrong are
+    /// right then. `None` when all are, or when the scene has no edge.
+    pub(super) fn with_right_approach(self, scene: &Scene) -> Option<Self> {
+        if scene.edges.is_empty() {
+            return None;
+        }
+        let world = World::new(scene.clone(), Correct::RightApproach.with(None));
+        let (mut wrong, mut right) = (Vec::new(), Vec::new());
+        for mut sample in self.wrong.into_iter().chain(self.right) {
+            let logged = sample.records.end.polynomials.len();
+            // A few more than were logged show that there are too few; no more are of interest.
+            let guard = |index: usize, _: &[f64]| index < 2 * logged + SPARE;
+            let expected = resimulate(&world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
+            let Some(expected) = expected else { continue };
+            sample.difference = first_difference(&expected, &sample.records, &ROUND_OFF);
+            if sample.difference.is_some() { wrong.push(sample) } else { right.push(sample) }
+        }
+        right.truncate(MOST_RIGHT);
+        (!wrong.is_empty()).then_some(Self { wrong, right, ..Self::default() })
+    }
+}
+
+/// How many polynomials more than were logged a step may have before it is left.
+const SPARE: usize = 10_000;
 
 /// Reads the trace and re-simulates its steps without a mistake.
 pub(super) fn scan(scene: &Scene, trace: impl Read) -> Scan {

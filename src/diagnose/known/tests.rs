@@ -61,6 +61,22 @@ fn correct_variants_are_never_accused() {
     }
 }
 
+/// The right approach is accepted; the mistake behind it is found all the same.
+#[test]
+fn a_right_approach_hides_no_mistake() {
+    for id in ["decision-never", "pe-square-no-eh", "response-sign", "pp-no-two"] {
+        let student = Student::new(find(id).map(|row| row.mistake)).with_right_approach();
+        let trace = student::trace(&scene(), student).expect("a trace");
+        let explanations = known(&scene(), &trace[..]);
+        let [explanation] = &explanations[..] else { panic!("{id} is not explained") };
+        assert!(explanation.key == id || explanation.same_as.iter().any(|other| other == id), "{id}: {explanation:?}");
+        let example = explanation.example.as_ref().expect("an example");
+        assert!(!example.place.ends_with("polynomial 4"), "the approach is right: {example:?}");
+    }
+    let trace = student::trace(&scene(), Student::default().with_right_approach()).expect("a trace");
+    assert_eq!(known(&scene(), &trace[..]), []);
+}
+
 #[test]
 fn an_example_names_the_first_wrong_step() {
     let row = find("pp-no-two").expect("a row");

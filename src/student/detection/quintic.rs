@@ -21,7 +21,7 @@ pub fn approach(student: Student, bodies: &[Body; 3]) -> Vec<f64> {
     }
 }
 
-/// The course's formula, term by term and in its order, its wrong cubic coefficient included.
+/// The course's formula, term by term and in its order, its wrong cubic coefficient included unless that was put right.
 fn supplied(student: Student, [one, two, three]: &[Body; 3]) -> Vec<f64> {
     let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
     let d12 = one.displacement - two.displacement;
@@ -43,10 +43,7 @@ fn supplied(student: Student, [one, two, three]: &[Body; 3]) -> Vec<f64> {
     let n = c * g + 2.0 * b * h;
     let o = c * h;
     let (p, q) = (b, c);
-    let cubic_slip = match student.mistake() {
-        Some(Mistake::QuinticRightRearranged) => 2.0 * f * h * q,
-        _ => 2.0 * f * g * q,
-    };
+    let cubic_slip = if student.approach_is_right() { 2.0 * f * h * q } else { 2.0 * f * g * q };
     vec![
         -h * h * q - c * c * d - 2.0 * o * j,
         -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,
