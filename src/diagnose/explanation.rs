@@ -19,6 +19,14 @@ pub struct Explanation {
     pub same_as: Vec<String>,
 }
 
+impl Explanation {
+    /// Whether it reproduces everything that was looked at.
+    #[must_use]
+    pub const fn is_complete(&self) -> bool {
+        self.reproduced == self.samples && self.samples > 0
+    }
+}
+
 /// A small instance of the mistake.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Example {

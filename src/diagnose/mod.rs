@@ -5,9 +5,12 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod explain;
 mod explanation;
 mod known;
 pub mod polynomial;
+mod samples;
 
+pub use explain::{common, explain};
 pub use explanation::{Example, ExampleValue, Explanation};
 pub use known::known;

@@ -1,0 +1,101 @@
+//! Puts the explanations of a trace together.
+use super::{Explanation, known, polynomial, samples};
+use crate::{
+    scene::Scene,
+    student::{Area, find},
+};
+use std::collections::BTreeMap;
+
+/// What is likely wrong with the program that left this trace, the likeliest first; empty when nothing is, or when
+/// nothing that is known explains it.
+///
+/// A known mistake that reproduces all wrong steps comes first, with what is found out about the polynomials that it gets
+/// wrong. Else explanations of polynomials come first that reproduce all their samples, then what reproduces a part.
+/// Whether the trace is right is for the judge to say: this is asked about traces that the fair rules reject. Traces of
+/// any content are accepted; what follows the first 64 MiB is passed over.
+#[must_use]
+pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
+    let mut known = known(scene, trace);
+    let mut polynomials = polynomial::explain(&samples::samples(scene, trace));
+    for explanation in &mut known {
+        let is_formula = find(&explanation.key).is_some_and(|row| is_formula(row.area));
+        if is_formula && explanation.is_complete() {
+            // The same mistake in other words, with its terms and an example of its own.
+            for own in std::mem::take(&mut polynomials) {
+                if own.key == "unexplained" || !own.is_complete() {
+                    continue;
+                }
+                explanation.details.extend(own.details);
+                if let Some(example) = own.example {
+                    explanation.example = Some(example);
+                }
+            }
+        }
+    }
+    let mut all = known;
+    all.append(&mut polynomials);
+    // A stable sort: among equals the known mistake stays first.
+    all.sort_by_key(|explanation| (explanation.key == "unexplained", !explanation.is_complete()));
+    all
+}
+
+/// Whether mistakes of this part of the assignment are mistakes of polynomials.
+const fn is_formula(area: Area) -> bool {
+    matches!(area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane | Area::Handover)
+}
+
+/// The likeliest mistake of a program that left several traces: the known one that explains most of them, whether it was
+/// told first or as not to be told apart. Ties go to the one that was told first more often, then to the one that was told
+/// earlier. `None` when no trace has an explanation.
+///
+/// A scene alone often can't tell mistakes apart; several together nearly always can.
+#[must_use]
+pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option<Explanation> {
+    let mut votes: BTreeMap<&str, Vote> = BTreeMap::new();
+    for (number, explanations) in traces.into_iter().enumerate() {
+        for (place, explanation) in explanations.iter().enumerate() {
+            let keys = std::iter::once(&explanation.key).chain(&explanation.same_as);
+            for (rank, key) in keys.enumerate() {
+                let vote = votes.entry(key).or_insert(Vote { order: (number, place, rank), ..Vote::default() });
+                if vote.last == Some(number) {
+                    continue;
+                }
+                vote.last = Some(number);
+                vote.traces += 1;
+                vote.complete += usize::from(explanation.is_complete());
+                vote.first += usize::from(rank == 0 && place == 0);
+                if rank == 0 && vote.told.is_none() {
+                    vote.told = Some(explanation);
+                }
+                vote.shared = vote.shared.or(Some(explanation));
+            }
+        }
+    }
+    let (key, vote) = votes.into_iter().filter(|(key, _)| *key != "unexplained").max_by(|(_, a), (_, b)| {
+        (a.complete, a.traces, a.first).cmp(&(b.complete, b.traces, b.first)).then(b.order.cmp(&a.order))
+    })?;
+    if let Some(told) = vote.told {
+        return Some(told.clone());
+    }
+    let row = find(key)?;
+    let shared = vote.shared?;
+    let others = std::iter::once(&shared.key).chain(&shared.same_as).filter(|other| *other != key);
+    Some(Explanation {
+        key: key.to_owned(),
+        what: row.explanation.to_owned(),
+        same_as: others.cloned().collect(),
+        ..shared.clone()
+    })
+}
+
+/// What speaks for a key.
+#[derive(Default)]
+struct Vote<'a> {
+    traces: usize,
+    complete: usize,
+    first: usize,
+    order: (usize, usize, usize),
+    last: Option<usize>,
+    told: Option<&'a Explanation>,
+    shared: Option<&'a Explanation>,
+}
