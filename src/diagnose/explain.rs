@@ -71,21 +71,25 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
             }
         }
     }
-    let (key, vote) = votes.into_iter().filter(|(key, _)| *key != "unexplained").max_by(|(_, a), (_, b)| {
-        (a.complete, a.traces, a.first).cmp(&(b.complete, b.traces, b.first)).then(b.order.cmp(&a.order))
-    })?;
-    if let Some(told) = vote.told {
-        return Some(told.clone());
-    }
-    let row = find(key)?;
+    votes.remove("unexplained");
+    let weight = |vote: &Vote<'_>| (vote.complete, vote.traces);
+    let (key, vote) = votes
+        .iter()
+        .max_by(|(_, a), (_, b)| weight(a).cmp(&weight(b)).then(a.first.cmp(&b.first)).then(b.order.cmp(&a.order)))?;
+    // What explains as many traces as well can't be told apart.
+    let others =
+        votes.iter().filter(|(other, rival)| *other != key && find(other).is_some() && weight(rival) == weight(vote));
+    let same_as = others.map(|(other, _)| (*other).to_owned()).collect();
     let shared = vote.shared?;
-    let others = std::iter::once(&shared.key).chain(&shared.same_as).filter(|other| *other != key);
-    Some(Explanation {
-        key: key.to_owned(),
-        what: row.explanation.to_owned(),
-        same_as: others.cloned().collect(),
-        ..shared.clone()
-    })
+    match vote.told {
+        Some(told) => Some(Explanation { same_as, ..told.clone() }),
+        None => Some(Explanation {
+            key: (*key).to_owned(),
+            what: find(key)?.explanation.to_owned(),
+            same_as,
+            ..shared.clone()
+        }),
+    }
 }
 
 /// What speaks for a key.

@@ -26,7 +26,7 @@ const FIRST: [&str; 9] = [
 ];
 
 /// All built-in scenes by name; those of [`FIRST`] first.
-fn assets() -> Vec<(String, Scene)> {
+pub fn assets() -> Vec<(String, Scene)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
         .unwrap()
@@ -48,7 +48,7 @@ fn assets() -> Vec<(String, Scene)> {
     scenes
 }
 
-fn rows(kind: student::Kind) -> Vec<&'static Row> {
+pub fn rows(kind: student::Kind) -> Vec<&'static Row> {
     CATALOGUE.iter().filter(|row| row.kind == kind).collect()
 }
 
@@ -57,7 +57,7 @@ fn judged(scene: &Scene, trace: &[u8], threads: usize) -> (Overall, Judgement) {
     (outcome.overall, *outcome.fair.expect("the fair rules were asked"))
 }
 
-fn simulated(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
+pub fn simulated(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
     student::trace(scene, Student::new(row.map(|row| row.mistake))).ok()
 }
 

@@ -4,6 +4,7 @@ mod attacks;
 mod check;
 mod corpus;
 mod drop_in;
+mod explain;
 mod fair;
 mod fuzz_replay;
 mod grading;
