@@ -11,7 +11,7 @@ use std::{
 
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
-    diagnose::known,
+    diagnose::{Explanation, common, known},
     judge::parity,
     scene::{Scene, original},
     student::{self, CATALOGUE, Kind, Student},
@@ -39,7 +39,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let part = std::env::args().nth(2).unwrap_or_default();
     let scenes = scenes(&folder)?;
     let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.kind != Kind::Hostile && row.id.contains(&part)).collect();
-    let results: Vec<Vec<(Outcome, Duration)>> =
+    let results: Vec<Vec<(Outcome, Duration, Vec<Explanation>)>> =
         rows.par_iter().map(|row| scenes.iter().map(|case| explain(case, row)).collect()).collect();
     let mut accused = false;
     let (mut wrong, mut best_first, mut best_among, mut unseen) = (0, 0, 0, 0_usize);
@@ -48,7 +48,7 @@ fn main() -> anyhow::Result<ExitCode> {
         let is_wrong = row.kind == Kind::Wrong;
         let mut confusions = Vec::new();
         let (mut is_first, mut is_among) = (false, false);
-        for ((name, ..), (outcome, _)) in scenes.iter().zip(outcomes) {
+        for ((name, ..), (outcome, ..)) in scenes.iter().zip(outcomes) {
             match outcome {
                 Outcome::Same => continue,
                 Outcome::First => {
@@ -87,7 +87,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let (slowest, row, scene) = rows
         .iter()
         .zip(&results)
-        .flat_map(|(row, outcomes)| outcomes.iter().zip(&scenes).map(|((_, time), case)| (*time, row.id, &case.0)))
+        .flat_map(|(row, outcomes)| outcomes.iter().zip(&scenes).map(|((_, time, _), case)| (*time, row.id, &case.0)))
         .max()
         .context("no traces")?;
     println!(
@@ -97,19 +97,42 @@ fn main() -> anyhow::Result<ExitCode> {
         "traces that differ: {traces}; first: {first}; same as the first: {among}; other: {other}; nothing: {nothing}; round-off only: {unseen}"
     );
     println!("slowest: {row} on {scene}, {slowest:.2?}");
+    together(&rows, &results);
     println!("{}", if accused { "a correct variant is accused" } else { "no correct variant is accused" });
     Ok(ExitCode::from(u8::from(accused)))
 }
 
-fn explain((_, scene, correct): &(String, Scene, Vec<u8>), row: &student::Row) -> (Outcome, Duration) {
+/// What all traces of a mistake say together.
+fn together(rows: &[&student::Row], results: &[Vec<(Outcome, Duration, Vec<Explanation>)>]) {
+    let mut confused = Vec::new();
+    let wrong = rows.iter().zip(results).filter(|(row, _)| row.kind == Kind::Wrong);
+    for (row, outcomes) in wrong.clone() {
+        match common(outcomes.iter().map(|(.., explanations)| explanations.as_slice())) {
+            Some(first) if first.key == row.id => {}
+            Some(first) if first.same_as.iter().any(|id| id == row.id) => {
+                confused.push(format!("    {}: can't be told from {}", row.id, first.key));
+            }
+            Some(first) => confused.push(format!("    {}: TAKEN FOR {}", row.id, first.key)),
+            None => confused.push(format!("    {}: nothing", row.id)),
+        }
+    }
+    let all = wrong.count();
+    println!("\nfrom all scenes together: {} of {all} named first; the others:", all - confused.len());
+    confused.iter().for_each(|line| println!("{line}"));
+}
+
+fn explain(
+    (_, scene, correct): &(String, Scene, Vec<u8>),
+    row: &student::Row,
+) -> (Outcome, Duration, Vec<Explanation>) {
     let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
     if trace == *correct {
-        return (Outcome::Same, Duration::ZERO);
+        return (Outcome::Same, Duration::ZERO, Vec::new());
     }
     let begin = Instant::now();
     let explanations = known(scene, &trace[..]);
     let time = begin.elapsed();
-    let outcome = match explanations.into_iter().next() {
+    let outcome = match explanations.first().cloned() {
         None => {
             let options = parity::Options { threads: 1, ..parity::Options::default() };
             match parity::judge(scene, &trace[..], &options, &mut ()).wrong_steps {
@@ -124,7 +147,7 @@ fn explain((_, scene, correct): &(String, Scene, Vec<u8>), row: &student::Row) -
             Outcome::Other(format!("{} ({reproduced} of {samples} steps)", explanation.key))
         }
     };
-    (outcome, time)
+    (outcome, time, explanations)
 }
 
 /// The scenes of a folder of groups, with their correct traces.
