@@ -94,12 +94,19 @@ pub(super) struct Simulate {
 #[command(after_help = "\
 Example:
   fosssim-oracle check scenes/test00.xml submission.bin
-  fosssim-oracle check scenes/test00.xml submission.bin --format json --output report.json")]
+  fosssim-oracle check scenes/test00.xml submission.bin --format json --output report.json
+  fosssim-oracle check --self scenes/*.xml")]
 pub(super) struct Check {
     /// The scene, a file or asset:Group/name.
-    pub(super) scene: PathBuf,
+    #[arg(required_unless_present = "own")]
+    pub(super) scene: Option<PathBuf>,
     /// The trace, a file, - for standard input, or asset:Group/name.
-    pub(super) trace: PathBuf,
+    #[arg(required_unless_present = "own")]
+    pub(super) trace: Option<PathBuf>,
+    /// Instead of a trace, judge the reference's own ones by the original's rules, at growing scale: says which scenes
+    /// these rules can't grade fairly. Without scenes, those of the suite t2m2.
+    #[arg(long = "self", value_name = "SCENE", num_args = 0.., conflicts_with_all = ["scene", "audit", "rules"])]
+    pub(super) own: Option<Vec<PathBuf>>,
     /// The rule books.
     #[arg(long, value_enum, default_value_t = Rules::Both)]
     pub(super) rules: Rules,

@@ -82,7 +82,7 @@ pub(super) struct SuiteInit {
     pub(super) name: Option<String>,
 }
 
-/// Finds the faults of a suite, and says what it would grade.
+/// Finds the faults of a suite, says what it would grade, and which decisions of its scenes hang on round-off.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

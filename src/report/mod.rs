@@ -7,6 +7,7 @@
 pub mod check;
 pub mod describe;
 pub mod grade;
+pub mod headroom;
 pub mod number;
 pub mod original;
 pub mod problems;

@@ -18,6 +18,7 @@ mod problem;
 mod reader;
 #[cfg(test)]
 mod reader_tests;
+mod scale;
 mod tag;
 mod write;
 mod xml;

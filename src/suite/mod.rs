@@ -8,6 +8,7 @@ mod conclude;
 pub mod config;
 mod execute;
 mod grade;
+pub mod headroom;
 pub mod journal;
 pub mod library;
 pub mod plan;

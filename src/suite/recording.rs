@@ -110,7 +110,7 @@ pub fn diff(name: &str, recorded: &str, now: &str) -> String {
 }
 
 /// The trace of a scene.
-fn trace(scene: &Scene) -> Result<Vec<u8>, RecordingError> {
+pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, RecordingError> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
     for _ in 0..scene.steps() {

@@ -1,5 +1,5 @@
 //! The two rule books side by side, as users meet them: what each says about correct variants and about garbage.
-use super::workspace::{Run, Workspace};
+use super::workspace::{BOUNCE, DRIFT, Run, Workspace};
 use fosssim_oracle::suite::library;
 use serde_json::Value;
 use std::path::Path;
@@ -67,6 +67,63 @@ fn garbage_that_the_original_passes_is_rejected_and_the_rule_is_named() {
         let (run, json) = report(&workspace, "fair");
         assert_eq!((run.code, &json["verdict"]), (Some(1), &verdict.into()), "{mistake}");
     }
+}
+
+/// Two balls whose coefficients are large by what the original's bounds are made for.
+const LARGE: &str = r#"<scene>
+  <duration time="0.5"/>
+  <integrator type="explicit-euler" dt="0.1"/>
+  <collision type="continuous-time"/>
+  <particle m="1" px="5300.7" py="2900.3" vx="-6900.1" vy="-3700.9" fixed="0" radius="0.1"/>
+  <particle m="1" px="0.37" py="0.71" vx="-0.3" vy="0.7" fixed="0" radius="0.2"/>
+</scene>
+"#;
+
+#[test]
+fn scenes_that_the_original_can_not_grade_fairly_are_named() {
+    let workspace = Workspace::new();
+    workspace.write("large.xml", LARGE);
+    workspace.write("bounce.xml", BOUNCE);
+    workspace.write("drift.xml", DRIFT);
+    let run = workspace.run(["check", "--self", "large.xml", "bounce.xml", "drift.xml"]);
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    insta::assert_snapshot!("headroom", run.shown());
+    let json = workspace.run(["check", "--format", "json", "--self", "bounce.xml", "large.xml"]);
+    let value: Value = serde_json::from_slice(&json.stdout).unwrap_or_else(|_| panic!("{}", json.shown()));
+    let schema: Value = serde_json::from_str(include_str!("../../schemas/headroom.schema.json")).unwrap();
+    if let Err(error) = jsonschema::validate(&schema, &value) {
+        panic!("{error}\n{value:#}");
+    }
+    assert_eq!((&value["scenes"][0]["fair"], &value["scenes"][1]["fair"]), (&true.into(), &false.into()));
+    let run = workspace.run(["check", "--self", "drift.xml"]);
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    let run = workspace.run(["check", "large.xml"]);
+    assert_eq!(run.code, Some(2), "{}", run.shown());
+}
+
+#[test]
+fn a_suite_whose_scenes_hang_on_round_off_is_told_so() {
+    let workspace = Workspace::new();
+    // At the end of the first step the ball touches the half-plane, but for a rounding.
+    let ball = |vx, vy| {
+        format!(
+            "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.5\"/>\
+             <collision type=\"continuous-time\" COR=\"1\"/><particle m=\"1\" px=\"0.6\" py=\"0.8\" vx=\"{vx}\" \
+             vy=\"{vy}\" fixed=\"0\" radius=\"0.1\"/><halfplane px=\"0\" py=\"0\" nx=\"0.3\" ny=\"0.4\"/></scene>"
+        )
+    };
+    workspace.write("touch.xml", ball("-1.08", "-1.44"));
+    workspace.write("clear.xml", ball("-0.3", "-0.4"));
+    let suite = |scenes: &str| {
+        let text = format!("schema = 1\nname = \"test\"\n[[group]]\nname = \"a\"\nscenes = [{scenes}]\n");
+        workspace.write("suite.toml", text);
+        workspace.run(["suite", "check", "suite.toml"])
+    };
+    let noted = suite("\"touch.xml\", \"clear.xml\"");
+    assert_eq!(noted.code, Some(0), "{}", noted.shown());
+    insta::assert_snapshot!("suite_check", noted.shown());
+    let clear = suite("\"clear.xml\"");
+    assert!(!clear.out().contains("note:"), "{}", clear.shown());
 }
 
 #[test]

@@ -1,4 +1,5 @@
 //! `check`: grades a trace.
+use super::headroom;
 use crate::{
     cli::{
         arguments::{Check, Format},
@@ -12,8 +13,13 @@ use crate::{
 use anyhow::{Result, bail};
 
 pub(super) fn run(arguments: &Check) -> Result<u8> {
-    let scene = input::scene(&arguments.scene)?;
-    let mut trace = input::trace(&arguments.trace)?;
+    if let Some(scenes) = &arguments.own {
+        return headroom::run(scenes, arguments);
+    }
+    // The parser has seen to it that both are there.
+    let (Some(scene), Some(trace)) = (&arguments.scene, &arguments.trace) else { bail!("name a scene and a trace") };
+    let scene = input::scene(scene)?;
+    let mut trace = input::trace(trace)?;
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;

@@ -3,6 +3,7 @@
 mod check;
 mod display;
 mod grade;
+mod headroom;
 mod host;
 mod record;
 mod shell;

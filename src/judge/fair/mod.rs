@@ -19,6 +19,7 @@
 //! [`FAIR_UNITS`]: crate::num::tolerances::FAIR_UNITS
 //! [`FAIR_SENSITIVITY`]: crate::num::tolerances::FAIR_SENSITIVITY
 
+mod borderline;
 mod cause;
 pub(crate) mod compare;
 mod contact;
@@ -28,6 +29,7 @@ mod judgement;
 mod probe;
 mod step;
 
+pub use borderline::borderline;
 pub use cause::{Cause, cause};
 pub use judgement::{Borderline, Form, Judgement, Refusal, Shares, Verdict};
 pub(super) use step::{Context, Records, StepJudgement, judge, judge_initial};

@@ -1,0 +1,53 @@
+//! `check --self`: how much room the original's rules leave in scenes.
+use crate::{
+    cli::{
+        arguments::{Check, Format},
+        console, exit, input,
+        output::Output,
+    },
+    report::{headroom as report, style::Style},
+    scene::Scene,
+    suite::{headroom::headroom, plan},
+};
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// The suite that is measured when no scene is named.
+const DEFAULT_SUITE: &str = "t2m2";
+
+pub(super) fn run(scenes: &[PathBuf], arguments: &Check) -> Result<u8> {
+    let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
+    let scenes = if scenes.is_empty() { built_in()? } else { files(scenes)? };
+    let measured = scenes
+        .par_iter()
+        .map(|(name, scene)| Ok((name.clone(), headroom(scene).with_context(|| format!("the scene {name}"))?)))
+        .collect::<Result<Vec<_>>>()?;
+    let style = if target.is_some() { Style::Plain } else { console::style() };
+    let text = match arguments.format {
+        Format::Text => report::text(&measured, style),
+        Format::Json => report::json(&measured),
+    };
+    match target {
+        Some(target) => target.finish_with(text.as_bytes())?,
+        None => console::print(text.as_bytes())?,
+    }
+    let is_fair = measured.iter().all(|(_, headroom)| headroom.is_fair());
+    Ok(if is_fair { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}
+
+fn built_in() -> Result<Vec<(String, Scene)>> {
+    let text = plan::built_in(DEFAULT_SUITE).context("the built-in suite")?;
+    let plan = plan::load(text, Path::new("."))?;
+    Ok(plan.scenes().map(|task| (task.name.clone(), task.scene.clone())).collect())
+}
+
+fn files(scenes: &[PathBuf]) -> Result<Vec<(String, Scene)>> {
+    scenes
+        .iter()
+        .map(|path| {
+            let loaded = input::scene(path)?;
+            Ok((loaded.name, loaded.scene))
+        })
+        .collect()
+}
