@@ -12,7 +12,7 @@ use crate::{
         parity::{self, Options, Progress, Remark},
         recorded::{self, RecordingError},
     },
-    sandbox::{Backend, Canceller, Job, Limits, Policy, SandboxError},
+    sandbox::{self, Backend, Canceller, Job, Limits, Policy, Running, SandboxError},
     scene::Scene,
 };
 use std::{
@@ -24,6 +24,7 @@ use std::{
     },
     time::Duration,
 };
+use tempfile::TempDir;
 
 /// Name of the scene's copy in the working folder, and of the trace.
 const SCENE_FILE: &str = "scene.xml";
@@ -31,6 +32,10 @@ const TRACE_FILE: &str = "trace.bin";
 
 /// A fault of ours or of the machine is tried so often before it is reported.
 const ATTEMPTS: u32 = 2;
+
+/// So much of a trace is kept in memory until it is judged, in bytes: should it be wrong, its beginning is explained.
+/// The course's largest trace has 18 MB.
+const KEPT_TRACE: usize = 24 << 20;
 
 /// A scene to run.
 #[derive(Debug, Clone)]
@@ -94,19 +99,12 @@ impl Runner<'_> {
         task: &SceneTask,
         on_step: &mut dyn FnMut(u32),
     ) -> Result<SceneGrade, ExecuteError> {
-        let folder =
-            tempfile::Builder::new().prefix(&staging::prefix("run")).tempdir().map_err(ExecuteError::Folder)?;
-        let scene_file = folder.path().join(SCENE_FILE);
-        std::fs::write(&scene_file, &task.xml).map_err(ExecuteError::Folder)?;
-        let job = Job::new(program, folder.path())
-            .arguments(self.arguments(program))
-            .trace_pipe(TRACE_FILE)
-            .policy(Policy::Submission)
-            .limits(self.sandbox_limits());
-        let mut running = self.backend.start(&job)?;
+        let (mut running, _folder) = self.start(program, task)?;
         let canceller = running.canceller();
         let _registered = self.cancellation.register(canceller.clone());
         let bytes = AtomicU64::new(0);
+        let mut kept = Vec::new();
+        let keep = if self.hints >= Hints::What { KEPT_TRACE } else { 0 };
         let options = Options {
             stop_at_first: self.fail_fast,
             stop_by: self.rules.official(),
@@ -118,7 +116,7 @@ impl Runner<'_> {
         let mut cut_short = false;
         let judged = match running.trace() {
             Some(inner) => {
-                let mut trace = Counted { inner, bytes: &bytes };
+                let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep };
                 let judged = self.judge(task, &mut trace, &options, &mut watch)?;
                 cut_short = self.fail_fast
                     && judged.account(self.rules.official()).wrong_steps > 0
@@ -135,6 +133,42 @@ impl Runner<'_> {
         };
         let outcome = running.wait()?;
         Ok(conclude(&task.name, &outcome, &judged, bytes.load(Ordering::Relaxed), cut_short, self.rules, self.hints))
+    }
+
+    /// Runs `program` on a scene as for grading, and hands its trace over unjudged, at most `keep` bytes of it.
+    ///
+    /// # Errors
+    /// Faults of ours or of the machine, in words.
+    pub fn collect(
+        &self,
+        program: &Path,
+        task: &SceneTask,
+        keep: usize,
+    ) -> Result<(Vec<u8>, sandbox::Outcome), String> {
+        let (mut running, _folder) = self.start(program, task).map_err(|error| error.to_string())?;
+        let _registered = self.cancellation.register(running.canceller());
+        let (bytes, mut kept) = (AtomicU64::new(0), Vec::new());
+        if let Some(inner) = running.trace() {
+            let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep };
+            // An error here ends the program as well, and its outcome says so.
+            let _ = io::copy(&mut trace, &mut io::sink());
+        }
+        let outcome = running.wait().map_err(|error| error.to_string())?;
+        Ok((kept, outcome))
+    }
+
+    /// Starts `program` on a scene, in a working folder of its own that lives as long as the result.
+    fn start(&self, program: &Path, task: &SceneTask) -> Result<(Running, TempDir), ExecuteError> {
+        let folder =
+            tempfile::Builder::new().prefix(&staging::prefix("run")).tempdir().map_err(ExecuteError::Folder)?;
+        let scene_file = folder.path().join(SCENE_FILE);
+        std::fs::write(&scene_file, &task.xml).map_err(ExecuteError::Folder)?;
+        let job = Job::new(program, folder.path())
+            .arguments(self.arguments(program))
+            .trace_pipe(TRACE_FILE)
+            .policy(Policy::Submission)
+            .limits(self.sandbox_limits());
+        Ok((self.backend.start(&job)?, folder))
     }
 
     fn judge(
@@ -217,16 +251,21 @@ enum ExecuteError {
     Sandbox(#[from] SandboxError),
 }
 
-/// Counts the bytes that arrive.
+/// Counts the bytes that arrive, and keeps the first ones.
 struct Counted<'a, R> {
     inner: R,
     bytes: &'a AtomicU64,
+    kept: &'a mut Vec<u8>,
+    /// So many are kept.
+    keep: usize,
 }
 
 impl<R: Read> Read for Counted<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
         self.bytes.fetch_add(count as u64, Ordering::Relaxed);
+        let room = self.keep - self.kept.len();
+        self.kept.extend_from_slice(&buffer[..count.min(room)]);
         Ok(count)
     }
 }
