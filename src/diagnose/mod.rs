@@ -9,8 +9,10 @@ mod explain;
 mod explanation;
 mod known;
 pub mod polynomial;
+mod probe;
 mod samples;
 
 pub use explain::{common, explain};
 pub use explanation::{Example, ExampleValue, Explanation};
 pub use known::known;
+pub use probe::probe_scenes;
