@@ -46,7 +46,7 @@ pub struct Example {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExampleValue {
     /// Its name, such as `x1` or `R`.
-    pub name: &'static str,
+    pub name: String,
     /// Its components.
     pub value: Vec<f64>,
 }

@@ -5,7 +5,7 @@
 use super::{config::Hints, grade::SceneGrade, verdict::Verdict};
 use crate::{
     judge::{
-        Account, Counts, Detail, Finding, Kind, Outcome, PairWords, Rules, Ruling, Stop, Unreadable,
+        Account, Counts, Kind, Outcome, Rules, Ruling, Stop, Unreadable,
         fair::{self, Refusal},
     },
     sandbox::{self, Ended},
@@ -17,7 +17,7 @@ const KEPT_OUTPUT: usize = 4096;
 /// The verdict on one scene.
 ///
 /// `trace_bytes` is what arrived of the trace; `cut_short` says that the grader itself stopped the program, because
-/// the trace could no longer be right. The official one of the `rules` gives verdict, findings and right steps.
+/// the trace could no longer be right. Explanations of what is wrong are for the caller to add. The official one of the `rules` gives verdict, findings and right steps.
 #[must_use]
 pub fn conclude(
     scene: &str,
@@ -40,9 +40,11 @@ pub fn conclude(
     } else {
         (of_program, program_says)
     };
+    let is_wrong = verdict == Verdict::WrongAnswer;
+    let summary = if hints == Hints::None && is_wrong { "the trace is wrong".to_owned() } else { summary };
     let mut details = Vec::new();
     if hints > Hints::None {
-        details.extend(account.first_divergence.map(|first| first_divergence(first, hints)));
+        details.extend(account.first_divergence.and_then(|first| hints.first_divergence(first)));
         details.extend(counts(account.counts));
         if let Some(damage) = &judged.damage {
             details.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.message));
@@ -57,9 +59,12 @@ pub fn conclude(
         summary,
         differs: fair::cause(judged),
         details,
+        explanations: Vec::new(),
         points: 0.0,
         max_points: 0.0,
-        right_steps: judged.steps_judged - u32::try_from(account.wrong_steps).unwrap_or(judged.steps_judged),
+        right_steps: judged
+            .steps_judged
+            .saturating_sub(u32::try_from(account.wrong_steps).unwrap_or(judged.steps_judged)),
         steps: judged.steps,
         cpu: program.cpu,
         wall: program.wall,
@@ -127,33 +132,6 @@ fn refusal(judged: &Outcome) -> String {
         Some(Refusal::Stopped) => "the trace's own polynomials lead into a search without end".to_owned(),
         None => "the trace was not judged to its end".to_owned(),
     }
-}
-
-/// Where, and with [`Hints::What`] also what, the first divergence is.
-fn first_divergence(first: &Finding, hints: Hints) -> String {
-    if hints >= Hints::What {
-        return format!("first divergence: {first}");
-    }
-    let place = match &first.detail {
-        Detail::MissedCollision { expected } | Detail::WrongNormal { expected, .. } => {
-            format!(", {}", PairWords(expected.pair))
-        }
-        Detail::PolynomialDegree { place, .. }
-        | Detail::VanishingPolynomial { place, .. }
-        | Detail::Coefficient { place, .. }
-        | Detail::PassPositions { place }
-        | Detail::TrimmedDecision { place, .. }
-        | Detail::MixedForms { place } => format!(", {place}"),
-        Detail::Position { particle, .. } | Detail::Velocity { particle, .. } => format!(", particle {particle}"),
-        Detail::SuperfluousCollision { actual }
-        | Detail::RepeatedCollision { actual }
-        | Detail::ContactTime { actual, .. } => format!(", objects {} and {}", actual.first, actual.second),
-        Detail::PolynomialCount { .. }
-        | Detail::PassCount { .. }
-        | Detail::RecordsDiffer { .. }
-        | Detail::ImpossibleLog => String::new(),
-    };
-    format!("first divergence: step {}{place}: {}", first.step, first.kind())
 }
 
 /// `12 wrong coefficients, 3 missed collisions`, when there is more than the first finding tells.

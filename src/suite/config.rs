@@ -2,6 +2,7 @@
 //!
 //! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
 //! that `suite init` writes ([`TEMPLATE`]).
+pub use super::hints::Hints;
 use crate::judge::Rules;
 use serde::Deserialize;
 use std::{ops::Range, time::Duration};
@@ -90,18 +91,6 @@ impl Default for RunLimits {
             files: 100,
         }
     }
-}
-
-/// How much a report tells a student.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Hints {
-    /// The verdict only.
-    None,
-    /// Where: step, pair and polynomial of the first divergence.
-    Where,
-    /// What: expected and actual values, too.
-    What,
 }
 
 /// How partial success counts.

@@ -7,6 +7,7 @@ use super::{
     verdict::Verdict,
 };
 use crate::{
+    diagnose::{self, Explanation},
     judge::{
         Outcome, Rules,
         parity::{self, Options, Progress, Remark},
@@ -132,7 +133,10 @@ impl Runner<'_> {
             None => self.judge(task, io::empty(), &options, &mut watch)?,
         };
         let outcome = running.wait()?;
-        Ok(conclude(&task.name, &outcome, &judged, bytes.load(Ordering::Relaxed), cut_short, self.rules, self.hints))
+        let bytes = bytes.load(Ordering::Relaxed);
+        let grade = conclude(&task.name, &outcome, &judged, bytes, cut_short, self.rules, self.hints);
+        let explanations = self.hints.cut(explain(&grade, task, &kept));
+        Ok(SceneGrade { explanations, ..grade })
     }
 
     /// Runs `program` on a scene as for grading, and hands its trace over unjudged, at most `keep` bytes of it.
@@ -214,6 +218,15 @@ impl Runner<'_> {
     }
 }
 
+/// What is likely wrong with a program whose trace is: nothing where the fair rules find no fault, or where what the program
+/// did besides is its worse fault.
+fn explain(grade: &SceneGrade, task: &SceneTask, trace: &[u8]) -> Vec<Explanation> {
+    match grade.verdict {
+        Verdict::WrongAnswer | Verdict::BadTrace if grade.differs.is_none() => diagnose::explain(&task.scene, trace),
+        _ => Vec::new(),
+    }
+}
+
 /// A scene that was not judged, with the reason.
 #[must_use]
 pub fn not_run(scene: &str, steps: u32, verdict: Verdict, summary: String) -> SceneGrade {
@@ -223,6 +236,7 @@ pub fn not_run(scene: &str, steps: u32, verdict: Verdict, summary: String) -> Sc
         summary,
         differs: None,
         details: Vec::new(),
+        explanations: Vec::new(),
         points: 0.0,
         max_points: 0.0,
         right_steps: 0,

@@ -1,6 +1,9 @@
 //! The grade: what one submission got, scene by scene.
 use super::{config::Visibility, verdict::Verdict};
-use crate::judge::{Rules, fair::Cause};
+use crate::{
+    diagnose::Explanation,
+    judge::{Rules, fair::Cause},
+};
 use std::time::Duration;
 
 /// The grade of one submission on one suite.
@@ -96,6 +99,8 @@ pub struct SceneGrade {
     pub differs: Option<Cause>,
     /// More lines of explanation: the first divergence, counts, hints. Plain text.
     pub details: Vec<String>,
+    /// Likely mistakes, the likeliest first; no more of them than the suite's hints let through.
+    pub explanations: Vec<Explanation>,
     /// Points reached.
     pub points: f64,
     /// Points that can be reached.

@@ -3,7 +3,7 @@
 //! A line is written and flushed before its result is reported. A line cut short by a crash is dropped on the next
 //! opening. Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene,
 //! rule or version is simply not found. A lock keeps two graders out of one folder.
-use super::{grade::SceneGrade, verdict::Verdict};
+use super::{grade::SceneGrade, kept::KeptExplanation, verdict::Verdict};
 use crate::judge::fair::Cause;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -151,6 +151,8 @@ struct Entry {
     summary: String,
     differs: Option<String>,
     details: Vec<String>,
+    #[serde(default)]
+    explanations: Vec<KeptExplanation>,
     right_steps: u32,
     steps: u32,
     cpu_seconds: f64,
@@ -170,6 +172,7 @@ impl Entry {
             summary: grade.summary.clone(),
             differs: grade.differs.map(|cause| cause.key().to_owned()),
             details: grade.details.clone(),
+            explanations: grade.explanations.iter().map(KeptExplanation::from).collect(),
             right_steps: grade.right_steps,
             steps: grade.steps,
             cpu_seconds: grade.cpu.as_secs_f64(),
@@ -190,6 +193,7 @@ impl Entry {
             summary: self.summary,
             differs: self.differs.as_deref().and_then(Cause::from_key),
             details: self.details,
+            explanations: self.explanations.into_iter().map(Into::into).collect(),
             points: 0.0,
             max_points: 0.0,
             right_steps: self.right_steps,
@@ -216,6 +220,7 @@ mod tests {
             summary: "a summary".to_owned(),
             differs: Some(Cause::ContactTime),
             details: vec!["a detail".to_owned()],
+            explanations: Vec::new(),
             points: 0.0,
             max_points: 0.0,
             right_steps: 3,

@@ -61,6 +61,7 @@ mod tests {
             summary: String::new(),
             differs: None,
             details: Vec::new(),
+            explanations: Vec::new(),
             points: 0.0,
             max_points: 0.0,
             right_steps,

@@ -10,7 +10,7 @@ use std::{
     time::Duration,
 };
 
-const SUITE: &str = "schema = 1\nname = \"test\"\n[limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
+const SUITE: &str = "schema = 1\nname = \"test\"\nhints = \"full\"\n[limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
                      [[group]]\nname = \"Impulses\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\ncredit = \"steps\"\n\
                      [[group]]\nname = \"Zones\"\nscenes = [\"asset:GeometricTests/ball-*\"]\npoints = 10\n";
 
@@ -62,6 +62,7 @@ fn a_right_and_a_wrong_program_get_their_reports() {
     assert_eq!(run.code, Some(1), "{}", run.shown());
     assert!(run.out().contains("overlap polynomial of particle"), "{}", run.shown());
     assert!(run.out().contains("coefficient of t^2"), "{}", run.shown());
+    assert!(run.out().contains("likely mistake: "), "{}", run.shown());
     let results: serde_json::Value = serde_json::from_slice(&workspace.read("results.json")).expect("JSON");
     assert!(results["score"].as_f64().expect("a score") < 20.0);
     assert!(String::from_utf8(workspace.read("junit.xml")).expect("text").contains("<failure"));
@@ -98,6 +99,31 @@ fn the_rules_decide_the_points_and_reports_say_where_they_differ() {
     assert!(!parity.out().contains("differ"), "{}", parity.shown());
     let recorded = grade(&["--rules", "fair", "--recorded"]);
     assert_eq!(recorded.code, Some(2), "{}", recorded.shown());
+}
+
+#[test]
+fn hints_decide_how_much_a_report_tells() {
+    let Some(workspace) = workspace() else { return };
+    submit(&workspace, &["pe-square-no-eh"]);
+    let told = |level: &str| {
+        workspace.write("hints.toml", SUITE.replace("hints = \"full\"", &format!("hints = \"{level}\"")));
+        let program = "submissions/fosssim-sample.pe-square-no-eh";
+        let run = workspace.run(["grade", program, "--suite", "hints.toml", "--format", "json"]);
+        assert_eq!(run.code, Some(1), "{}", run.shown());
+        let json: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let groups = json["grades"][0]["groups"].as_array().expect("groups").clone();
+        let scenes = groups.into_iter().flat_map(|group| group["scenes"].as_array().expect("scenes").clone());
+        scenes.into_iter().find(|scene| scene["verdict"] == "wrong answer").expect("a wrong scene")
+    };
+    let [none, place, what, full] = ["none", "where", "what", "full"].map(told);
+    assert_eq!((&none["summary"], &none["details"]), (&"the trace is wrong".into(), &serde_json::json!([])));
+    assert_eq!(place["explanations"], serde_json::json!([]));
+    assert!(place["details"][0].as_str().expect("a line").contains("edge"), "{place:#}");
+    assert_eq!(what["details"], place["details"]);
+    assert_eq!(what["explanations"][0]["key"], "pe-square-no-eh", "{what:#}");
+    assert_eq!(what["explanations"][0]["details"], serde_json::json!([]));
+    assert_ne!(full["details"], place["details"]);
+    assert_ne!(full["explanations"][0]["example"], serde_json::Value::Null, "{full:#}");
 }
 
 #[test]

@@ -3,7 +3,10 @@ use super::{display::Display, submissions};
 use crate::{
     cli::{console, exit, grading::Grade as Arguments, output},
     judge::Rules,
-    report::grade::{self, Format},
+    report::{
+        explain,
+        grade::{self, Format},
+    },
     sandbox::{Backend, Supervisor},
     suite::{
         Cancellation, Grade, Verdict,
@@ -294,6 +297,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         let details: String = grade::difference(scene)
             .iter()
             .chain(&scene.details)
+            .chain(&explain::lines(&scene.explanations))
             .map(|line| format!("{}\n", grade::plain(line)))
             .collect();
         let text = format!(

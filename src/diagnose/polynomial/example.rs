@@ -61,9 +61,9 @@ fn moving(bodies: &[Body]) -> Vec<ExampleValue> {
 }
 
 fn vector(name: &'static str, value: Vec2) -> ExampleValue {
-    ExampleValue { name, value: vec![value.x, value.y] }
+    ExampleValue { name: name.to_owned(), value: vec![value.x, value.y] }
 }
 
 fn number(name: &'static str, value: f64) -> ExampleValue {
-    ExampleValue { name, value: vec![value] }
+    ExampleValue { name: name.to_owned(), value: vec![value] }
 }

@@ -4,7 +4,7 @@ use crate::{judge::fair::Cause, suite::Grade};
 
 /// One row per scene.
 pub(super) fn scenes(grades: &[Grade]) -> String {
-    let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,rules_differ";
+    let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,rules_differ,likely_mistake";
     let rows = grades.iter().flat_map(|grade| {
         grade.groups.iter().flat_map(move |group| {
             group.scenes.iter().map(move |scene| {
@@ -21,6 +21,7 @@ pub(super) fn scenes(grades: &[Grade]) -> String {
                     format!("{:.3}", scene.wall.as_secs_f64()),
                     safe(&scene.summary),
                     scene.differs.map_or("", Cause::key).to_owned(),
+                    scene.explanations.first().map(|likeliest| safe(&likeliest.key)).unwrap_or_default(),
                 ]
             })
         })

@@ -1,5 +1,5 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
-use super::{difference, one_line, points};
+use super::{super::explain, difference, one_line, points};
 use crate::suite::{Grade, Verdict};
 use std::fmt::Write;
 
@@ -19,7 +19,9 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
         for scene in grade.scenes().filter(|scene| !scene.verdict.is_accepted()) {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
-            let _ = writeln!(text, "::{level} title={title}::{}", data(&scene.summary));
+            let words: Vec<String> =
+                std::iter::once(scene.summary.clone()).chain(explain::sentence(&scene.explanations)).collect();
+            let _ = writeln!(text, "::{level} title={title}::{}", data(&words.join("; ")));
         }
         for scene in grade.scenes() {
             let Some(words) = difference(scene) else { continue };
@@ -65,8 +67,11 @@ pub(super) fn summary(grades: &[Grade]) -> String {
         let _ = writeln!(text, "| scene | verdict | points | what happened |\n|---|---|---:|---|");
         for scene in grade.scenes() {
             let name = cell(&scene.scene);
-            let words: Vec<String> =
-                std::iter::once(&scene.summary).chain(&difference(scene)).map(|words| cell(words)).collect();
+            let words: Vec<String> = std::iter::once(&scene.summary)
+                .chain(&explain::sentence(&scene.explanations))
+                .chain(&difference(scene))
+                .map(|words| cell(words))
+                .collect();
             let words = words.join("; ");
             let _ = writeln!(text, "| {name} | {} | {} | {words} |", scene.verdict, points(scene.points));
         }

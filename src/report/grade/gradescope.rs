@@ -1,5 +1,5 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::{difference, plain, points};
+use super::{super::explain, difference, plain, points};
 use crate::suite::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
@@ -95,6 +95,7 @@ fn output(scene: &SceneGrade) -> String {
     let mut lines = vec![format!("{}: {}", scene.verdict, plain(&scene.summary))];
     lines.extend(difference(scene));
     lines.extend(scene.details.iter().map(|detail| plain(detail)));
+    lines.extend(explain::lines(&scene.explanations).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(format!("The program's error output:\n{}", plain(&scene.stderr)));
     }

@@ -1,5 +1,5 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
-use super::plain;
+use super::{super::explain::ExplanationView, plain};
 use crate::suite::{Grade, GroupGrade, SceneGrade};
 use serde::Serialize;
 
@@ -57,6 +57,7 @@ struct SceneView {
     summary: String,
     difference: Option<DifferenceView>,
     details: Vec<String>,
+    explanations: Vec<ExplanationView>,
     points: f64,
     max_points: f64,
     right_steps: u32,
@@ -134,6 +135,7 @@ fn scene(scene: &SceneGrade) -> SceneView {
         summary: plain(&scene.summary),
         difference: scene.differs.map(|cause| DifferenceView { key: cause.key(), text: cause.to_string() }),
         details: scene.details.iter().map(|detail| plain(detail)).collect(),
+        explanations: scene.explanations.iter().map(ExplanationView::from).collect(),
         points: scene.points,
         max_points: scene.max_points,
         right_steps: scene.right_steps,

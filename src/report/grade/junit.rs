@@ -1,5 +1,5 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
-use super::{difference, plain};
+use super::{super::explain, difference, plain};
 use crate::suite::{Grade, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -36,6 +36,7 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             status.set_type(verdict.words());
             status.set_message(plain(&scene.summary));
             let mut description = scene.details.clone();
+            description.extend(explain::lines(&scene.explanations));
             if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
                 description.extend([build.end.clone(), build.output.clone()]);
             }

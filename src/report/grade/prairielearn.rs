@@ -1,6 +1,6 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
-use super::{difference, one_line, plain};
-use crate::suite::{Grade, GroupGrade, Verdict, config::Visibility};
+use super::{super::explain, difference, one_line, plain};
+use crate::suite::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
 /// PrairieLearn refuses more than a megabyte; texts are cut long before.
@@ -36,7 +36,7 @@ pub(super) fn render(grade: &Grade) -> String {
             points: scene.points,
             max_points: scene.max_points,
             message: cut(&scene.summary),
-            output: cut(&difference(scene).iter().chain(&scene.details).cloned().collect::<Vec<_>>().join("\n")),
+            output: cut(&output(scene)),
         })
         .collect();
     let build = grade.build.as_ref().filter(|build| !build.succeeded);
@@ -61,6 +61,14 @@ pub(super) fn render(grade: &Grade) -> String {
     let mut text = serde_json::to_string_pretty(&results).unwrap_or_default();
     text.push('\n');
     text
+}
+
+/// Everything about a scene that its message does not say.
+fn output(scene: &SceneGrade) -> String {
+    let mut lines: Vec<String> = difference(scene).into_iter().collect();
+    lines.extend(scene.details.iter().cloned());
+    lines.extend(explain::lines(&scene.explanations));
+    lines.join("\n")
 }
 
 /// The groups that students see at once.

@@ -14,6 +14,7 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneGrade {
         summary: summary.to_owned(),
         differs: None,
         details: Vec::new(),
+        explanations: Vec::new(),
         points: 0.0,
         max_points: 0.0,
         right_steps: if verdict.is_accepted() { 100 } else { 60 },
@@ -67,6 +68,7 @@ pub(crate) fn bad() -> Grade {
     let mut wrong =
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
     wrong.differs = Some(Cause::AbsoluteCoefficients);
+    wrong.explanations = crate::report::explain::tests::explanations();
     wrong.details = vec!["first divergence: step 3: overlap polynomial of particles 0 and 1".to_owned()];
     let mut crash = scene("Detection/b", Verdict::RuntimeError, "the program ended by signal 11");
     crash.stderr =

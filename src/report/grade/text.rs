@@ -1,5 +1,5 @@
 //! Grades for people at a terminal: a table per submission, then what went wrong.
-use super::{difference, one_line, plain, points};
+use super::{super::explain, difference, one_line, plain, points};
 use crate::{
     judge::Rules,
     suite::{Grade, Verdict},
@@ -52,6 +52,9 @@ fn submission(text: &mut String, grade: &Grade) {
             }
             for detail in &scene.details {
                 let _ = writeln!(text, "      {}", one_line(detail));
+            }
+            for line in explain::lines(&scene.explanations) {
+                let _ = writeln!(text, "      {}", one_line(&line));
             }
             if scene.verdict >= Verdict::NoOutput && !scene.stderr.trim().is_empty() {
                 let _ = writeln!(text, "      its error output:\n{}", indented(&scene.stderr, SHOWN_LINES));

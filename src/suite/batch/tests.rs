@@ -8,7 +8,7 @@ use crate::{
 };
 use std::{path::Path, sync::Mutex};
 
-const SUITE: &str = "schema = 1\nname = \"test\"\nhints = \"what\"\n[[group]]\nname = \"first\"\npoints = 10\n\
+const SUITE: &str = "schema = 1\nname = \"test\"\nhints = \"full\"\n[[group]]\nname = \"first\"\npoints = 10\n\
                      scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
                      scenes = [\"asset:PenaltyTests/*\"]\n";
 

@@ -527,5 +527,5 @@ fn the_example_is_the_roundest_one() {
     let example = found[0].example.as_ref().expect("there is a wrong sample");
     assert_eq!(example.place, "particles 0 and 1, pass 0, particle-particle overlap polynomial");
     assert_eq!((&example.expected[..], &example.actual[..]), (&[-4.0, 16.0, -12.0][..], &[-12.0, 16.0, -4.0][..]));
-    assert_eq!((example.given[0].name, &example.given[0].value[..]), ("x1", &[0.0, 0.0][..]));
+    assert_eq!((example.given[0].name.as_str(), &example.given[0].value[..]), ("x1", &[0.0, 0.0][..]));
 }

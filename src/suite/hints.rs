@@ -1,0 +1,120 @@
+//! How much a report tells a student, and what of findings and explanations that lets through.
+//!
+//! What is not to be told is cut here, before a report or the journal sees it, so that no format can let it out.
+use crate::{
+    diagnose::Explanation,
+    judge::{Detail, Finding, PairWords},
+};
+use serde::Deserialize;
+
+/// How much a report tells a student.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hints {
+    /// The verdict only.
+    None,
+    /// Where: kind, step, pair and polynomial of the first divergence.
+    Where,
+    /// What: the likely mistake in a sentence, too.
+    What,
+    /// Everything: expected and actual values, and the mistake in detail. May give a right formula away.
+    Full,
+}
+
+impl Hints {
+    /// What of explanations may be told: nothing below [`Hints::What`], no formulas, keys of others and examples below
+    /// [`Hints::Full`].
+    #[must_use]
+    pub fn cut(self, explanations: Vec<Explanation>) -> Vec<Explanation> {
+        match self {
+            Self::None | Self::Where => Vec::new(),
+            Self::What => explanations
+                .into_iter()
+                .map(|explanation| Explanation {
+                    details: Vec::new(),
+                    example: None,
+                    same_as: Vec::new(),
+                    ..explanation
+                })
+                .collect(),
+            Self::Full => explanations,
+        }
+    }
+
+    /// What of the first divergence may be told, as a line.
+    #[must_use]
+    pub fn first_divergence(self, first: &Finding) -> Option<String> {
+        match self {
+            Self::None => None,
+            Self::Where | Self::What => {
+                Some(format!("first divergence: step {}{}: {}", first.step, place(&first.detail), first.kind()))
+            }
+            Self::Full => Some(format!("first divergence: {first}")),
+        }
+    }
+}
+
+/// Where in its step a finding lies, with a comma in front.
+fn place(detail: &Detail) -> String {
+    match detail {
+        Detail::MissedCollision { expected }
+        | Detail::WrongNormal { expected, .. }
+        | Detail::ContactTime { expected, .. } => {
+            format!(", {}", PairWords(expected.pair))
+        }
+        Detail::PolynomialDegree { place, .. }
+        | Detail::VanishingPolynomial { place, .. }
+        | Detail::Coefficient { place, .. }
+        | Detail::PassPositions { place }
+        | Detail::TrimmedDecision { place, .. }
+        | Detail::MixedForms { place } => format!(", {place}"),
+        Detail::Position { particle, .. } | Detail::Velocity { particle, .. } => format!(", particle {particle}"),
+        Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
+            format!(", objects {} and {}", actual.first, actual.second)
+        }
+        Detail::PolynomialCount { .. }
+        | Detail::PassCount { .. }
+        | Detail::RecordsDiffer { .. }
+        | Detail::ImpossibleLog => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::Example;
+
+    fn explanation() -> Explanation {
+        let example =
+            Example { step: 3, place: String::new(), given: Vec::new(), expected: vec![1.0], actual: vec![2.0] };
+        Explanation {
+            key: "pe-square-no-eh".to_owned(),
+            what: "A term is missing.".to_owned(),
+            details: vec!["t^2: (e.h) has weight 0, expected -4".to_owned()],
+            reproduced: 3,
+            samples: 3,
+            example: Some(example),
+            same_as: vec!["other".to_owned()],
+        }
+    }
+
+    #[test]
+    fn each_level_tells_more_and_formulas_come_last() {
+        let told = |hints: Hints| hints.cut(vec![explanation()]);
+        assert_eq!((told(Hints::None), told(Hints::Where)), (Vec::new(), Vec::new()));
+        let what = told(Hints::What).remove(0);
+        assert_eq!((what.what.as_str(), what.details.len(), what.example), ("A term is missing.", 0, None));
+        assert!(what.same_as.is_empty());
+        assert_eq!(told(Hints::Full), [explanation()]);
+    }
+
+    #[test]
+    fn values_are_told_in_full_only() {
+        let detail = Detail::Position { particle: 2, expected: [1.5, 0.0], actual: [1.25, 0.0], residual: 0.25 };
+        let line = |hints: Hints| hints.first_divergence(&Finding { step: 4, frame: 8, detail });
+        assert_eq!(line(Hints::None), None);
+        assert_eq!(line(Hints::Where).as_deref(), Some("first divergence: step 4, particle 2: wrong position"));
+        assert_eq!(line(Hints::What), line(Hints::Where));
+        assert!(line(Hints::Full).expect("a line").contains("1.25"));
+    }
+}
