@@ -79,6 +79,10 @@ pub const FAIR_NORM_UNITS: f64 = 16.0;
 /// deflation and other solvers than the course's.
 pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 
+/// Fair: a time of impact may be off by this fraction of the step, whatever the polynomials: what a careful root finder
+/// that is not the course's may leave.
+pub const FAIR_TIME: f64 = 1.0 / (1_u64 << 40) as f64;
+
 /// Fair: how often a step's own sensitivity to roundings of its inputs a state may be off.
 pub const FAIR_SENSITIVITY: f64 = 8.0;
 

@@ -9,7 +9,7 @@ use crate::{
     num::{
         bounded::{Bounded, UNIT_ROUNDOFF},
         decision::{Certainty, decide},
-        tolerances::{FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_UNITS},
+        tolerances::{FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_TIME, FAIR_UNITS},
         vector::{at, length},
     },
     scene::Collision,
@@ -32,6 +32,9 @@ fn value(polynomial: &[Bounded], t: f64) -> (f64, f64) {
 fn time_fits(expected: &Expected, own: f64, t: f64) -> bool {
     if !(0.0..=1.0).contains(&t) {
         return false;
+    }
+    if (own - t).abs() <= FAIR_TIME {
+        return true;
     }
     let all = || (0..expected.count()).map(|number| expected.polynomial(number));
     let is_possible = all().all(|polynomial| {

@@ -135,6 +135,23 @@ impl StepJudgement {
         self.findings.len() as u64 + self.more.total()
     }
 
+    /// Whether it has findings that the step's sensitivity could excuse. Polynomials of known positions are none: their own
+    /// bounds are all that counts.
+    fn hangs_on_round_off(&self) -> bool {
+        self.findings.iter().any(|finding| {
+            !matches!(
+                finding.kind(),
+                Kind::Coefficient
+                    | Kind::PolynomialDegree
+                    | Kind::WrongNormal
+                    | Kind::ContactTime
+                    | Kind::RepeatedCollision
+                    | Kind::RecordsDiffer
+                    | Kind::ImpossibleLog
+            )
+        })
+    }
+
     /// Whether it has findings that another decision could explain.
     fn hangs_on_decisions(&self) -> bool {
         self.findings.iter().any(|finding| {
@@ -196,7 +213,7 @@ fn follow(
         Ok::<_, StepError>((follower.judged, follower.decisions, follower.borderline))
     };
     let (first, decisions, _) = attempt(simulation, None, &[])?;
-    if first.total() == 0 {
+    if !first.hangs_on_round_off() {
         return Ok(first);
     }
     let sensitivity = probe(context, simulation, &records, &decisions);
