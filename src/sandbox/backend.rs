@@ -250,10 +250,10 @@ impl Backend {
             (Ok(()), None) => Err(io::ErrorKind::BrokenPipe.into()),
         };
         match first {
-            Ok(Event::Ready { pid, user }) => {
+            Ok(Event::Ready { session, user }) => {
                 // From here on the supervisor holds the pipe open; when it lets go, the reader sees the end.
                 let reader = pipe.map(|pipe| pipe.reader);
-                Ok(Running::new(child, pid, user, order, reader, job.limits.trace_bytes, self.layers.clone()))
+                Ok(Running::new(child, session, user, order, reader, job.limits.trace_bytes, self.layers.clone()))
             }
             Ok(Event::Failed(failure)) => {
                 let _ = child.wait();
@@ -313,6 +313,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program) -> Result<Order, S
         environment: job.environment.iter().map(|(name, value)| (bytes(name), bytes(value))).collect(),
         readable,
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
+        named: examined.named.iter().map(|path| wire::raw(path)).collect(),
         pipe: job.trace_pipe.as_ref().map(|name| name.as_bytes().to_vec()),
         tools: job.policy == Policy::Tools,
         script: examined.script,

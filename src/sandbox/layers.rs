@@ -26,11 +26,13 @@ pub enum Layer {
     Scopes,
     /// Another user for every running program; only root can do this.
     OwnUser,
+    /// Namespaces: a world without other processes, without network, and with few files.
+    Namespaces,
 }
 
 impl Layer {
     /// All of them, in the order of a report.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::NoNewPrivileges,
         Self::Limits,
         Self::Reaper,
@@ -39,6 +41,7 @@ impl Layer {
         Self::FileRules,
         Self::Scopes,
         Self::OwnUser,
+        Self::Namespaces,
     ];
 
     /// The name in reports.
@@ -53,6 +56,7 @@ impl Layer {
             Self::FileRules => "file rules (Landlock)",
             Self::Scopes => "signal scope (Landlock)",
             Self::OwnUser => "a user per program",
+            Self::Namespaces => "namespaces",
         }
     }
 }
@@ -172,6 +176,14 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
                 _ => None,
             },
         },
+        report(
+            Layer::Namespaces,
+            probe.namespaces.clone(),
+            "a run sees its own processes and files only, and no network",
+            false,
+            "use Linux 5.12 or newer and let the grader make namespaces: in a container by its profile, for an ordinary \
+             user by the kernel's settings (kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu)",
+        ),
     ]
 }
 
@@ -222,6 +234,7 @@ fn active(reports: &[LayerReport]) -> Walls {
         // A listener belongs to the filter.
         notify: active(Layer::NamedCalls) && active(Layer::CallFilter),
         own_user: active(Layer::OwnUser),
+        namespaces: active(Layer::Namespaces),
     }
 }
 
@@ -251,7 +264,7 @@ mod tests {
 
     #[test]
     fn a_healthy_host_has_every_wall_that_it_can_have() {
-        let all = Walls { landlock: true, scopes: true, seccomp: true, notify: true, own_user: true };
+        let all = Walls { landlock: true, scopes: true, seccomp: true, notify: true, own_user: true, namespaces: true };
         assert_eq!(walls(&reports(&healthy(true))), Ok(all));
         assert_eq!(walls(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
         assert_eq!(reports(&healthy(true)).iter().map(|report| report.layer).collect::<Vec<_>>(), Layer::ALL);

@@ -10,6 +10,10 @@
 //! only when every process is dead. The child dies with the supervisor, and the supervisor's tree dies with the
 //! grader, whatever kills them.
 //!
+//! Where the kernel lets it, the supervisor first moves into namespaces of its own, in which only the run's processes
+//! and files exist and no network; whatever dies there takes all below it along. This is a further wall, never the only
+//! one: everything else holds without it.
+//!
 //! What it never does: trust a path the program could change, read a result while the program lives, or go on
 //! silently when a required layer is missing ([`Backend::best`] refuses).
 
@@ -19,6 +23,7 @@ mod decide;
 mod fake;
 mod job;
 mod layers;
+mod mounts;
 mod outcome;
 mod own;
 mod program;

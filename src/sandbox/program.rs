@@ -34,6 +34,8 @@ const LIBRARIES: [&str; 8] =
 pub(super) struct Program {
     /// Loaders and interpreters that the kernel executes on the way to it.
     pub(super) executable: Vec<PathBuf>,
+    /// The same under the names by which they are asked for, which may be links.
+    pub(super) named: Vec<PathBuf>,
     /// Whether it is a script.
     pub(super) script: bool,
     /// Whether it carries a sanitiser, which reserves terabytes of address space.
@@ -93,6 +95,7 @@ fn script(line: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
     let found = existing(Path::new(interpreter)).ok_or_else(|| missing(interpreter))?;
     let folders = || PROGRAMS.into_iter().chain(LIBRARIES);
     let mut executable = vec![systems(&found, folders(), own)?];
+    let mut named = vec![found];
     if interpreter.ends_with("/env") {
         let words = words.map(|word| word.strip_prefix("-S").unwrap_or(word));
         let name = { words }.find(|word| !word.is_empty() && !word.starts_with('-') && !word.contains('='));
@@ -101,16 +104,20 @@ fn script(line: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
             return Err(StartProblem::NotTheSystems { path: name.escape_default().to_string() });
         }
         let found = PROGRAMS.iter().find_map(|folder| existing(&Path::new(folder).join(name)));
-        executable.push(systems(&found.ok_or_else(|| missing(name))?, folders(), own)?);
+        let found = found.ok_or_else(|| missing(name))?;
+        executable.push(systems(&found, folders(), own)?);
+        named.push(found);
     }
     for index in 0..executable.len() {
         let mut file = File::open(&executable[index]).map_err(|_| StartProblem::NotPermitted)?;
         let start = read_at(&mut file, 0, 256).unwrap_or_default();
         if start.starts_with(ELF_MAGIC) {
-            executable.extend(elf(&mut file, &start, own)?.executable);
+            let program = elf(&mut file, &start, own)?;
+            executable.extend(program.executable);
+            named.extend(program.named);
         }
     }
-    Ok(Program { executable, script: true, sanitised: false })
+    Ok(Program { executable, named, script: true, sanitised: false })
 }
 
 fn existing(path: &Path) -> Option<PathBuf> {
@@ -169,6 +176,7 @@ fn elf(file: &mut File, start: &[u8], own: &[PathBuf]) -> Result<Program, StartP
             return Err(StartProblem::MissingLoader { loader: text.escape_default().to_string() });
         }
         program.executable.push(systems(&loader, LIBRARIES.into_iter(), own)?);
+        program.named.push(loader);
     }
     program.sanitised =
         dynamic_names(file, &segments).is_some_and(|table| SANITISER_NAMES.iter().any(|name| contains(&table, name)));

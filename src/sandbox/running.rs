@@ -47,7 +47,7 @@ enum State {
 #[derive(Debug)]
 struct Supervised {
     child: Child,
-    pid: i32,
+    session: Option<i32>,
     user: Option<u32>,
     order: Order,
     layers: Arc<[LayerReport]>,
@@ -57,7 +57,7 @@ impl Running {
     /// A run whose supervisor has said that it is ready.
     pub(super) fn new(
         mut child: Child,
-        pid: i32,
+        session: Option<i32>,
         user: Option<u32>,
         order: Order,
         trace: Option<File>,
@@ -72,7 +72,7 @@ impl Running {
             traced: traced.clone(),
             control: control.clone(),
         });
-        let supervised = Supervised { child, pid, user, order, layers };
+        let supervised = Supervised { child, session, user, order, layers };
         Self { state: State::Supervised(Box::new(supervised)), trace, traced, canceller: Canceller { control } }
     }
 
@@ -128,7 +128,7 @@ impl Running {
             Ok(answer) => answer,
             Err(_) => {
                 let error = lost(supervised.child);
-                processes::end_orphans(supervised.pid, supervised.user);
+                processes::end_orphans(supervised.session, supervised.user);
                 return Err(error);
             }
         };

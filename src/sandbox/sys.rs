@@ -1,6 +1,6 @@
 //! The system calls that the standard library does not offer, each behind a safe function.
 //!
-//! This is the sandbox's only file with `unsafe` code. Every function passes the kernel valid pointers to live values
+//! This file and `mounts.rs` are the sandbox's only ones with `unsafe` code. Every function passes the kernel valid pointers to live values
 //! and turns its answer into a `Result`; none keeps a pointer. The one call with a condition of its own, [`fork`],
 //! checks that condition.
 
@@ -54,6 +54,12 @@ pub(super) fn exit_now(code: i32) -> ! {
 pub(super) fn user() -> u32 {
     // SAFETY: no arguments, cannot fail.
     unsafe { libc::geteuid() }
+}
+
+/// The effective group.
+pub(super) fn group() -> u32 {
+    // SAFETY: no arguments, cannot fail.
+    unsafe { libc::getegid() }
 }
 
 /// Starts a session of its own, without a controlling terminal.
@@ -190,6 +196,20 @@ pub(super) fn reap() -> io::Result<Option<Reaped>> {
     // SAFETY: `status` outlives the call.
     let pid = check(i64::from(unsafe { libc::waitpid(-1, &raw mut status, libc::WNOHANG) }))? as i32;
     Ok((pid != 0).then_some(Reaped { pid, status }))
+}
+
+/// Waits until the child has ended; the answer is its exit code, or 128 and the signal that ended it.
+pub(super) fn wait_for(pid: i32) -> io::Result<u8> {
+    let mut status = 0;
+    loop {
+        // SAFETY: `status` outlives the call.
+        match check(i64::from(unsafe { libc::waitpid(pid, &raw mut status, 0) })) {
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+            Ok(_) if libc::WIFSIGNALED(status) => return Ok(128 + libc::WTERMSIG(status) as u8),
+            Ok(_) => return Ok(libc::WEXITSTATUS(status) as u8),
+        }
+    }
 }
 
 /// Processor time and the largest resident set (bytes) of all reaped children and theirs.

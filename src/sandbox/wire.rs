@@ -41,10 +41,11 @@ pub(super) struct Walls {
     pub(super) seccomp: bool,
     pub(super) notify: bool,
     pub(super) own_user: bool,
+    pub(super) namespaces: bool,
 }
 
 /// What the supervisor is to run.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Order {
     pub(super) program: Raw,
     pub(super) folder: Raw,
@@ -53,6 +54,8 @@ pub(super) struct Order {
     pub(super) readable: Vec<Raw>,
     /// Interpreters and loaders that the kernel executes on the way to the program.
     pub(super) executable: Vec<Raw>,
+    /// Their names as the program and the kernel use them, which may be links.
+    pub(super) named: Vec<Raw>,
     pub(super) pipe: Option<Raw>,
     pub(super) tools: bool,
     pub(super) script: bool,
@@ -71,8 +74,9 @@ pub(super) struct Order {
 /// What the supervisor answers.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Event {
-    /// The child was forked: its process id, which is also its session, and the user it runs as if it has its own.
-    Ready { pid: i32, user: Option<u32> },
+    /// The child was forked: its session, unless it has a process namespace and with it numbers of its own,
+    /// and the user it runs as if it has its own.
+    Ready { session: Option<i32>, user: Option<u32> },
     /// The sandbox could not be put up; our fault.
     Failed(Failure),
     /// Everything is dead; the captured bytes of both streams follow.
@@ -144,6 +148,7 @@ pub(super) struct Probe {
     pub(super) notify: Option<String>,
     pub(super) own_user: Option<String>,
     pub(super) reaper: Option<String>,
+    pub(super) namespaces: Option<String>,
 }
 
 /// Writes one message.
@@ -175,11 +180,11 @@ mod tests {
     #[test]
     fn messages_follow_each_other_without_reading_ahead() {
         let mut stream = Vec::new();
-        send(&mut stream, &Event::Ready { pid: 7, user: None }).unwrap();
+        send(&mut stream, &Event::Ready { session: Some(7), user: None }).unwrap();
         send(&mut stream, &Event::Failed(Failure { stage: "limits".into(), errno: 1 })).unwrap();
         stream.extend_from_slice(b"rest");
         let mut reader = &stream[..];
-        assert_eq!(receive::<Event>(&mut reader).unwrap(), Event::Ready { pid: 7, user: None });
+        assert_eq!(receive::<Event>(&mut reader).unwrap(), Event::Ready { session: Some(7), user: None });
         assert!(matches!(receive::<Event>(&mut reader).unwrap(), Event::Failed(_)));
         assert_eq!(reader, b"rest");
     }

@@ -60,6 +60,44 @@ fn a_user_per_program_holds_what_it_can_where_there_is_no_landlock() {
 }
 
 #[test]
+fn hosts_without_namespaces_hold_the_promises_too() {
+    let Some(backend) = backend() else { return };
+    let Ok(backend) = backend.without(Layer::Namespaces) else { return };
+    let Some(table) = attacked(&backend) else { return };
+    assert_all_held(&table, 60);
+}
+
+/// Root can try what an ordinary user's grader holds: the program alone, where everybody may execute it.
+#[test]
+fn an_ordinary_users_grader_holds_the_promises_too() {
+    use std::os::unix::fs::PermissionsExt;
+    let Some(_) = backend() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let open = std::fs::Permissions::from_mode(0o777);
+    std::fs::set_permissions(folder.path(), open.clone()).unwrap();
+    let grader = folder.path().join("fosssim-oracle");
+    std::fs::copy(env!("CARGO_BIN_EXE_fosssim-oracle"), &grader).unwrap();
+    std::fs::set_permissions(&grader, open).unwrap();
+    let output = std::process::Command::new("setpriv")
+        .args(["--reuid=65534", "--regid=65534", "--clear-groups"])
+        .arg(&grader)
+        .arg("selftest")
+        .env("TMPDIR", folder.path())
+        .current_dir("/")
+        .output();
+    let Ok(output) = output else {
+        eprintln!("skipped: there is no setpriv");
+        return;
+    };
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    if err.contains("setpriv:") || err.contains("cannot run programs safely") {
+        eprintln!("skipped: {err}");
+        return;
+    }
+    assert!(output.status.success() && out.contains(" 0 not held"), "{out}{err}");
+}
+
+#[test]
 fn attacks_are_never_run_without_walls() {
     let backend = Backend::fake(|_| unreachable!("nothing is started"));
     let folder = tempfile::tempdir().unwrap();

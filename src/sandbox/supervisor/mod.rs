@@ -8,11 +8,13 @@ mod child;
 mod filter;
 mod folder;
 mod modes;
+mod namespaces;
 mod probe;
 pub(super) mod processes;
 mod run;
 mod slot;
 mod streams;
+mod view;
 mod walls;
 
 use std::ffi::OsString;

@@ -3,11 +3,13 @@
 use std::io;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::net::UnixStream;
+use std::path::Path;
 use std::process::ExitCode;
 
+use super::namespaces::{self, Side};
 use super::{filter, slot, walls};
 use crate::sandbox::sys::{self, Fork};
-use crate::sandbox::wire::{self, Probe};
+use crate::sandbox::wire::{self, Failure, Order, Probe};
 
 /// The first kernel interface whose rules also confine signals and abstract sockets.
 const SCOPES_SINCE: i32 = 6;
@@ -24,6 +26,7 @@ fn probe() -> io::Result<Probe> {
     let root = sys::user() == 0;
     let mut probe = Probe { root, landlock_abi: sys::landlock_version(), ..Probe::default() };
     probe.reaper = why(sys::become_reaper());
+    probe.namespaces = try_namespaces();
     let slot = if root { slot::take().map(Some) } else { Ok(None) };
     let user = slot.as_ref().ok().and_then(|slot| slot.as_ref()).map(|slot| slot.user);
     if let Err(error) = &slot {
@@ -47,6 +50,34 @@ fn probe() -> io::Result<Probe> {
             answer
         }
     }
+}
+
+/// Moves into namespaces in a child that then ends, with a folder in sight that every Linux has.
+fn try_namespaces() -> Option<String> {
+    let order =
+        Order { program: wire::raw(Path::new("/bin/sh")), folder: wire::raw(Path::new("/usr")), ..Order::default() };
+    let tried = || -> io::Result<Option<String>> {
+        let (answer, mut told) = io::pipe()?;
+        if let Fork::Parent(child) = sys::fork()? {
+            drop(told);
+            let answer = wire::receive(answer);
+            sys::wait_for(child)?;
+            return answer;
+        }
+        drop(answer);
+        let word = match namespaces::enter(&order) {
+            Ok(Side::Inside) => Some(None),
+            // It has told by itself, or died without a word.
+            Ok(Side::Outside(_)) => None,
+            Err(Failure { stage, errno }) => {
+                Some(Some(format!("could not {stage}: {}", io::Error::from_raw_os_error(errno))))
+            }
+        };
+        // A prober that is gone needs no answer.
+        let _ = word.map(|word: Option<String>| wire::send(&mut told, &word));
+        sys::exit_now(0)
+    };
+    tried().unwrap_or_else(|error| Some(error.to_string()))
 }
 
 /// Puts up one wall after the other.

@@ -88,14 +88,15 @@ pub(super) fn end_all(user: Option<u32>, mut reaped: impl FnMut(sys::Reaped)) ->
     }
 }
 
-/// Ends what a lost supervisor may have left: the processes of its child's session and those of the child's own user.
-pub(in crate::sandbox) fn end_orphans(session: i32, user: Option<u32>) {
+/// Ends what a lost supervisor may have left: the processes of its child's session and those of the child's own user. A
+/// process namespace ends all of its processes by itself, and its sessions are not ours to name.
+pub(in crate::sandbox) fn end_orphans(session: Option<i32>, user: Option<u32>) {
     const ROUNDS: u32 = 1000;
     for _ in 0..ROUNDS {
         let victims = stop_then_kill(|| {
             let mut victims: Vec<i32> = all()
                 .filter_map(read)
-                .filter(|stat| stat.session == session && stat.state != b'Z')
+                .filter(|stat| Some(stat.session) == session && stat.state != b'Z')
                 .map(|stat| stat.pid)
                 .collect();
             victims.extend(user.into_iter().flat_map(of_user));

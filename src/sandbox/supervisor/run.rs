@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use super::child::{self, Opened, Plan};
 use super::folder::{self, Contents};
+use super::namespaces::{self, Side};
 use super::streams::Capture;
 use super::{calls, modes, processes, slot, walls};
 use crate::sandbox::sys::{self, Fork};
@@ -30,16 +31,45 @@ pub(super) fn main() -> ExitCode {
     let Ok((mut control, mut answers)) = streams() else { return ExitCode::from(2) };
     let result = wire::receive::<Order>(&mut control)
         .map_err(|error| Failure::new("read the order", &error))
-        .and_then(|order| Run::start(order, control))
-        .and_then(|run| run.finish(&mut answers));
+        .and_then(|order| settle(order, control))
+        .and_then(|settled| match settled {
+            Settled::Here(run) => run.finish(&mut answers).map(Ok),
+            Settled::Elsewhere(code) => Ok(Err(code)),
+        });
     let sent = match result {
-        Ok(Some((report, stdout, stderr))) => wire::send(&mut answers, &Event::Done(report))
+        Ok(Ok(Some((report, stdout, stderr)))) => wire::send(&mut answers, &Event::Done(report))
             .and_then(|()| answers.write_all(&stdout))
             .and_then(|()| answers.write_all(&stderr)),
-        Ok(None) => return ExitCode::from(1),
+        Ok(Ok(None)) => return ExitCode::from(1),
+        // What was inside has told everything.
+        Ok(Err(code)) => return ExitCode::from(code),
         Err(failure) => wire::send(&mut answers, &Event::Failed(failure)),
     };
     if sent.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(1) }
+}
+
+/// A run that has begun, or the word that all is over.
+enum Settled {
+    Here(Box<Run>),
+    /// It was another process's business, which ended with this code.
+    Elsewhere(u8),
+}
+
+/// Finds a user and a world for the run, and starts it there.
+fn settle(order: Order, control: File) -> Result<Settled, Failure> {
+    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+    // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
+    sys::new_session().map_err(stage("start the supervisor's session"))?;
+    let slot = match order.walls.own_user {
+        true => Some(slot::take().map_err(|error| Failure::new(format!("take a user of its own ({error})"), &error))?),
+        false => None,
+    };
+    if order.walls.namespaces
+        && let Side::Outside(code) = namespaces::enter(&order)?
+    {
+        return Ok(Settled::Elsewhere(code));
+    }
+    Run::start(order, control, slot).map(|run| Settled::Here(Box::new(run)))
 }
 
 /// The report, standard output and standard error.
@@ -72,19 +102,15 @@ struct Run {
 
 impl Run {
     /// Prepares everything and forks.
-    fn start(order: Order, control: File) -> Result<Self, Failure> {
+    fn start(order: Order, control: File, slot: Option<slot::Slot>) -> Result<Self, Failure> {
         let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
-        // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
-        sys::new_session().map_err(stage("start the supervisor's session"))?;
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
         let folder_before = folder::measure(folder.as_fd(), u64::MAX, u64::MAX);
-        let slot = if order.walls.own_user {
+        let slot = if let Some(slot) = slot {
             let owner = File::from(folder.try_clone().map_err(stage("open the working folder"))?)
                 .metadata()
                 .map_err(stage("look at the working folder"))?;
-            let slot =
-                slot::take().map_err(|error| Failure::new(format!("take a user of its own ({error})"), &error))?;
             folder::give(folder.as_fd(), slot.user, slot.user).map_err(stage("give the working folder away"))?;
             Some((slot, (owner.uid(), owner.gid())))
         } else {
@@ -159,7 +185,8 @@ impl Run {
     fn finish(mut self, answers: &mut File) -> Result<Option<Finished>, Failure> {
         let user = self.slot.as_ref().map(|(slot, _)| slot.user);
         // A grader that is gone shows as the end of the control pipe, too.
-        let _ = wire::send(answers, &Event::Ready { pid: self.child, user });
+        let session = (!self.order.walls.namespaces).then_some(self.child);
+        let _ = wire::send(answers, &Event::Ready { session, user });
         let watched = self.watch();
         let wall = self.began.elapsed();
         let (child, mut main_status) = (self.child, self.main_status);

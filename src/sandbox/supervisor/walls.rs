@@ -35,7 +35,7 @@ const LIBRARIES: [&str; 8] = [
 const MACHINE: [&str; 5] =
     ["/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo", "/etc/localtime", "/usr/share/zoneinfo"];
 /// Devices without an inside.
-const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
+pub(super) const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
 /// The system's programs, for compilers and build tools.
 const TOOLS: [&str; 4] = ["/usr", "/bin", "/lib", "/lib64"];
 /// Settings that compilers and build tools read.
@@ -48,6 +48,14 @@ const SETTINGS: [&str; 7] = [
     "/etc/nsswitch.conf",
     "/etc/os-release",
 ];
+
+/// Every path outside the working folder that the rules let the order's program read, devices aside.
+pub(super) fn readable(order: &Order) -> Vec<PathBuf> {
+    let fixed = LIBRARIES.iter().chain(&MACHINE).map(PathBuf::from);
+    let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
+    let tools = if order.tools { [&TOOLS[..], &SETTINGS[..]] } else { [&[][..], &[]] };
+    fixed.chain(named).chain(tools.concat().into_iter().map(PathBuf::from)).collect()
+}
 
 /// Prepares the rules for an order whose working folder is open as `folder`. Paths that this host lacks are left out.
 pub(super) fn rules(order: &Order, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {

@@ -1,0 +1,113 @@
+//! The system calls that make namespaces and mounts, each behind a safe function.
+//!
+//! Like `sys.rs`, and with the same promise: every function passes the kernel valid pointers to live values, turns its
+//! answer into a `Result`, and keeps no pointer. Only the supervisor's own fresh process calls these.
+
+#![expect(unsafe_code, reason = "namespaces and mounts have no safe wrapper among the dependencies")]
+
+use std::ffi::CStr;
+use std::io;
+use std::os::fd::{AsRawFd, BorrowedFd, FromRawFd, OwnedFd, RawFd};
+
+/// Whatever lies there can be read and not changed.
+pub(super) const READ_ONLY: u64 = 0x1;
+/// Set-user bits are without effect.
+pub(super) const NO_SET_USER: u64 = 0x2;
+/// Device files are without effect.
+pub(super) const NO_DEVICES: u64 = 0x4;
+
+const OPEN_TREE_CLONE: u32 = 1;
+const AT_RECURSIVE: u32 = 0x8000;
+const MOVE_MOUNT_FROM_DESCRIPTOR: u32 = 4;
+
+/// The kernel's `mount_attr`.
+#[repr(C)]
+struct Attributes {
+    set: u64,
+    clear: u64,
+    propagation: u64,
+    user_namespace: u64,
+}
+
+fn check(answer: i64) -> io::Result<i64> {
+    if answer < 0 { Err(io::Error::last_os_error()) } else { Ok(answer) }
+}
+
+/// Leaves namespaces for new ones (`CLONE_NEW*`).
+pub(super) fn unshare(flags: i32) -> io::Result<()> {
+    // SAFETY: an integer; nothing of ours depends on the namespaces that are left.
+    check(i64::from(unsafe { libc::unshare(flags) })).map(drop)
+}
+
+/// Has no mount of this namespace show anywhere else.
+pub(super) fn keep_to_ourselves() -> io::Result<()> {
+    let flags = libc::MS_REC | libc::MS_PRIVATE;
+    // SAFETY: the path is a constant; the other pointers are not read for a change of propagation.
+    let answer = unsafe { libc::mount(std::ptr::null(), c"/".as_ptr(), std::ptr::null(), flags, std::ptr::null()) };
+    check(i64::from(answer)).map(drop)
+}
+
+/// Mounts a fresh file system of this kind. What set-user bits and devices mean there is: nothing.
+pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr) -> io::Result<()> {
+    let flags = libc::MS_NOSUID | libc::MS_NODEV | libc::MS_NOEXEC;
+    // SAFETY: all texts outlive the call.
+    let answer = unsafe { libc::mount(kind.as_ptr(), target.as_ptr(), kind.as_ptr(), flags, options.as_ptr().cast()) };
+    check(i64::from(answer)).map(drop)
+}
+
+/// A copy of the mounts at and beneath the path, which lies nowhere yet. A link at its end is not followed.
+pub(super) fn copy_of(path: &CStr) -> io::Result<OwnedFd> {
+    let flags = OPEN_TREE_CLONE | AT_RECURSIVE | (libc::O_CLOEXEC | libc::AT_SYMLINK_NOFOLLOW).cast_unsigned();
+    // SAFETY: the path outlives the call.
+    let fd = check(unsafe { libc::syscall(libc::SYS_open_tree, libc::AT_FDCWD, path.as_ptr(), flags) })?;
+    // SAFETY: the kernel has just opened it for us alone.
+    Ok(unsafe { OwnedFd::from_raw_fd(fd as RawFd) })
+}
+
+/// Restricts every mount of the copy.
+pub(super) fn restrict(tree: BorrowedFd<'_>, attributes: u64) -> io::Result<()> {
+    set_attributes(tree.as_raw_fd(), c"", AT_RECURSIVE | libc::AT_EMPTY_PATH.cast_unsigned(), attributes)
+}
+
+/// Restricts the one mount at the path.
+pub(super) fn restrict_at(path: &CStr, attributes: u64) -> io::Result<()> {
+    set_attributes(libc::AT_FDCWD, path, 0, attributes)
+}
+
+fn set_attributes(start: RawFd, path: &CStr, flags: u32, attributes: u64) -> io::Result<()> {
+    let wanted = Attributes { set: attributes, clear: 0, propagation: 0, user_namespace: 0 };
+    let size = size_of::<Attributes>();
+    // SAFETY: path and structure outlive the call and the size is the structure's.
+    let answer =
+        unsafe { libc::syscall(libc::SYS_mount_setattr, start, path.as_ptr(), flags, &raw const wanted, size) };
+    check(answer).map(drop)
+}
+
+/// Lays the copy over the path.
+pub(super) fn attach(tree: BorrowedFd<'_>, target: &CStr) -> io::Result<()> {
+    // SAFETY: both paths outlive the call; the empty one means the descriptor itself.
+    let answer = unsafe {
+        libc::syscall(
+            libc::SYS_move_mount,
+            tree.as_raw_fd(),
+            c"".as_ptr(),
+            libc::AT_FDCWD,
+            target.as_ptr(),
+            MOVE_MOUNT_FROM_DESCRIPTOR,
+        )
+    };
+    check(answer).map(drop)
+}
+
+/// Makes the mount at `root` the root folder, and the old root a folder beneath it.
+pub(super) fn change_root(root: &CStr, old: &CStr) -> io::Result<()> {
+    // SAFETY: both paths outlive the call.
+    check(unsafe { libc::syscall(libc::SYS_pivot_root, root.as_ptr(), old.as_ptr()) })?;
+    std::env::set_current_dir("/")
+}
+
+/// Takes the mounts at and beneath the path away.
+pub(super) fn detach(path: &CStr) -> io::Result<()> {
+    // SAFETY: the path outlives the call.
+    check(i64::from(unsafe { libc::umount2(path.as_ptr(), libc::MNT_DETACH) })).map(drop)
+}
