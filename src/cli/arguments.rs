@@ -105,7 +105,7 @@ pub(super) struct Check {
     pub(super) trace: Option<PathBuf>,
     /// Instead of a trace, judge the reference's own ones by the original's rules, at growing scale: says which scenes
     /// these rules can't grade fairly. Without scenes, those of the suite t2m2.
-    #[arg(long = "self", value_name = "SCENE", num_args = 0.., conflicts_with_all = ["scene", "audit", "rules"])]
+    #[arg(long = "self", value_name = "SCENE", num_args = 0.., conflicts_with_all = ["scene", "audit", "rules", "no_explain"])]
     pub(super) own: Option<Vec<PathBuf>>,
     /// The rule books.
     #[arg(long, value_enum, default_value_t = Rules::Both)]
@@ -116,6 +116,9 @@ pub(super) struct Check {
     /// Where to write the report, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Do not look for the mistake that explains a wrong trace.
+    #[arg(long)]
+    pub(super) no_explain: bool,
     /// Number of threads, eight at most; the report does not depend on it. One per core by default.
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<NonZeroUsize>,

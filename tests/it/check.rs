@@ -150,7 +150,7 @@ fn colours_only_decorate() {
     let scene = scene::read("scene", BOUNCE.as_bytes()).unwrap().scene;
     let trace = changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0));
     let outcome = parity::judge(&scene, &trace[..], &parity::Options::default(), &mut ());
-    let check = Check { scene: "s", trace: "t", outcome: &outcome, rules: Rules::Both, audit: true };
+    let check = Check { scene: "s", trace: "t", outcome: &outcome, explanations: &[], rules: Rules::Both, audit: true };
     let coloured = check.text(Style::Colour);
     let mut plain = String::new();
     for piece in coloured.split('\x1b') {

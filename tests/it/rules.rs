@@ -52,6 +52,20 @@ fn correct_programs_that_the_original_fails_are_accepted_and_the_rule_is_named()
 }
 
 #[test]
+fn a_wrong_trace_comes_with_its_likely_mistake_unless_nobody_asks() {
+    let workspace = sampled("ImpulsesTests/off-centre-on-turning-edge", "pe-square-no-eh");
+    let (run, json) = report(&workspace, "both");
+    assert_eq!((run.code, &json["explanations"][0]["key"]), (Some(1), &"pe-square-no-eh".into()), "{json:#}");
+    let text = workspace.run(["check", "scene.xml", "trace.bin"]);
+    assert!(text.out().contains("What explains it\n  likely mistake: "), "{}", text.shown());
+    let silent = workspace.run(["check", "scene.xml", "trace.bin", "--no-explain"]);
+    assert!(!silent.out().contains("likely mistake"), "{}", silent.shown());
+    // Correct programs that the original fails make no mistake.
+    let (_, json) = report(&sampled("GeometricTests/tiny-edge-just-missed", "scale-2"), "both");
+    assert_eq!(json["explanations"], serde_json::json!([]));
+}
+
+#[test]
 fn garbage_that_the_original_passes_is_rejected_and_the_rule_is_named() {
     let scene = "ContinuousTimeTests/oblique-glancing-blow";
     for (mistake, cause, verdict) in [

@@ -6,20 +6,31 @@ use crate::{
         console, exit, input,
         output::Output,
     },
-    judge::{Rules, Stop, Unreadable, parity},
+    diagnose,
+    judge::{Outcome, Overall, Rules, Stop, Unreadable, fair, parity},
     report::{self, style::Style},
     sim::{RootSearch, StepError},
 };
 use anyhow::{Result, bail};
+use std::{
+    io::{self, Read},
+    path::Path,
+};
+
+/// So much of a wrong trace is looked at for its explanation, in bytes.
+const EXPLAINED: u64 = 64 << 20;
+
+/// So much of a trace that comes only once is kept for it: the course's largest has 18 MB.
+const KEPT: usize = 24 << 20;
 
 pub(super) fn run(arguments: &Check) -> Result<u8> {
     if let Some(scenes) = &arguments.own {
         return headroom::run(scenes, arguments);
     }
     // The parser has seen to it that both are there.
-    let (Some(scene), Some(trace)) = (&arguments.scene, &arguments.trace) else { bail!("name a scene and a trace") };
+    let (Some(scene), Some(name)) = (&arguments.scene, &arguments.trace) else { bail!("name a scene and a trace") };
     let scene = input::scene(scene)?;
-    let mut trace = input::trace(trace)?;
+    let mut trace = input::trace(name)?;
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
@@ -31,7 +42,11 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         ..parity::Options::default()
     };
     let mut bar = console::Bar::new(scene.scene.steps());
-    let outcome = parity::judge(&scene.scene, &mut trace.reader, &options, &mut bar);
+    let lasting = is_lasting(name);
+    let most = if lasting || arguments.no_explain { 0 } else { KEPT };
+    let mut reader = Kept { inner: &mut trace.reader, bytes: Vec::new(), most };
+    let outcome = parity::judge(&scene.scene, &mut reader, &options, &mut bar);
+    let kept = reader.bytes;
     drop(bar);
     match &outcome.stop {
         Some(Stop::Step(StepError::VortexHessian { .. })) => bail!(
@@ -51,8 +66,15 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
             }
         }
     }
+    let explanations = if !arguments.no_explain && is_wrong(&outcome) {
+        let bytes = if lasting { again(name) } else { kept };
+        diagnose::explain(&scene.scene, &bytes)
+    } else {
+        Vec::new()
+    };
     let (scene, trace) = (scene.name.as_str(), trace.name.as_str());
-    let check = report::check::Check { scene, trace, outcome: &outcome, rules, audit: arguments.audit };
+    let audit = arguments.audit;
+    let check = report::check::Check { scene, trace, outcome: &outcome, explanations: &explanations, rules, audit };
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let text = match arguments.format {
         Format::Text => check.text(style),
@@ -67,4 +89,42 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         bail!("{disagreements} disagreements between certificates and the root finder; please report this");
     }
     Ok(if check.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}
+
+/// Whether there is something to explain: the fair rules know better what is a mistake.
+fn is_wrong(outcome: &Outcome) -> bool {
+    match &outcome.fair {
+        Some(fair) => fair.verdict == fair::Verdict::Rejected,
+        None => outcome.overall != Overall::Passed,
+    }
+}
+
+/// Whether a trace can be read a second time: then it need not be kept while it is judged.
+fn is_lasting(name: &Path) -> bool {
+    name != Path::new("-") && !std::fs::metadata(name).is_ok_and(|data| !data.is_file())
+}
+
+/// The beginning of a trace that has been read before. What can't be read on has been reported by now.
+fn again(name: &Path) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    if let Ok(trace) = input::trace(name) {
+        let _ = trace.reader.take(EXPLAINED).read_to_end(&mut bytes);
+    }
+    bytes
+}
+
+/// A reader whose first bytes are kept, because they come only once.
+struct Kept<R> {
+    inner: R,
+    bytes: Vec<u8>,
+    most: usize,
+}
+
+impl<R: Read> Read for Kept<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        let room = self.most - self.bytes.len();
+        self.bytes.extend_from_slice(&buffer[..count.min(room)]);
+        Ok(count)
+    }
 }

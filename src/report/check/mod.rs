@@ -10,9 +10,11 @@ mod text;
 
 use super::{
     describe::step_error,
+    explain::ExplanationView,
     style::Style,
     view::{CHECK_SCHEMA, FindingView, Number},
 };
+use crate::diagnose::Explanation;
 use crate::judge::{Book, Kind, Outcome, Overall, Rules, Ruling, Stop, Unreadable};
 use fair_view::{CauseView, CountedView, FairView};
 use serde::Serialize;
@@ -27,6 +29,8 @@ pub struct Check<'a> {
     pub trace: &'a str,
     /// What judging yielded.
     pub outcome: &'a Outcome,
+    /// Likely mistakes, the likeliest first; empty where nothing is wrong or nobody has asked.
+    pub explanations: &'a [Explanation],
     /// Which rule books were asked.
     pub rules: Rules,
     /// Whether certificates were audited, so that the counts of root searches are worth showing.
@@ -100,6 +104,7 @@ impl Check<'_> {
                 .iter()
                 .map(|first| CountedView { count: account.counts.get(first.kind()), first: finding(first) })
                 .collect(),
+            explanations: self.explanations.iter().map(ExplanationView::from).collect(),
             steps: outcome.steps,
             steps_judged: outcome.steps_judged,
             wrong_steps: account.wrong_steps,
@@ -156,6 +161,7 @@ struct View<'a> {
     difference: Option<CauseView>,
     first_divergence: Option<FindingView>,
     findings: Vec<CountedView>,
+    explanations: Vec<ExplanationView>,
     steps: u32,
     steps_judged: u32,
     wrong_steps: u64,

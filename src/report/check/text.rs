@@ -2,6 +2,7 @@
 use super::{
     super::{
         describe::step_error,
+        explain,
         number::{count, general},
         style::{Look, Style},
         table::{Align, Cell, Table},
@@ -27,8 +28,15 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         parts.push(divergence::render(first, outcome.steps, style));
         parts.push(advice(first, style));
     }
+    parts.extend(explanations(check, style));
     parts.extend(notes(check, style));
     parts.join("\n")
+}
+
+/// What the program is likely to get wrong, before general advice is of use.
+fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
+    let lines: String = explain::lines(check.explanations).iter().map(|line| format!("  {line}\n")).collect();
+    (!lines.is_empty()).then(|| format!("{}\n{lines}", style.paint(Look::Strong, "What explains it")))
 }
 
 fn head(check: &Check<'_>, style: Style) -> String {
