@@ -10,6 +10,7 @@ mod fuzz_replay;
 mod grading;
 mod known;
 mod layers;
+mod metamorphic;
 mod parity;
 mod properties;
 mod record;

@@ -1,0 +1,283 @@
+//! What other coordinates, other lengths and other names change: nothing but the names.
+//!
+//! Quarter turns and mirrors only exchange and negate coordinates, so every sum of products keeps its bits; so does a
+//! power of two as unit of length, unless an absolute constant bites. Elsewhere round-off differs, and a step is compared from
+//! the same state, where no decision hangs on round-off.
+use super::{
+    built_in,
+    crowd::{Wanted, crowd, hybrid},
+    mended::Mended,
+    search,
+    transform::{Map, reversed, with_ends_exchanged, with_particles_reversed},
+};
+use fosssim_oracle::{
+    num::{
+        bounded::Bounded,
+        decision::{Certainty, decide},
+        polynomial::Polynomial,
+        vector::Vec2,
+    },
+    scene::{Collision, Integrator, Scene},
+    sim::{Decision, Detection, Observer, Pair, PairKind, Resume, RootSearch, Simulation, State},
+};
+use proptest::prelude::*;
+use rayon::prelude::*;
+use std::cell::Cell;
+
+/// A detection: the pair, its polynomials, and the time and normal of a hit.
+type Heard = (Pair, Vec<Polynomial>, Option<(f64, Vec2)>);
+
+/// Everything that a step tells.
+#[derive(Debug, Default, PartialEq)]
+struct Story {
+    detections: Vec<Heard>,
+    middle: Option<State>,
+}
+
+impl Observer for Story {
+    fn begin_step(&mut self, _step: u32) {
+        *self = Self::default();
+    }
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let hit = match detection.decision {
+            Decision::Hit { time, normal } => Some((time, normal)),
+            Decision::Miss { .. } => None,
+        };
+        self.detections.push((detection.pair, detection.polynomials.to_vec(), hit));
+    }
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        self.middle = Some(state.clone());
+        Resume::Own
+    }
+}
+
+impl Story {
+    /// The story as it looks through the map.
+    fn mapped(&self, map: &Map) -> Self {
+        let square = map.factor * map.factor;
+        let detection = |(pair, polynomials, hit): &Heard| {
+            let scales = if pair.kind == PairKind::ParticleEdge {
+                [square * square, square, square, square * square * square]
+            } else {
+                [square; 4]
+            };
+            let scaled = |(polynomial, scale): (&Polynomial, f64)| {
+                let coefficients: Vec<f64> = polynomial.coefficients().iter().map(|c| scale * c).collect();
+                Polynomial::untrimmed(&coefficients)
+            };
+            let polynomials = polynomials.iter().zip(scales).map(scaled).collect();
+            (*pair, polynomials, hit.map(|(time, normal)| (time, map.vector(normal))))
+        };
+        Self {
+            detections: self.detections.iter().map(detection).collect(),
+            middle: self.middle.as_ref().map(|state| map.state(state)),
+        }
+    }
+
+    /// Whether the other story has dropped other coefficients as too small.
+    fn drops_others(&self, other: &Self) -> bool {
+        self.detections.iter().zip(&other.detections).any(|(one, two)| {
+            one.1.iter().zip(&two.1).any(|(one, two)| one.coefficients().len() != two.coefficients().len())
+        })
+    }
+}
+
+/// Simulates the scene and its image side by side and says how many steps were the same, and what ended it: `None` if
+/// nothing did, else whether a coefficient was dropped on one side only.
+fn same_steps(scene: &Scene, map: &Map) -> (u32, Option<bool>) {
+    let mut one = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut two = Simulation::new(&map.scene(scene), RootSearch::WhereNeeded);
+    let (mut left, mut right) = (Story::default(), Story::default());
+    for step in 0..scene.steps() {
+        one.step(&mut left).expect("an ordinary step");
+        two.step(&mut right).expect("an ordinary step");
+        if left.mapped(map) != right || map.state(one.state()) != *two.state() {
+            return (step, Some(left.drops_others(&right)));
+        }
+    }
+    (scene.steps(), None)
+}
+
+/// The linear solver pivots by rows and columns, which a turn exchanges.
+fn is_explicit(scene: &Scene) -> bool {
+    !matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler)
+}
+
+#[test]
+fn quarter_turns_and_mirrors_change_no_bit() {
+    let maps = [[[0.0, -1.0], [1.0, 0.0]], [[-1.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [1.0, 0.0]]];
+    let different: Vec<String> = built_in()
+        .par_iter()
+        .filter(|(_, scene)| is_explicit(scene))
+        .flat_map_iter(|(name, scene)| {
+            let maps = maps.map(|rows| Map { rows, ..Map::NONE });
+            let differs = move |map: Map| same_steps(scene, &map).1.map(|_| format!("{name} {:?}", map.rows));
+            maps.into_iter().filter_map(differs)
+        })
+        .collect();
+    assert!(different.is_empty(), "{different:#?}");
+}
+
+/// Newton's method stops at an absolute bound, and coefficients are dropped at one.
+#[test]
+fn powers_of_two_as_unit_of_length_change_no_bit() {
+    let cases: Vec<(String, (u32, Option<bool>), u32)> = built_in()
+        .par_iter()
+        .filter(|(_, scene)| scene.integrator != Integrator::ImplicitEuler)
+        .flat_map_iter(|(name, scene)| {
+            [4.0, 0.5].map(|factor| {
+                let map = Map { factor, ..Map::NONE };
+                (format!("{name} times {factor}"), same_steps(scene, &map), scene.steps())
+            })
+        })
+        .collect();
+    let unexplained: Vec<&String> = cases.iter().filter(|case| case.1.1 == Some(false)).map(|case| &case.0).collect();
+    assert!(unexplained.is_empty(), "{unexplained:#?}");
+    let whole = cases.iter().filter(|case| case.1.0 == case.2).count();
+    assert!(whole * 20 > cases.len() * 17, "{whole} of {} scenes stay the same to their end", cases.len());
+}
+
+/// Hears whether a decision hangs on round-off: on the coefficients by a few thousand roundings of the greatest, or on whether
+/// one is dropped.
+#[derive(Default)]
+struct Doubt {
+    any: bool,
+    hits: u32,
+}
+
+impl Observer for Doubt {
+    fn begin_step(&mut self, _step: u32) {
+        self.any = false;
+    }
+    fn detection(&mut self, detection: &Detection<'_>) {
+        if let Decision::Hit { normal, .. } = detection.decision {
+            self.hits += 1;
+            // Without a direction the response is no number (collisions.md 7).
+            self.any |= !(normal.norm() > 1e-9);
+        }
+        self.any |= is_doubtful(detection.polynomials);
+    }
+}
+
+fn is_doubtful(polynomials: &[Polynomial]) -> bool {
+    let lists: Vec<Vec<Bounded>> = polynomials
+        .iter()
+        .map(|polynomial| {
+            let greatest = polynomial.coefficients().iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+            polynomial.coefficients().iter().map(|&value| Bounded { value, bound: greatest }).collect()
+        })
+        .collect();
+    let slices: Vec<&[Bounded]> = lists.iter().map(|list| &list[..]).collect();
+    let certified = decide(&slices, 4096.0);
+    // The time of a contact that hardly touches moves by the root of a rounding.
+    let is_loose = certified.time.is_some_and(|[from, to]| to - from > 1e-9);
+    let is_alone = |list: &Vec<Bounded>| list.len() < 2 || list[1..].iter().all(|c| c.value == 0.0);
+    certified.certainty == Certainty::Borderline
+        || is_loose
+        || certified.certainty == Certainty::Yes && lists.iter().any(is_alone)
+}
+
+/// One way to write the same scene.
+struct Rewriting {
+    name: &'static str,
+    scene: fn(&Scene) -> Scene,
+    state: fn(&State) -> State,
+}
+
+const SHIFT: Map = Map { shift: [3.7, -11.3], ..Map::NONE };
+
+fn turn() -> Map {
+    Map::turn(0.7)
+}
+
+fn turned_and_shifted_mirror() -> Map {
+    let [a, b] = turn().rows;
+    Map { rows: [[-a[0], -a[1]], b], ..SHIFT }
+}
+
+const REWRITINGS: [Rewriting; 5] = [
+    Rewriting { name: "shifted", scene: |scene| SHIFT.scene(scene), state: |state| SHIFT.state(state) },
+    Rewriting { name: "turned", scene: |scene| turn().scene(scene), state: |state| turn().state(state) },
+    Rewriting {
+        name: "mirrored, turned and shifted",
+        scene: |scene| turned_and_shifted_mirror().scene(scene),
+        state: |state| turned_and_shifted_mirror().state(state),
+    },
+    Rewriting { name: "edges' ends exchanged", scene: with_ends_exchanged, state: State::clone },
+    Rewriting { name: "particles in opposite order", scene: with_particles_reversed, state: reversed },
+];
+
+/// Compares every step of the scene with that of the rewritten one, both from the same state and with the right approach;
+/// counts the steps compared. In one pass of `continuous-time` the order of the particles matters, and `simple` decides
+/// without polynomials, so that doubts are not noticed.
+fn compare(scene: &Scene, rewriting: &Rewriting) -> Result<(u32, u32), String> {
+    let is_ordered = matches!(scene.collision, Collision::ContinuousTime { .. });
+    if is_ordered && rewriting.name.starts_with("particles") || matches!(scene.collision, Collision::Simple { .. }) {
+        return Ok((0, 0));
+    }
+    let image = (rewriting.scene)(scene);
+    let mut one = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut two = Simulation::new(&image, RootSearch::WhereNeeded);
+    let mut observer = Mended { scene, inner: Doubt::default() };
+    let mut compared = 0;
+    for step in 1..=scene.steps() {
+        *two.state_mut() = (rewriting.state)(one.state());
+        observer.inner.any = false;
+        let left = one.step(&mut observer);
+        let right = two.step(&mut Mended { scene: &image, inner: () });
+        if left.is_err() && right.is_err() {
+            break;
+        }
+        if observer.inner.any {
+            if left.is_err() || right.is_err() {
+                break;
+            }
+            continue;
+        }
+        if let Err(error) = left.and(right) {
+            return Err(format!("{}: in one of both {error}", rewriting.name));
+        }
+        compared += 1;
+        let expected = (rewriting.state)(one.state());
+        for (expected, actual) in
+            [(&expected.positions, &two.state().positions), (&expected.velocities, &two.state().velocities)]
+        {
+            let size = expected.iter().fold(1.0_f64, |most, value| most.max(value.abs()));
+            let off = expected.iter().zip(actual).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+            if !(off <= 1e-8 * size) {
+                return Err(format!("{} step {step}: off by {off}", rewriting.name));
+            }
+        }
+    }
+    Ok((compared, observer.inner.hits))
+}
+
+#[test]
+fn built_in_scenes_go_on_alike_however_they_are_written() {
+    let results: Vec<Result<(u32, u32), String>> = built_in()
+        .par_iter()
+        .flat_map_iter(|(name, scene)| {
+            REWRITINGS.iter().map(move |one| compare(scene, one).map_err(|fault| format!("{name} {fault}")))
+        })
+        .collect();
+    let faults: Vec<&String> = results.iter().filter_map(|result| result.as_ref().err()).collect();
+    assert!(faults.is_empty(), "{faults:#?}");
+    let compared: u32 = results.iter().flatten().map(|result| result.0).sum();
+    assert!(compared > 10_000, "{compared} steps compared");
+}
+
+#[test]
+fn random_scenes_go_on_alike_however_they_are_written() {
+    let (compared, hits) = (Cell::new(0), Cell::new(0));
+    for collision in [hybrid(0.5, 3), hybrid(1.0, 0), Collision::ContinuousTime { restitution: 0.5 }] {
+        search(500, &crowd(Wanted { collision, fixed: true, half_planes: true, steps: 2 }), |scene| {
+            for rewriting in &REWRITINGS {
+                let (steps, met) = compare(&scene, rewriting).map_err(TestCaseError::fail)?;
+                compared.set(compared.get() + steps);
+                hits.set(hits.get() + met);
+            }
+            Ok(())
+        });
+    }
+    assert!(compared.get() > 3000 && hits.get() > 3000, "{} steps, {} hits", compared.get(), hits.get());
+}

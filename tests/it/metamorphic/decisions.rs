@@ -1,0 +1,97 @@
+//! Every decision of whole simulations against the certified and the exact one.
+use super::built_in;
+use fosssim_oracle::{
+    num::{
+        bounded::Bounded,
+        decision::{
+            Certainty, decide,
+            exact::{ExactAnswer, exact_first},
+        },
+        polynomial::Polynomial,
+        tolerances::FAIR_UNITS,
+    },
+    scene::Scene,
+    sim::{Decision, Detection, Observer, RootSearch, Simulation},
+};
+use rayon::prelude::*;
+
+/// How the decisions of a scene compare.
+#[derive(Debug, Default, Clone)]
+struct Tally {
+    /// The same, certainly.
+    same: u64,
+    /// Hang on round-off.
+    borderline: u64,
+    /// Another answer because `c t^m` counts as nowhere positive in the original (root-finder.md 17.1).
+    alone: u64,
+    /// Decisions for which integers were asked.
+    exact: u64,
+    /// Another answer that nothing explains.
+    unexplained: Vec<String>,
+    /// The certified and the exact decision differ.
+    contradictions: Vec<String>,
+}
+
+/// A polynomial of one term with a power of t.
+fn is_alone(polynomial: &Polynomial) -> bool {
+    let list = polynomial.coefficients();
+    list.len() > 1 && list[1..].iter().all(|&c| c == 0.0)
+}
+
+impl Observer for Tally {
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let polynomials = detection.polynomials;
+        if polynomials.is_empty() {
+            return;
+        }
+        let is_hit = matches!(detection.decision, Decision::Hit { .. });
+        let lists: Vec<Vec<Bounded>> = polynomials
+            .iter()
+            .map(|polynomial| polynomial.coefficients().iter().map(|&c| Bounded { value: c, bound: c.abs() }).collect())
+            .collect();
+        let slices: Vec<&[Bounded]> = lists.iter().map(|list| &list[..]).collect();
+        let certainty = decide(&slices, FAIR_UNITS).certainty;
+        // Integers take long; what is near, what hits and a few others are enough.
+        let number = self.same + self.borderline;
+        if is_hit || certainty != Certainty::No || number.is_multiple_of(64) {
+            self.exact += 1;
+            let slices: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
+            let exact = matches!(exact_first(&slices), ExactAnswer::First { .. });
+            if certainty == Certainty::Yes && !exact || certainty == Certainty::No && exact {
+                self.contradictions.push(format!("{:?} {slices:?}", detection.pair));
+            }
+        }
+        match certainty {
+            Certainty::Borderline => self.borderline += 1,
+            certainty if (certainty == Certainty::Yes) == is_hit => self.same += 1,
+            Certainty::Yes if polynomials.iter().any(is_alone) => self.alone += 1,
+            certainty => {
+                let lists: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
+                self.unexplained.push(format!("{:?} {certainty:?} {:?} {lists:?}", detection.pair, detection.decision));
+            }
+        }
+    }
+}
+
+fn tally(scene: &Scene) -> Tally {
+    let mut tally = Tally::default();
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    for _ in 0..scene.steps() {
+        simulation.step(&mut tally).expect("an ordinary step");
+    }
+    tally
+}
+
+#[test]
+fn decisions_of_whole_simulations_are_the_exact_ones() {
+    let tallies: Vec<(&str, Tally)> = built_in().par_iter().map(|(name, scene)| (*name, tally(scene))).collect();
+    for (name, tally) in &tallies {
+        assert!(tally.contradictions.is_empty(), "{name}: {:#?}", tally.contradictions);
+        assert!(tally.unexplained.is_empty(), "{name}: {:#?}", tally.unexplained);
+    }
+    let sum = |part: fn(&Tally) -> u64| tallies.iter().map(|(_, tally)| part(tally)).sum::<u64>();
+    let (same, borderline, exact) = (sum(|one| one.same), sum(|one| one.borderline), sum(|one| one.exact));
+    let alone = sum(|one| one.alone);
+    assert!(same > 30_000 && exact > 1000, "{same} {exact}");
+    assert!((borderline + alone) * 100 < same, "{borderline} borderline and {alone} alone of {same}");
+}
