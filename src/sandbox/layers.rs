@@ -28,11 +28,13 @@ pub enum Layer {
     OwnUser,
     /// Namespaces: a world without other processes, without network, and with few files.
     Namespaces,
+    /// A control group per run: the kernel's own counts, and an end for all at one word.
+    ControlGroup,
 }
 
 impl Layer {
     /// All of them, in the order of a report.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::NoNewPrivileges,
         Self::Limits,
         Self::Reaper,
@@ -42,6 +44,7 @@ impl Layer {
         Self::Scopes,
         Self::OwnUser,
         Self::Namespaces,
+        Self::ControlGroup,
     ];
 
     /// The name in reports.
@@ -57,6 +60,7 @@ impl Layer {
             Self::Scopes => "signal scope (Landlock)",
             Self::OwnUser => "a user per program",
             Self::Namespaces => "namespaces",
+            Self::ControlGroup => "control group",
         }
     }
 }
@@ -184,6 +188,17 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
             "use Linux 5.12 or newer and let the grader make namespaces: in a container by its profile, for an ordinary \
              user by the kernel's settings (kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu)",
         ),
+        report(
+            Layer::ControlGroup,
+            probe.group.clone(),
+            &match &probe.group_controls[..] {
+                [] => "a run ends as a whole; no controller for memory or processes is to be had".to_string(),
+                controls => format!("a run ends as a whole; the kernel limits {}", controls.join(", ")),
+            },
+            false,
+            "use Linux 5.14 or newer with version 2, and start the grader in a group of its own, for example by \
+             systemd-run --user --scope -p Delegate=yes",
+        ),
     ]
 }
 
@@ -235,6 +250,7 @@ fn active(reports: &[LayerReport]) -> Walls {
         notify: active(Layer::NamedCalls) && active(Layer::CallFilter),
         own_user: active(Layer::OwnUser),
         namespaces: active(Layer::Namespaces),
+        group: active(Layer::ControlGroup),
     }
 }
 
@@ -264,7 +280,15 @@ mod tests {
 
     #[test]
     fn a_healthy_host_has_every_wall_that_it_can_have() {
-        let all = Walls { landlock: true, scopes: true, seccomp: true, notify: true, own_user: true, namespaces: true };
+        let all = Walls {
+            landlock: true,
+            scopes: true,
+            seccomp: true,
+            notify: true,
+            own_user: true,
+            namespaces: true,
+            group: true,
+        };
         assert_eq!(walls(&reports(&healthy(true))), Ok(all));
         assert_eq!(walls(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
         assert_eq!(reports(&healthy(true)).iter().map(|report| report.layer).collect::<Vec<_>>(), Layer::ALL);

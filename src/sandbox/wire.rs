@@ -42,6 +42,7 @@ pub(super) struct Walls {
     pub(super) notify: bool,
     pub(super) own_user: bool,
     pub(super) namespaces: bool,
+    pub(super) group: bool,
 }
 
 /// What the supervisor is to run.
@@ -149,6 +150,9 @@ pub(super) struct Probe {
     pub(super) own_user: Option<String>,
     pub(super) reaper: Option<String>,
     pub(super) namespaces: Option<String>,
+    pub(super) group: Option<String>,
+    /// What the kernel limits for a group here.
+    pub(super) group_controls: Vec<String>,
 }
 
 /// Writes one message.

@@ -31,6 +31,8 @@ pub(super) struct Plan {
     /// The program, opened while we could still reach it, for a user who cannot.
     pub(super) opened: Option<Opened>,
     pub(super) rules: Option<RulesetCreated>,
+    /// The way into the run's control group.
+    pub(super) group: Option<File>,
     pub(super) user: Option<u32>,
     pub(super) input: OwnedFd,
     pub(super) output: OwnedFd,
@@ -60,6 +62,9 @@ type Strings = Vec<CString>;
 fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     sys::new_session().map_err(stage("start a session"))?;
+    if let Some(group) = &mut plan.group {
+        group.write_all(b"0").map_err(stage("enter the control group"))?;
+    }
     for (number, fd) in [(0, &plan.input), (1, &plan.output), (2, &plan.error)] {
         sys::duplicate_to(fd.as_raw_fd(), number).map_err(stage("connect the standard streams"))?;
     }

@@ -7,6 +7,7 @@ mod calls;
 mod child;
 mod filter;
 mod folder;
+mod group;
 mod modes;
 mod namespaces;
 mod probe;

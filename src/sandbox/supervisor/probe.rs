@@ -1,11 +1,13 @@
 //! Tries every wall once, in a child that then ends, and reports what the kernel said.
 
-use std::io;
+use std::io::{self, Write};
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Duration;
 
+use super::group::Group;
 use super::namespaces::{self, Side};
 use super::{filter, slot, walls};
 use crate::sandbox::sys::{self, Fork};
@@ -27,6 +29,10 @@ fn probe() -> io::Result<Probe> {
     let mut probe = Probe { root, landlock_abi: sys::landlock_version(), ..Probe::default() };
     probe.reaper = why(sys::become_reaper());
     probe.namespaces = try_namespaces();
+    match try_group() {
+        Ok(controls) => probe.group_controls = controls.into_iter().map(str::to_string).collect(),
+        Err(error) => probe.group = Some(error.to_string()),
+    }
     let slot = if root { slot::take().map(Some) } else { Ok(None) };
     let user = slot.as_ref().ok().and_then(|slot| slot.as_ref()).map(|slot| slot.user);
     if let Err(error) = &slot {
@@ -50,6 +56,33 @@ fn probe() -> io::Result<Probe> {
             answer
         }
     }
+}
+
+/// Ends a child by its control group; the answer is what such a group limits.
+fn try_group() -> io::Result<Vec<&'static str>> {
+    let group = Group::make(&Order { memory: 1 << 30, processes: 64, ..Order::default() })?;
+    let mut entrance = group.entrance()?;
+    let (mut waits, entered) = io::pipe()?;
+    let Fork::Parent(child) = sys::fork()? else {
+        let word = entrance.write_all(b"0").map_err(|error| error.to_string());
+        // A prober that is gone needs no answer, and one that never kills is our parent, with whom we die.
+        let _ = sys::die_with_parent().and_then(|()| wire::send(entered, &word.err()));
+        loop {
+            std::thread::sleep(Duration::from_secs(1));
+        }
+    };
+    drop(entered);
+    let refused: io::Result<Option<String>> = wire::receive(&mut waits);
+    let killed = match refused {
+        Ok(None) => group.kill(),
+        Ok(Some(error)) => Err(io::Error::other(error)),
+        Err(error) => Err(error),
+    };
+    if killed.is_err() {
+        sys::kill(child, libc::SIGKILL)?;
+    }
+    sys::wait_for(child)?;
+    killed.map(|()| group.controls())
 }
 
 /// Moves into namespaces in a child that then ends, with a folder in sight that every Linux has.

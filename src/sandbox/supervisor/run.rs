@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use super::child::{self, Opened, Plan};
 use super::folder::{self, Contents};
+use super::group::Group;
 use super::namespaces::{self, Side};
 use super::streams::Capture;
 use super::{calls, modes, processes, slot, walls};
@@ -64,12 +65,16 @@ fn settle(order: Order, control: File) -> Result<Settled, Failure> {
         true => Some(slot::take().map_err(|error| Failure::new(format!("take a user of its own ({error})"), &error))?),
         false => None,
     };
+    let group = match order.walls.group {
+        true => Some(Group::make(&order).map_err(stage("make a control group"))?),
+        false => None,
+    };
     if order.walls.namespaces
         && let Side::Outside(code) = namespaces::enter(&order)?
     {
         return Ok(Settled::Elsewhere(code));
     }
-    Run::start(order, control, slot).map(|run| Settled::Here(Box::new(run)))
+    Run::start(order, control, slot, group).map(|run| Settled::Here(Box::new(run)))
 }
 
 /// The report, standard output and standard error.
@@ -84,6 +89,8 @@ struct Run {
     _pipe: Option<OwnedFd>,
     /// The user that the program runs as, if it is its own, and who owned the folder before.
     slot: Option<(slot::Slot, (u32, u32))>,
+    /// The control group, if there is one.
+    group: Option<Group>,
     child: i32,
     process: Option<OwnedFd>,
     status: Option<UnixStream>,
@@ -102,7 +109,7 @@ struct Run {
 
 impl Run {
     /// Prepares everything and forks.
-    fn start(order: Order, control: File, slot: Option<slot::Slot>) -> Result<Self, Failure> {
+    fn start(order: Order, control: File, slot: Option<slot::Slot>, group: Option<Group>) -> Result<Self, Failure> {
         let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
@@ -144,6 +151,7 @@ impl Run {
             folder: folder.try_clone().map_err(stage("open the working folder"))?,
             opened,
             rules,
+            group: group.as_ref().map(Group::entrance).transpose().map_err(stage("open the control group"))?,
             user: slot.as_ref().map(|(slot, _)| slot.user),
             input: File::open("/dev/null").map_err(stage("open /dev/null"))?.into(),
             output: output.into(),
@@ -169,6 +177,7 @@ impl Run {
             slot,
             child,
             process: sys::process_descriptor(child),
+            group,
             status: Some(status),
             told: Vec::new(),
             listener: None,
@@ -190,6 +199,10 @@ impl Run {
         let watched = self.watch();
         let wall = self.began.elapsed();
         let (child, mut main_status) = (self.child, self.main_status);
+        if let Some(group) = &self.group {
+            // What it leaves over, if anything, is ended one by one.
+            let _ = group.kill();
+        }
         let survivors = processes::end_all(user, |process| {
             if process.pid == child {
                 main_status = Some(process.status);
@@ -214,12 +227,14 @@ impl Run {
             Some(failure) => return Err(failure),
             None => None,
         };
+        let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
+        self.blame_if(out_of_memory, Cause::Memory);
         let (cpu, largest) = sys::children_usage().map_err(|error| Failure::new("ask for the usage", &error))?;
         let report = Report {
             cause: self.cause.take(),
             status: main_status.unwrap_or(0),
             exec_errno,
-            cpu_micros: micros(cpu),
+            cpu_micros: micros(cpu.max(self.group_cpu())),
             wall_micros: micros(wall),
             peak_memory: largest.max(self.peak_memory),
             folder_growth: after.bytes.saturating_sub(self.folder_before.bytes),
@@ -375,8 +390,13 @@ impl Run {
         self.peak_memory = self.peak_memory.max(usage.memory);
         self.blame_if(usage.memory > self.order.memory, Cause::Memory);
         self.blame_if(usage.threads > u64::from(self.order.processes), Cause::Processes);
-        self.blame_if(micros(usage.cpu + reaped) > self.order.cpu_micros, Cause::Cpu);
+        let cpu = (usage.cpu + reaped).max(self.group_cpu());
+        self.blame_if(micros(cpu) > self.order.cpu_micros, Cause::Cpu);
         self.blame_if(micros(self.began.elapsed()) > self.order.wall_micros, Cause::Wall);
+    }
+
+    fn group_cpu(&self) -> Duration {
+        self.group.as_ref().map_or(Duration::ZERO, Group::cpu)
     }
 
     /// Looks at the working folder and at removed files that are still being written.
