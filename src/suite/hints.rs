@@ -22,6 +22,17 @@ pub enum Hints {
 }
 
 impl Hints {
+    /// Its name in suites, and what it means in a few words.
+    #[must_use]
+    pub const fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::None => ("none", "the verdict only"),
+            Self::Where => ("where", "where the first divergence is"),
+            Self::What => ("what", "where the first divergence is, and the likely mistake in a sentence"),
+            Self::Full => ("full", "everything, formulas and values included"),
+        }
+    }
+
     /// What of explanations may be told: nothing below [`Hints::What`], no formulas, keys of others and examples below
     /// [`Hints::Full`].
     #[must_use]

@@ -112,6 +112,8 @@ fn explain(plan: &plan::Plan) -> String {
         limits.trace >> 20,
     );
     let _ = writeln!(text, "rules: {}", rules(plan.rules));
+    let (hints, meaning) = plan.hints.words();
+    let _ = writeln!(text, "hints: {hints}: {meaning}");
     for group in &plan.groups {
         let _ = writeln!(
             text,

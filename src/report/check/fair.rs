@@ -100,6 +100,7 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
         (None, Some(found)) => found,
         (None, None) if fair.verdict == Verdict::None => "nothing is wrong so far".to_owned(),
         (None, None) if outcome.steps == 0 => "there is no step to get wrong".to_owned(),
+        (None, None) if outcome.steps == 1 => "the only step is right".to_owned(),
         (None, None) => format!("all {steps} steps are right"),
     }
 }

@@ -62,8 +62,8 @@ fn head(check: &Check<'_>, style: Style) -> String {
     };
     let summary = match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {
         (Book::Parity, ..) | (_, None, _) => parity,
-        (Book::Fair, Some(_), Ruling::Accepted) if outcome.steps > 0 => {
-            format!("all {steps} steps are right by the fair rules")
+        (Book::Fair, Some(fair), Ruling::Accepted) if outcome.steps > 0 => {
+            format!("{} by the fair rules", fair::summary(fair, outcome))
         }
         (Book::Fair, Some(fair), _) => fair::summary(fair, outcome),
     };
