@@ -20,6 +20,8 @@ pub fn main() -> ExitCode {
     if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
         return code;
     }
+    // A half-written output is then removed like after any other failure.
+    crate::sandbox::let_large_writes_fail();
     let program = words.first().cloned().unwrap_or_default();
     if original::is_called(&program) {
         return original::main(program.as_bytes(), words.get(1..).unwrap_or_default());

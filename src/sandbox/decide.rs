@@ -1,7 +1,8 @@
 //! From the supervisor's facts to how a run ended.
 //!
 //! The kernel's word comes first: what the supervisor killed for, the wait status, the counters. What the program
-//! printed is consulted only to explain why it did not come to run.
+//! printed is consulted only to explain a failure: why it did not come to run, and whether it gave up for want of
+//! memory. Nobody gains by forging that; it is one failure instead of another.
 
 use super::outcome::{Ended, StartProblem, Stream};
 use super::wire::{Cause, Order, Report};
@@ -51,11 +52,15 @@ pub(super) fn ended(order: &Order, report: &Report, stderr: &[u8]) -> Ended {
     if report.folder_over {
         return Ended::FolderLimit;
     }
+    let text = String::from_utf8_lossy(stderr);
     if let Some(signal) = signal {
-        return Ended::Signalled(signal);
+        let refused = signal == libc::SIGABRT && wants_memory(&text);
+        return if refused { Ended::MemoryLimit } else { Ended::Signalled(signal) };
     }
     let code = libc::WEXITSTATUS(report.status);
-    let text = String::from_utf8_lossy(stderr);
+    if code != 0 && wants_memory(&text) {
+        return Ended::MemoryLimit;
+    }
     if code == LOADER_FAILED
         && let Some(library) = missing_library(&text)
     {
@@ -85,6 +90,23 @@ fn missing_library(stderr: &str) -> Option<String> {
         .or_else(|| stderr.split_once("Error loading shared library "))?;
     let name = after.split([':', '\n']).next()?.trim();
     (!name.is_empty()).then(|| name.chars().take(200).flat_map(char::escape_default).collect())
+}
+
+/// Whether its last words are those of a runtime whose request for memory was refused. A single request beyond the
+/// limit of address space fails without any memory in use, so that no counter shows it.
+fn wants_memory(stderr: &str) -> bool {
+    // C++, Rust, Python, Java, Node and the sanitisers.
+    const COMPLAINTS: [&str; 6] = [
+        "what():  std::bad_alloc",
+        "memory allocation of ",
+        "MemoryError",
+        "java.lang.OutOfMemoryError",
+        "JavaScript heap out of memory",
+        "AddressSanitizer: out of memory",
+    ];
+    const LAST_LINES: usize = 4;
+    let last = stderr.lines().rev().filter(|line| !line.trim().is_empty()).take(LAST_LINES);
+    { last }.any(|line| COMPLAINTS.iter().any(|complaint| line.contains(complaint)))
 }
 
 fn wants_display(stderr: &str) -> bool {
@@ -148,6 +170,20 @@ mod tests {
         let display = b"freeglut (./FOSSSim): failed to open display ''";
         assert_eq!(ended(&order(), &exit(1), display), Ended::CouldNotStart(StartProblem::NeedsDisplay));
         assert_eq!(ended(&order(), &exit(0), display), Ended::Exited(0));
+    }
+
+    #[test]
+    fn who_gives_up_for_want_of_memory_has_met_the_memory_limit() {
+        let aborted = Report { status: libc::SIGABRT, ..Report::default() };
+        let words = b"terminate called after throwing an instance of 'std::bad_alloc'\n  what():  std::bad_alloc\n";
+        assert_eq!(ended(&order(), &aborted, words), Ended::MemoryLimit);
+        assert_eq!(ended(&order(), &aborted, b"a.cpp:3: Assertion `x' failed.\n"), Ended::Signalled(libc::SIGABRT));
+        assert_eq!(ended(&order(), &exit(1), b"Traceback\n  x = [0] * 10**12\nMemoryError\n"), Ended::MemoryLimit);
+        assert_eq!(ended(&order(), &exit(0), b"MemoryError\n"), Ended::Exited(0));
+        let long_ago = [&words[..], b"caught it\n1\n2\n3\n"].concat();
+        assert_eq!(ended(&order(), &aborted, &long_ago), Ended::Signalled(libc::SIGABRT));
+        let crashed = Report { status: libc::SIGSEGV, ..Report::default() };
+        assert_eq!(ended(&order(), &crashed, words), Ended::Signalled(libc::SIGSEGV));
     }
 
     #[test]

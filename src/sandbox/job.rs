@@ -20,7 +20,8 @@ pub enum Policy {
 pub struct Limits {
     /// Processor time of all the program's threads and processes together.
     pub cpu: Duration,
-    /// Time on the clock, from the start to the end.
+    /// Time on the clock, from the start to the end. While the trace pipe is full the clock stands still, because the
+    /// program then waits for its reader; that may last [`Limits::PATIENCE`] times as long as the limit at most.
     pub wall: Duration,
     /// Resident memory in bytes, of all processes together. The stack of the main thread ends at 8 MiB in any case.
     pub memory: u64,
@@ -37,6 +38,11 @@ pub struct Limits {
     pub processes: u32,
     /// Descriptors that one process may hold.
     pub open_files: u32,
+}
+
+impl Limits {
+    /// How many times its own time on the clock a program may wait for the reader of its trace.
+    pub const PATIENCE: u32 = 9;
 }
 
 impl Default for Limits {

@@ -40,3 +40,9 @@ pub use layers::{Layer, LayerReport, doctor};
 pub use outcome::{Captured, Ended, Outcome, StartProblem, Stream};
 pub use running::{Canceller, Running, TraceReader, TraceTooLong};
 pub use supervisor::supervisor_main;
+
+/// Has this process's own writes beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
+/// instead of ending it. The programs that it runs keep the signal, which then ends them.
+pub fn let_large_writes_fail() {
+    sys::ignore_file_size_signal();
+}

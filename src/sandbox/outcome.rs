@@ -38,7 +38,7 @@ pub enum Ended {
     CpuLimit,
     /// It used up its time on the clock.
     WallLimit,
-    /// It held more memory than allowed.
+    /// It held more memory than allowed, or gave up because it was refused memory that it asked for.
     MemoryLimit,
     /// It wrote more than allowed to one stream.
     OutputLimit(Stream),
@@ -84,7 +84,7 @@ impl fmt::Display for Ended {
             Self::Signalled(signal) => write!(formatter, "ended by signal {signal} ({})", signal_name(*signal)),
             Self::CpuLimit => formatter.write_str("used up its processor time"),
             Self::WallLimit => formatter.write_str("used up its time on the clock"),
-            Self::MemoryLimit => formatter.write_str("used more memory than allowed"),
+            Self::MemoryLimit => formatter.write_str("needed more memory than allowed"),
             Self::OutputLimit(stream) => write!(formatter, "wrote more than allowed to {stream}"),
             Self::ProcessLimit => formatter.write_str("had more threads and processes than allowed"),
             Self::FolderLimit => formatter.write_str("put more into its working folder than allowed"),
@@ -218,7 +218,7 @@ pub struct Outcome {
     pub ended: Ended,
     /// Processor time, user and system, of the whole tree.
     pub cpu: Duration,
-    /// Time on the clock.
+    /// Time on the clock, without the time that the program waited for the reader of its trace.
     pub wall: Duration,
     /// Peak of the resident memory in bytes.
     pub peak_memory: u64,

@@ -240,6 +240,20 @@ pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Durat
     }
 }
 
+/// Whether a write to the pipe would wait, because it is full.
+pub(super) fn is_full(pipe: BorrowedFd<'_>) -> bool {
+    let mut entry = libc::pollfd { fd: pipe.as_raw_fd(), events: libc::POLLOUT, revents: 0 };
+    // SAFETY: the structure outlives the call, which does not wait.
+    let answer = unsafe { libc::poll(&raw mut entry, 1, 0) };
+    answer == 0
+}
+
+/// Has writes beyond the limit of file sizes fail instead of ending the process.
+pub(super) fn ignore_file_size_signal() {
+    // SAFETY: ignoring a signal needs no function.
+    unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
+}
+
 /// A descriptor that becomes readable when the process ends; `None` on kernels before 5.3.
 pub(super) fn process_descriptor(pid: i32) -> Option<OwnedFd> {
     // SAFETY: integers only.

@@ -1,28 +1,16 @@
 //! Properties of judging that hold for every scene and every damage.
+use crate::workspace::{embedded, simulate};
 use fosssim_oracle::{
     judge::{
         Outcome, Overall, Stop,
         parity::{self, Options},
     },
-    scene::{self, Scene},
-    sim::{RootSearch, Simulation},
+    scene::Scene,
+    sim::RootSearch,
     suite::library,
-    trace::{Layout, Recorder},
+    trace::Layout,
 };
 use proptest::prelude::*;
-
-fn embedded(name: &str) -> Scene {
-    scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene
-}
-
-fn simulate(scene: &Scene) -> Vec<u8> {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
-    for _ in 0..scene.steps() {
-        simulation.step(&mut recorder).expect("a step");
-    }
-    recorder.finish().expect("memory").0
-}
 
 fn judge(scene: &Scene, trace: &[u8], threads: usize, root_search: RootSearch) -> Outcome {
     parity::judge(scene, trace, &Options { threads, root_search, stop_at_first: false, ..Options::default() }, &mut ())

@@ -1,24 +1,11 @@
 //! Judging against a recording instead of the simulator.
+use crate::workspace::{embedded, simulate};
 use fosssim_oracle::{
     judge::{Detail, Overall, Stop, parity, recorded},
-    scene::{self, Collision, Scene},
-    sim::{RootSearch, Simulation},
+    scene::Collision,
     suite::library,
-    trace::{Layout, Recorder},
+    trace::Layout,
 };
-
-fn embedded(name: &str) -> Scene {
-    scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene
-}
-
-fn simulate(scene: &Scene) -> Vec<u8> {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
-    for _ in 0..scene.steps() {
-        simulation.step(&mut recorder).expect("a step");
-    }
-    recorder.finish().expect("memory").0
-}
 
 #[test]
 fn the_recording_itself_passes_for_every_embedded_scene() {

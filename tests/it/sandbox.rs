@@ -164,6 +164,49 @@ fn a_trace_without_end_is_stopped_at_its_limit() {
 }
 
 #[test]
+fn a_slow_reader_is_not_charged_to_the_program() {
+    let Some(bench) = Bench::new() else { return };
+    // More than the pipe holds, so that the program has to wait.
+    let program = bench.script("#!/bin/sh\nexec head -c 4000000 /dev/zero > trace.bin\n");
+    let limits = Limits { wall: Duration::from_millis(1000), trace_bytes: 8 << 20, ..small() };
+    let job = bench.job(&program, &[]).trace_pipe("trace.bin").policy(Policy::Tools).limits(limits.clone());
+    let mut running = bench.backend.start(&job).unwrap();
+    let mut trace = running.trace().unwrap();
+    let mut first = [0; 1];
+    trace.read_exact(&mut first).unwrap();
+    std::thread::sleep(limits.wall * 2);
+    assert_eq!(std::io::copy(&mut trace, &mut std::io::sink()).unwrap(), 3_999_999);
+    let outcome = running.wait().unwrap();
+    assert_eq!(outcome.ended, Ended::Exited(0));
+    assert!(outcome.wall < limits.wall, "{:?}", outcome.wall);
+    // Whoever is slow by itself still meets its limit, and nobody waits for ever.
+    let program = bench.script("#!/bin/sh\necho x > trace.bin\nexec sleep 1000\n");
+    let limits = Limits { wall: Duration::from_millis(100), ..limits };
+    let job = job.limits(limits.clone());
+    assert_eq!(bench.finish(&job).ended, Ended::WallLimit);
+    drop(program);
+    bench.script("#!/bin/sh\nexec yes > trace.bin\n");
+    let mut running = bench.backend.start(&job).unwrap();
+    let unread = running.trace().unwrap();
+    assert_eq!(running.wait().unwrap().ended, Ended::WallLimit);
+    drop(unread);
+}
+
+#[test]
+fn a_refused_request_for_memory_is_the_memory_limit() {
+    let Some(bench) = Bench::new() else { return };
+    let source = "#include <new>\nint main() { char *p = new char[1UL << 40]; p[0] = 1; return p[0]; }";
+    let (from, program) = (bench.folder.path().join("source.cpp"), bench.folder.path().join("built"));
+    std::fs::write(&from, source).unwrap();
+    let built = std::process::Command::new("c++").args(["-O0", "-w", "-o"]).args([&program, &from]).status();
+    if !built.is_ok_and(|status| status.success()) {
+        eprintln!("skipped: there is no C++ compiler (c++)");
+        return;
+    }
+    assert_eq!(bench.run(&program, &[]).ended, Ended::MemoryLimit);
+}
+
+#[test]
 fn a_program_that_never_opens_its_trace_has_written_nothing() {
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nrm trace.bin\necho forged > trace.bin\n");

@@ -89,6 +89,23 @@ fn a_simulation_that_fails_leaves_the_old_trace_alone() {
 }
 
 #[test]
+fn a_file_that_may_not_grow_and_a_full_disk_leave_nothing_behind() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BOUNCE.replace(r#"time="1""#, r#"time="50000""#));
+    // The size limit is inherited, so that a shell can set it.
+    let mut command = std::process::Command::new("/bin/sh");
+    command.current_dir(workspace.path("")).env_clear().env("PROGRAM", env!("CARGO_BIN_EXE_fosssim-oracle"));
+    let run = finish(command.args(["-c", "ulimit -f 64; exec \"$PROGRAM\" simulate scene.xml -o trace.bin"]));
+    assert_eq!(run.code, Some(2), "{}", run.shown());
+    assert!(run.err().starts_with("error: ") && run.err().contains("arge"), "{}", run.err());
+    assert_eq!(workspace.list(), ["scene.xml"]);
+    let run = workspace.run(["simulate", "scene.xml", "-o", "/dev/full"]);
+    assert_eq!(run.code, Some(2), "{}", run.shown());
+    assert!(run.err().contains("o space left"), "{}", run.err());
+    assert_eq!(workspace.list(), ["scene.xml"]);
+}
+
+#[test]
 fn an_interrupt_leaves_nothing_behind() {
     for signal in ["-TERM", "-INT"] {
         let workspace = Workspace::new();

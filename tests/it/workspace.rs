@@ -1,4 +1,10 @@
 //! A folder of its own for every test of the command line, and the program run there with a scrubbed environment.
+use fosssim_oracle::{
+    scene::{self, Scene},
+    sim::{RootSearch, Simulation},
+    suite::library,
+    trace::{Layout, Recorder},
+};
 use std::{
     ffi::OsStr,
     fs,
@@ -161,4 +167,19 @@ impl Workspace {
 /// The reference trace of a scene.
 pub fn trace_of(scene: &str) -> Vec<u8> {
     fosssim_oracle::suite::recording::Recording::of("scene", scene.as_bytes()).unwrap().trace
+}
+
+/// A scene that comes with the program.
+pub fn embedded(name: &str) -> Scene {
+    scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene
+}
+
+/// The reference trace of a scene that was read already.
+pub fn simulate(scene: &Scene) -> Vec<u8> {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut recorder).expect("a step");
+    }
+    recorder.finish().expect("memory").0
 }

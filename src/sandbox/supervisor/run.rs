@@ -14,6 +14,7 @@ use super::group::Group;
 use super::namespaces::{self, Side};
 use super::streams::Capture;
 use super::{calls, modes, processes, slot, walls};
+use crate::sandbox::job::Limits;
 use crate::sandbox::sys::{self, Fork};
 use crate::sandbox::wire::{self, Cause, Event, Failure, Order, Report};
 
@@ -86,7 +87,7 @@ struct Run {
     control: File,
     folder: OwnedFd,
     /// Keeps the trace pipe open until every process is dead, so that its reader sees the end then and not before.
-    _pipe: Option<OwnedFd>,
+    pipe: Option<OwnedFd>,
     /// The user that the program runs as, if it is its own, and who owned the folder before.
     slot: Option<(slot::Slot, (u32, u32))>,
     /// The control group, if there is one.
@@ -100,6 +101,7 @@ struct Run {
     stdout: Capture,
     stderr: Capture,
     began: Instant,
+    stalled: Stalled,
     folder_before: Contents,
     main_status: Option<i32>,
     cause: Option<Cause>,
@@ -173,7 +175,8 @@ impl Run {
             order,
             control,
             folder,
-            _pipe: pipe,
+            pipe,
+            stalled: Stalled::default(),
             slot,
             child,
             process: sys::process_descriptor(child),
@@ -197,7 +200,7 @@ impl Run {
         let session = (!self.order.walls.namespaces).then_some(self.child);
         let _ = wire::send(answers, &Event::Ready { session, user });
         let watched = self.watch();
-        let wall = self.began.elapsed();
+        let wall = self.wall();
         let (child, mut main_status) = (self.child, self.main_status);
         if let Some(group) = &self.group {
             // What it leaves over, if anything, is ended one by one.
@@ -392,7 +395,15 @@ impl Run {
         self.blame_if(usage.threads > u64::from(self.order.processes), Cause::Processes);
         let cpu = (usage.cpu + reaped).max(self.group_cpu());
         self.blame_if(micros(cpu) > self.order.cpu_micros, Cause::Cpu);
-        self.blame_if(micros(self.began.elapsed()) > self.order.wall_micros, Cause::Wall);
+        let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
+        self.stalled.look(full, Instant::now());
+        self.blame_if(micros(self.wall()) > self.order.wall_micros, Cause::Wall);
+    }
+
+    /// Time on the clock that is the program's own: without that in which it waited for the reader of its trace.
+    fn wall(&self) -> Duration {
+        let patience = Duration::from_micros(self.order.wall_micros).saturating_mul(Limits::PATIENCE);
+        self.began.elapsed().saturating_sub(self.stalled.total.min(patience))
     }
 
     fn group_cpu(&self) -> Duration {
@@ -412,6 +423,40 @@ impl Run {
     }
 }
 
+/// How long the trace pipe was full.
+#[derive(Debug, Default)]
+struct Stalled {
+    since: Option<Instant>,
+    total: Duration,
+}
+
+impl Stalled {
+    /// Notes whether the pipe is full now. The time between two looks counts when it was at both.
+    fn look(&mut self, full: bool, now: Instant) {
+        if let Some(since) = self.since.filter(|_| full) {
+            self.total += now.saturating_duration_since(since);
+        }
+        self.since = full.then_some(now);
+    }
+}
+
 fn micros(time: Duration) -> u64 {
     u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_time_between_two_looks_at_a_full_pipe_is_given_back() {
+        let start = Instant::now();
+        let mut stalled = Stalled::default();
+        for (milliseconds, full) in
+            [(0, false), (10, true), (20, true), (35, true), (40, false), (50, true), (60, false)]
+        {
+            stalled.look(full, start + Duration::from_millis(milliseconds));
+        }
+        assert_eq!(stalled.total, Duration::from_millis(25));
+    }
 }
