@@ -1,6 +1,6 @@
 //! The command line as typed. What it means is decided by the commands.
 use super::grading::{Demo, Doctor, Grade, Selftest, Suite};
-use crate::judge;
+use crate::{judge, suite::config};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
@@ -26,6 +26,7 @@ TRACE is a file (.zst files are unpacked), - for standard input, or asset:Group/
 pub(super) enum Command {
     Simulate(Simulate),
     Check(Check),
+    Explain(Explain),
     #[command(subcommand)]
     Trace(Trace),
     Record(Record),
@@ -125,6 +126,55 @@ pub(super) struct Check {
     /// Search all roots, also where a certificate excludes an impact, and count disagreements.
     #[arg(long)]
     pub(super) audit: bool,
+}
+
+/// How much an explanation tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Hints {
+    /// What the likely mistake is, in one sentence.
+    What,
+    /// Also the exact terms and an example: this may give the right formula away.
+    Full,
+}
+
+impl From<Hints> for config::Hints {
+    fn from(hints: Hints) -> Self {
+        match hints {
+            Hints::What => Self::What,
+            Hints::Full => Self::Full,
+        }
+    }
+}
+
+/// Says what is likely wrong with the program that left a trace, or with a program at hand.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle explain scenes/test00.xml submission.bin
+  fosssim-oracle explain --program ./FOSSSim
+  fosssim-oracle explain --program ./FOSSSim scenes/test00.xml
+
+With a program at hand it runs, in the sandbox, on small scenes that make every term of every formula visible. The exit
+code is 0 when the fair rules accept everything, else 1.")]
+pub(super) struct Explain {
+    /// The scene and the trace; with --program, scenes to run besides the built-in ones.
+    #[arg(value_name = "SCENE TRACE")]
+    pub(super) inputs: Vec<PathBuf>,
+    /// The program to run.
+    #[arg(long, value_name = "PROGRAM")]
+    pub(super) program: Option<PathBuf>,
+    /// How much is told.
+    #[arg(long, value_enum, default_value_t = Hints::Full)]
+    pub(super) hints: Hints,
+    /// How the report is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+    /// Where to write the report, instead of to standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+    /// Run the program without the sandbox where its layers are missing. Never do this with programs of others.
+    #[arg(long)]
+    pub(super) unsafe_no_sandbox: bool,
 }
 
 /// Looks into traces.

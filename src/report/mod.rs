@@ -6,6 +6,7 @@
 
 pub mod check;
 pub mod describe;
+pub mod diagnosis;
 pub mod explain;
 pub mod grade;
 pub mod headroom;

@@ -1,7 +1,7 @@
 //! The grade: what one submission got, scene by scene.
 use super::{config::Visibility, verdict::Verdict};
 use crate::{
-    diagnose::Explanation,
+    diagnose::{Explanation, common},
     judge::{Rules, fair::Cause},
 };
 use std::time::Duration;
@@ -49,6 +49,22 @@ impl Grade {
     #[must_use]
     pub fn differing(&self) -> usize {
         self.scenes().filter(|scene| scene.differs.is_some()).count()
+    }
+
+    /// The mistake that explains most wrong scenes, where several have explanations: together they nearly always tell
+    /// mistakes apart that one scene can't.
+    #[must_use]
+    pub fn likely_mistake(&self) -> Option<Explanation> {
+        let explained: Vec<&[Explanation]> =
+            self.scenes().map(|scene| scene.explanations.as_slice()).filter(|list| !list.is_empty()).collect();
+        if explained.len() > 1 { common(explained) } else { None }
+    }
+
+    /// How many scenes' explanations name this mistake first.
+    #[must_use]
+    pub fn explained_by(&self, key: &str) -> usize {
+        let names = |one: &Explanation| one.key == key || one.same_as.iter().any(|other| other == key);
+        self.scenes().filter(|scene| scene.explanations.iter().any(names)).count()
     }
 
     /// How many scenes have this verdict.

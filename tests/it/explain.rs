@@ -1,12 +1,16 @@
 //! Explanations: what is said of each known mistake, by one trace and by several.
-use super::fair::{assets, rows, simulated};
+use super::{
+    fair::{assets, rows, simulated},
+    workspace::Workspace,
+};
 use fosssim_oracle::{
-    diagnose::{Explanation, common, explain},
+    diagnose::{Explanation, common, explain, known},
     judge::{fair::Verdict, parity},
     scene::Scene,
-    student::{Kind, Row},
+    student::{self, Kind, Row},
 };
 use rayon::prelude::*;
+use serde_json::Value;
 
 /// Scenes that show most of what programs do: a teacher's small suite.
 const SCENES: [&str; 16] = [
@@ -34,17 +38,18 @@ fn suite() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// What is said of the row's traces that the fair rules reject.
+/// What is said of the row's traces that the fair rules reject; after the first two only which known mistake it is.
 fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
     let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
-    scenes
-        .iter()
-        .filter_map(|(_, scene)| {
-            let trace = simulated(scene, Some(row))?;
-            let outcome = parity::judge(scene, &trace[..], &options, &mut ());
-            (outcome.fair?.verdict == Verdict::Rejected).then(|| explain(scene, &trace))
-        })
-        .collect()
+    let mut found = Vec::new();
+    for (_, scene) in scenes {
+        let Some(trace) = simulated(scene, Some(row)) else { continue };
+        let fair = parity::judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
+        if fair.verdict == Verdict::Rejected {
+            found.push(if found.len() < 2 { explain(scene, &trace) } else { known(scene, &trace[..]) });
+        }
+    }
+    found
 }
 
 #[test]
@@ -81,4 +86,78 @@ fn correct_variants_are_not_accused() {
             assert!(accused.is_empty(), "{} on {name}: {accused:?}", row.id);
         }
     });
+}
+
+fn validated(report: &str) -> Value {
+    let schema: Value = serde_json::from_str(include_str!("../../schemas/explain.schema.json")).unwrap();
+    let report: Value = serde_json::from_str(report).unwrap();
+    let errors: Vec<String> =
+        jsonschema::validator_for(&schema).unwrap().iter_errors(&report).map(|error| error.to_string()).collect();
+    assert!(errors.is_empty(), "{errors:?}");
+    report
+}
+
+const SPINNING: &str = "asset:ContinuousTimeTests/spinning-edge-sweeps-balls";
+
+fn write_trace(workspace: &Workspace, id: &str) {
+    let (_, scene) =
+        assets().into_iter().find(|(name, _)| SPINNING.ends_with(name.as_str())).expect("a built-in scene");
+    workspace.write("submission.bin", simulated(&scene, student::find(id)).unwrap());
+}
+
+#[test]
+fn a_dropped_term_is_named_with_an_example() {
+    let workspace = Workspace::new();
+    write_trace(&workspace, "pe-square-no-eh");
+    let run = workspace.run(["explain", SPINNING, "submission.bin"]);
+    assert_eq!(run.code, Some(1), "{}", run.err());
+    let text = run.out();
+    assert!(text.contains("The t^2 coefficient lacks -4 e h."), "{text}");
+    assert!(text.contains("expected") && text.contains("actual"), "{text}");
+    let run = workspace.run(["explain", SPINNING, "submission.bin", "--format", "json"]);
+    let report = validated(&run.out());
+    assert_eq!(report["traces"][0]["explanations"][0]["key"], "pe-square-no-eh");
+    let run = workspace.run(["explain", SPINNING, "submission.bin", "--hints", "what"]);
+    let text = run.out();
+    assert!(text.contains("lacks -4 e h") && !text.contains("expected"), "no formula, no value: {text}");
+}
+
+#[test]
+fn nothing_is_explained_where_nothing_is_wrong() {
+    let workspace = Workspace::new();
+    write_trace(&workspace, "scale-1000");
+    let run = workspace.run(["explain", SPINNING, "submission.bin"]);
+    assert_eq!(run.code, Some(0));
+    assert!(run.out().contains("nothing to explain"), "{}", run.out());
+    let report = workspace.run(["explain", SPINNING, "submission.bin", "--format", "json"]);
+    assert_eq!(validated(&report.out())["accepted"], true);
+}
+
+#[test]
+fn a_program_at_hand_is_asked_on_probe_scenes() {
+    let workspace = Workspace::new();
+    for (id, accepted) in [("", true), ("failsafe-angular-overwritten", false), ("pe-linear-one-sh", false)] {
+        let name = if id.is_empty() { "fosssim-sample".to_owned() } else { format!("fosssim-sample.{id}") };
+        std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_fosssim-sample"), workspace.path(&name)).expect("a link");
+        let run = workspace.run(["explain", "--program", &name, "--format", "json"]);
+        if run.code == Some(2) && run.err().contains("sandbox") {
+            eprintln!("skipped: {}", run.err());
+            return;
+        }
+        let report = validated(&run.out());
+        assert_eq!(report["accepted"], accepted, "{name}: {}", run.err());
+        let common = report["common"]["key"].as_str().unwrap_or_default();
+        assert_eq!(common, id, "{name}");
+    }
+}
+
+#[test]
+fn wrong_usage_is_said() {
+    let workspace = Workspace::new();
+    let run = workspace.run(["explain", SPINNING]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("a scene and a trace, or --program"), "{}", run.err());
+    let run = workspace.run(["explain", "--program", "./missing"]);
+    assert_eq!(run.code, Some(2), "{}", run.out());
+    assert!(run.err().contains("missing"), "{}", run.err());
 }

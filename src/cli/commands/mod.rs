@@ -2,6 +2,7 @@
 
 mod check;
 mod display;
+mod explain;
 mod grade;
 mod headroom;
 mod host;
@@ -23,6 +24,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
     match command {
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
         Command::Trace(Trace::Info(arguments)) => trace::info(arguments),
         Command::Trace(Trace::Show(arguments)) => trace::show(arguments),
         Command::Trace(Trace::Diff(arguments)) => trace::diff(arguments),

@@ -1,5 +1,5 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::{super::explain, difference, plain, points};
+use super::{super::explain, difference, likely_mistake, plain, points};
 use crate::suite::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
@@ -86,6 +86,9 @@ fn overall(grade: &Grade) -> String {
     }];
     if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
         lines.push(format!("{}\n{}", plain(&build.end), plain(&build.output)));
+    }
+    if all_visible {
+        lines.extend(likely_mistake(grade).map(|line| plain(&line)));
     }
     lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", plain(warning))));
     lines.join("\n")

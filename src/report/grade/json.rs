@@ -29,6 +29,8 @@ struct GradeView {
     sandbox: Vec<String>,
     warnings: Vec<String>,
     build: Option<BuildView>,
+    /// The mistake that explains most wrong scenes, where several have explanations.
+    likely_mistake: Option<ExplanationView>,
     groups: Vec<GroupView>,
 }
 
@@ -112,6 +114,7 @@ fn view(grade: &Grade) -> GradeView {
             end: plain(&build.end),
             output: plain(&build.output),
         }),
+        likely_mistake: grade.likely_mistake().as_ref().map(ExplanationView::from),
         groups: grade.groups.iter().map(group).collect(),
     }
 }

@@ -11,7 +11,7 @@ mod junit;
 mod prairielearn;
 mod text;
 
-use crate::suite::{Grade, SceneGrade};
+use crate::suite::{Grade, SceneGrade, Verdict};
 
 /// The formats, in the order in which help lists them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,6 +96,15 @@ pub fn plain(text: &str) -> String {
         }
     }
     plain
+}
+
+/// One line about the mistake that explains most wrong scenes, where there are several.
+#[must_use]
+pub fn likely_mistake(grade: &Grade) -> Option<String> {
+    let likely = grade.likely_mistake()?;
+    let wrong = grade.count(Verdict::WrongAnswer);
+    let explained = grade.explained_by(&likely.key);
+    Some(format!("most likely mistake: {} (explains {explained} of {wrong} wrong scenes)", likely.what))
 }
 
 /// The sentence about a scene that the two rule books judge differently.

@@ -1,5 +1,5 @@
 //! Grades for people at a terminal: a table per submission, then what went wrong.
-use super::{super::explain, difference, one_line, plain, points};
+use super::{super::explain, difference, likely_mistake, one_line, plain, points};
 use crate::{
     judge::Rules,
     suite::{Grade, Verdict},
@@ -30,6 +30,9 @@ fn submission(text: &mut String, grade: &Grade) {
     let _ = writeln!(text, "suite {}, rules {}", one_line(&grade.suite), rules(grade));
     for warning in &grade.warnings {
         let _ = writeln!(text, "warning: {}", plain(warning));
+    }
+    if let Some(line) = likely_mistake(grade) {
+        let _ = writeln!(text, "{}", plain(&line));
     }
     if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
         let _ = writeln!(text, "\n{}\n{}", plain(&build.end), indented(&build.output, usize::MAX));

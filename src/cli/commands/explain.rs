@@ -1,0 +1,124 @@
+//! `explain`: what is likely wrong with the program that left a trace, or with a program at hand.
+use super::grade::{backend, cancelled_by_signals, load_suite};
+use crate::{
+    cli::{
+        arguments::{Explain, Format},
+        console, exit, input,
+        output::Output,
+    },
+    diagnose::{self, Explanation},
+    judge::{
+        Rules,
+        fair::Verdict,
+        parity::{self, Options},
+    },
+    report::{
+        diagnosis::{Case, Diagnosis},
+        style::Style,
+    },
+    sandbox::Ended,
+    scene::{self, Scene},
+    suite::{Runner, SceneTask, config::Hints},
+};
+use anyhow::{Context, Result, bail};
+use std::{
+    io::Read,
+    path::{Path, PathBuf},
+};
+
+/// So much of a trace is looked at, in bytes.
+const LONGEST: usize = 64 << 20;
+
+pub(super) fn run(arguments: &Explain) -> Result<u8> {
+    let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
+    let diagnosis = match (&arguments.program, &arguments.inputs[..]) {
+        (Some(program), scenes) => program_on_probes(program, scenes, arguments)?,
+        (None, [scene, trace]) => Diagnosis { cases: vec![trace_on_scene(scene, trace, arguments)?], common: None },
+        (None, _) => bail!("explain takes a scene and a trace, or --program PROGRAM and any number of scenes"),
+    };
+    let style = if target.is_some() { Style::Plain } else { console::style() };
+    let text = match arguments.format {
+        Format::Text => diagnosis.text(style),
+        Format::Json => diagnosis.json(),
+    };
+    match target {
+        Some(target) => target.finish_with(text.as_bytes())?,
+        None => console::print(text.as_bytes())?,
+    }
+    Ok(if diagnosis.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}
+
+fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<Case> {
+    let scene = input::scene(scene)?;
+    let mut trace = input::trace(trace)?;
+    let mut bytes = Vec::new();
+    (&mut trace.reader).take(LONGEST as u64).read_to_end(&mut bytes).ok();
+    if let Some(message) = trace.failure() {
+        bail!("cannot read the trace {}: {message}", trace.name);
+    }
+    Ok(case(scene.name, trace.name, &scene.scene, &bytes, None, arguments.hints.into()))
+}
+
+/// Judges a trace by the fair rules, and explains it if they reject it.
+fn case(name: String, trace: String, scene: &Scene, bytes: &[u8], note: Option<String>, hints: Hints) -> Case {
+    let options = Options { fair: true, ..Options::default() };
+    let outcome = parity::judge(scene, bytes, &options, &mut ());
+    let fair = outcome.fair.unwrap_or_default();
+    let accepted = fair.verdict == Verdict::Accepted && note.is_none();
+    let explanations = if fair.verdict == Verdict::Accepted { Vec::new() } else { diagnose::explain(scene, bytes) };
+    let first = fair
+        .first_divergence
+        .as_ref()
+        .and_then(|first| Some((hints.first_divergence(first)?, (hints == Hints::Full).then_some(*first))));
+    Case { scene: name, trace, accepted, note, first, explanations: hints.cut(explanations) }
+}
+
+/// Runs a program on scenes that make every term of every formula visible, and on those that are named.
+fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) -> Result<Diagnosis> {
+    let program = std::path::absolute(program).unwrap_or_else(|_| program.to_owned());
+    let tasks = tasks(scenes)?;
+    let cancellation = cancelled_by_signals();
+    let backend = backend(arguments.unsafe_no_sandbox)?;
+    let plan = load_suite("t2m2")?;
+    let runner = Runner {
+        backend: &backend,
+        run: &plan.run,
+        limits: &plan.limits,
+        rules: Rules::Fair,
+        hints: Hints::Full,
+        fail_fast: false,
+        recorded: false,
+        cancellation: &cancellation,
+    };
+    let mut cases = Vec::new();
+    for task in &tasks {
+        if cancellation.is_cancelled() {
+            bail!("stopped");
+        }
+        let (trace, outcome) = runner.collect(&program, task, LONGEST).map_err(anyhow::Error::msg)?;
+        if let Ended::CouldNotStart(problem) = &outcome.ended {
+            bail!("{}: {problem}", program.display());
+        }
+        let note = (!matches!(outcome.ended, Ended::Exited(0))).then(|| format!("the program {}", outcome.ended));
+        let shown = program.display().to_string();
+        cases.push(case(task.name.clone(), shown, &task.scene, &trace, note, arguments.hints.into()));
+    }
+    let wrong: Vec<&[Explanation]> =
+        cases.iter().filter(|case| !case.accepted).map(|case| case.explanations.as_slice()).collect();
+    let common = diagnose::common(wrong);
+    Ok(Diagnosis { cases, common })
+}
+
+fn tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
+    let mut tasks = Vec::new();
+    for (name, scene) in diagnose::probe_scenes() {
+        let xml = scene::write(&scene).into_bytes();
+        tasks.push(SceneTask { name: format!("probe {name}"), xml, scene, recording: None });
+    }
+    for path in scenes {
+        let scene = input::scene(path)?;
+        let xml = scene::write(&scene.scene).into_bytes();
+        tasks.push(SceneTask { name: scene.name, xml, scene: scene.scene, recording: None });
+    }
+    if tasks.is_empty() { Err(anyhow::anyhow!("no scene to run")).context("explain --program") } else { Ok(tasks) }
+}
