@@ -65,6 +65,8 @@ pub(super) struct Scan {
     pub(super) right: Vec<Sample>,
     /// The first records.
     pub(super) opening: Vec<Logged>,
+    /// Records whose polynomials have small leading coefficients, which the course's library drops.
+    pub(super) padded: u64,
     /// How many records the trace has, when its end was reached.
     pub(super) records: Option<u64>,
 }
@@ -158,6 +160,7 @@ impl<R: Read> Scanner<R> {
     fn read(&mut self, frame: &mut LenientFrame) -> bool {
         match self.reader.next(frame) {
             Ok(()) => {
+                self.scan.padded += u64::from(!frame.plain && frame.note.is_none());
                 if self.scan.opening.len() < OPENING && self.opening_memory < OPENING_MEMORY {
                     let logged = Logged::from(&*frame);
                     self.opening_memory += logged.bytes();

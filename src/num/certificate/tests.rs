@@ -4,6 +4,7 @@ use crate::num::{
     polynomial::Polynomial,
 };
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 fn list(lists: &[&[f64]]) -> Vec<Polynomial> {
     lists.iter().map(|list| Polynomial::trimmed(list)).collect()
@@ -109,7 +110,7 @@ fn product() -> impl Strategy<Value = Vec<f64>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(50_000))]
+    #![proptest_config(ProptestConfig { cases: 50_000, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn lines_are_decided_exactly(a in number(), b in number()) {
@@ -139,7 +140,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(10_000))]
+    #![proptest_config(ProptestConfig { cases: 10_000, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn lists_that_are_excluded_never_hit(
