@@ -41,17 +41,38 @@ pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
         return vec![missing];
     }
     let found = of_wrong_steps(scene, &scan);
-    if !found.is_empty() || scan.padded == 0 {
-        return found;
+    if found.is_some() || scan.padded == 0 {
+        return found.into_iter().collect();
     }
     // Reading drops what the course's library would have dropped, so such steps look right.
     find("log-padded").map(|row| explain(row, (scan.padded, scan.padded))).into_iter().collect()
 }
 
-fn of_wrong_steps(scene: &Scene, scan: &scan::Scan) -> Vec<Explanation> {
+fn of_wrong_steps(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     if scan.wrong.is_empty() {
-        return Vec::new();
+        return None;
     }
+    let supplied = best(scene, scan, Correct::Supplied);
+    if supplied.complete {
+        return supplied.explanation;
+    }
+    // The fair rules accept the right approach as well as the supplied one; behind it may be a mistake of another kind.
+    let right =
+        scan.with_right_approach(scene).map(|scan| best(scene, &scan, Correct::RightApproach)).unwrap_or_default();
+    if right.complete { right.explanation } else { supplied.explanation.or(right.explanation) }
+}
+
+/// What the catalogue says about a trace.
+#[derive(Debug, Default)]
+struct Found {
+    /// The mistake; `None` when no row reproduces the steps, or a correct variant does.
+    explanation: Option<Explanation>,
+    /// Whether a row reproduces all steps.
+    complete: bool,
+}
+
+/// Tries the catalogue on the kept steps.
+fn best(scene: &Scene, scan: &Scan, correct: Correct) -> Found {
     let mut scores = Candidates::new(scene, scan, correct).best();
     scores.sort_by_key(|score| plausibility(score.row));
     let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return Found::default() };
