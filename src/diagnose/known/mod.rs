@@ -40,19 +40,20 @@ pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
     if let Some(missing) = alignment::missing_record(scene, &scan) {
         return vec![missing];
     }
-    let found = of_wrong_steps(scene, &scan);
-    if found.is_some() || scan.padded == 0 {
+    let padded = scan.padded;
+    let found = of_wrong_steps(scene, scan);
+    if found.is_some() || padded == 0 {
         return found.into_iter().collect();
     }
     // Reading drops what the course's library would have dropped, so such steps look right.
-    find("log-padded").map(|row| explain(row, (scan.padded, scan.padded))).into_iter().collect()
+    find("log-padded").map(|row| explain(row, (padded, padded))).into_iter().collect()
 }
 
-fn of_wrong_steps(scene: &Scene, scan: &Scan) -> Option<Explanation> {
+fn of_wrong_steps(scene: &Scene, scan: Scan) -> Option<Explanation> {
     if scan.wrong.is_empty() {
         return None;
     }
-    let supplied = best(scene, scan, Correct::Supplied);
+    let supplied = best(scene, &scan, Correct::Supplied);
     if supplied.complete {
         return supplied.explanation;
     }
