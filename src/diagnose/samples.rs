@@ -10,7 +10,7 @@ use crate::{
     num::{polynomial::Polynomial, vector::at},
     scene::{Collision, Scene},
     sim::{Decision, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, Stage, State},
-    trace::{Layout, Lenient, LenientFrame, PolynomialLog},
+    trace::{Layout, Lenient, LenientFrame, PolynomialLog, record_memory},
 };
 use std::io::Read;
 
@@ -27,7 +27,7 @@ pub(super) fn samples(scene: &Scene, trace: impl Read) -> Vec<Sample> {
     if !layout.polynomials {
         return Vec::new();
     }
-    let mut reader = Lenient::new(trace.take(LONGEST), layout);
+    let mut reader = Lenient::new(trace.take(LONGEST), layout).with_limit(record_memory(scene));
     let (mut before, mut mid, mut end) = (LenientFrame::default(), LenientFrame::default(), LenientFrame::default());
     let mut gathered = Gathered::default();
     if reader.next(&mut before).is_err() {

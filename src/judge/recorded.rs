@@ -14,7 +14,7 @@ use crate::{
     num::{polynomial::Polynomial, vector::Vec2},
     scene::{Collision, Scene},
     sim::{Impulse, Observer, Pair, PairKind, Pass, Stage},
-    trace::{Cause, Layout, Lenient, LenientFrame},
+    trace::{Cause, Layout, Lenient, LenientFrame, record_memory},
 };
 use std::io::Read;
 
@@ -42,7 +42,8 @@ pub fn judge<T: Read, R: Read>(
 ) -> Result<Outcome, RecordingError> {
     let layout = Layout::of(scene);
     let places = Places::of(scene);
-    let (mut trace, mut recording) = (Lenient::new(trace, layout), Lenient::new(recording, layout));
+    let (mut trace, mut recording) =
+        (Lenient::new(trace, layout).with_limit(record_memory(scene)), Lenient::new(recording, layout));
     let (mut actual, mut expected) = (LenientFrame::default(), LenientFrame::default());
     let (mut buffers, mut result) = (Buffers::default(), StepResult::default());
     let mut outcome = Outcome::empty(layout.steps);

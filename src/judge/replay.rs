@@ -13,7 +13,7 @@ use super::{
 use crate::{
     scene::{Collision, Scene},
     sim::{SearchCounts, Simulation, State, StepError},
-    trace::{Cause, Layout, Lenient, LenientFrame},
+    trace::{Cause, Layout, Lenient, LenientFrame, record_memory},
 };
 use std::{
     io::Read,
@@ -163,7 +163,7 @@ impl<'a, R: Read> Replay<'a, R> {
         let layout = Layout::of(scene);
         let logs_impulses = layout.impulses && !matches!(scene.collision, Collision::Hybrid { .. });
         Self {
-            reader: Lenient::new(trace, layout),
+            reader: Lenient::new(trace, layout).with_limit(record_memory(scene)),
             shape: Shape { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
             state: State::default(),
             state_at: 0,

@@ -12,12 +12,33 @@ use super::{
 };
 use crate::{
     num::{polynomial::MAX_COEFFICIENTS, tolerances::LEADING_COEFFICIENT},
+    scene::Scene,
     sim::State,
 };
 use std::io::Read;
 
-/// Memory that the lists of one record and its raw polynomial bytes may take together, in bytes.
+/// Memory that the lists of one record and its raw polynomial bytes may take together at most, in bytes.
 const LIMIT: usize = 256 * 1024 * 1024;
+
+/// Memory that they may take in any scene, in bytes. Lowered, records that are padded beyond reason are refused earlier
+/// than the original runs out of memory.
+const FLOOR: usize = 32 * 1024 * 1024;
+
+/// So often may every pair be logged in one record before it is too large.
+const PASSES: usize = 1000;
+
+/// Memory of one logged polynomial, decoded and raw, in bytes.
+const POLYNOMIAL_MEMORY: usize = 128;
+
+/// Memory that the lists of one record of this scene's traces may take, in bytes: in proportion to the pairs that can
+/// collide, within bounds.
+#[must_use]
+pub fn record_memory(scene: &Scene) -> usize {
+    let particles = scene.particles.len();
+    let partners = particles.saturating_sub(1) / 2 + scene.edges.len() + scene.half_planes.len();
+    let pairs = particles.saturating_mul(1 + partners);
+    pairs.saturating_mul(PASSES * POLYNOMIAL_MEMORY).clamp(FLOOR, LIMIT)
+}
 
 /// The original stores as many impulses as the count says before it looks at the stream, and runs out of the corpus's
 /// 6 GiB of address space above this count (48 bytes each, in an array that doubles).
@@ -91,6 +112,13 @@ impl<R: Read> Lenient<R> {
     /// A reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
         Self { source: Source::new(stream, None), layout, record: 0, begin: 0, failed: false, note: None, limit: LIMIT }
+    }
+
+    /// Bounds the memory that the lists of one record may take, in bytes; see [`record_memory`].
+    #[must_use]
+    pub fn with_limit(mut self, bytes: usize) -> Self {
+        self.limit = bytes;
+        self
     }
 
     /// Replaces `frame` by the next record, whether or not the scene has so many.
@@ -324,6 +352,19 @@ mod tests {
     use crate::trace::{Frame, Writer};
 
     const LAYOUT: Layout = Layout { particles: 0, impulses: true, polynomials: true, steps: 0 };
+
+    #[test]
+    fn a_larger_scene_may_have_larger_records_within_bounds() {
+        let scene = |particles: usize| {
+            let particle = r#"<particle m="1" px="0" py="0" vx="0" vy="0" fixed="0"/>"#;
+            let head = r#"<duration time="1"/><integrator type="explicit-euler" dt="1"/>"#;
+            let xml = format!("<scene>{head}{}</scene>", particle.repeat(particles));
+            record_memory(&crate::scene::read("scene", xml.as_bytes()).unwrap().scene)
+        };
+        assert_eq!(scene(1), FLOOR);
+        assert_eq!(scene(30), 30 * 15 * PASSES * POLYNOMIAL_MEMORY);
+        assert_eq!(scene(1000), LIMIT);
+    }
 
     /// A record without particles that holds these polynomials.
     fn record(polynomials: &[&[f64]]) -> Vec<u8> {

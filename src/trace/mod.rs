@@ -31,7 +31,7 @@ pub use histogram::Histogram;
 pub use index::Indexed;
 pub use labels::{Label, labels};
 pub use layout::Layout;
-pub use lenient::{Cause, Lenient, LenientFrame, Stop};
+pub use lenient::{Cause, Lenient, LenientFrame, Stop, record_memory};
 pub use reader::{FRAME_LIMIT, Reader, TRAILING_LIMIT};
 pub use recorder::Recorder;
 pub use summary::{StepView, Summary};

@@ -8,7 +8,7 @@ use crate::{
     scene::Scene,
     sim::{RootSearch, Simulation, State},
     student::{StepLog, World},
-    trace::{Cause, Layout, Lenient, LenientFrame},
+    trace::{Cause, Layout, Lenient, LenientFrame, record_memory},
 };
 use std::{collections::BTreeMap, io::Read};
 
@@ -121,7 +121,7 @@ impl<R: Read> Scanner<R> {
     fn new(scene: &Scene, trace: R) -> Self {
         let layout = Layout::of(scene);
         Self {
-            reader: Lenient::new(trace, layout),
+            reader: Lenient::new(trace, layout).with_limit(record_memory(scene)),
             layout,
             simulation: Simulation::new(scene, RootSearch::WhereNeeded),
             capture: Capture::new(&scene.collision),
