@@ -6,7 +6,7 @@ use super::{
 use crate::{
     diagnose::{Example, ExampleValue},
     judge::PairWords,
-    num::vector::Vec2,
+    num::{polynomial::Polynomial, vector::Vec2},
 };
 
 /// The example of a study, with the number of characters that its inputs take.
@@ -18,11 +18,13 @@ pub(super) fn smallest(study: &Study) -> Option<(usize, Example)> {
 
 fn example(study: &Study, case: &Case) -> Example {
     let sample = case.sample;
+    let expected: Vec<f64> = case.expected.iter().map(|coefficient| coefficient.value).collect();
     Example {
         step: sample.step,
         place: format!("{}, pass {}, {} polynomial", PairWords(sample.pair), sample.pass, study.subject.name()),
         given: given(&sample.motion),
-        expected: case.expected.iter().map(|coefficient| coefficient.value).collect(),
+        // As the course's library would log it.
+        expected: Polynomial::trimmed(&expected).coefficients().to_vec(),
         actual: case.logged.to_vec(),
     }
 }

@@ -54,6 +54,8 @@ pub(super) struct Follower<'a> {
     moved: Vec<bool>,
     /// Whether the part before the mid record, or the geometric part, has an error that its result may follow from.
     spoilt: [bool; 2],
+    /// Polynomials that were wrong of known positions in this step.
+    wrong_formulas: [[bool; 4]; 3],
     /// Factors of polynomials so far.
     hints: [[Option<f64>; 4]; 3],
     /// Polynomials that hold nothing but round-off, to be judged when factors are known.
@@ -89,6 +91,7 @@ impl<'a> Follower<'a> {
             next: None,
             moved: vec![false; context.scene.particles.len()],
             spoilt: [false; 2],
+            wrong_formulas: [[false; 4]; 3],
             hints: [[None; 4]; 3],
             deferred: Vec::new(),
             used: vec![false; records.end.impulses.len()],
@@ -311,10 +314,14 @@ impl<'a> Follower<'a> {
             return;
         }
         if self.is_moved(place.pair) && !is_known {
-            self.charge(Detail::PassPositions { place });
-            self.spoilt[part] = true;
+            // A formula that is known to be wrong is wrong here, too, wherever the particles are.
+            if !self.wrong_formulas[row(place.pair.kind)][number] {
+                self.charge(Detail::PassPositions { place });
+                self.spoilt[part] = true;
+            }
             return;
         }
+        self.wrong_formulas[row(place.pair.kind)][number] = true;
         self.charge(self.wrong_polynomial(place, number, expected, mismatch));
     }
 
