@@ -11,6 +11,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::bubblewrap;
 use super::fake::FakeRun;
 use super::job::{Job, Policy};
 use super::layers::{self, Layer, LayerReport};
@@ -114,6 +115,26 @@ impl Supervisor {
         command
     }
 
+    /// The same inside bubblewrap, if it is there, with a folder that may be changed.
+    fn wrapped(&self, mode: &str, folder: Option<&Path>) -> io::Result<Command> {
+        let bwrap = bubblewrap::installed().ok_or_else(|| io::Error::other("bwrap is not installed"))?;
+        // Inside, our own entry in /proc would be another program's.
+        let program = self.program.canonicalize()?;
+        let mut command = bubblewrap::command(&bwrap, &program, folder, sys::user() == 0);
+        command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        Ok(command)
+    }
+
+    /// Starts it for a run, with what the run's walls ask for.
+    fn spawn_for(&self, order: &Order) -> Result<Child, SandboxError> {
+        if !order.walls.bubblewrap {
+            return self.spawn(MODE_RUN);
+        }
+        let child = self.wrapped(MODE_RUN, Some(&wire::path(&order.folder))).and_then(|mut command| command.spawn());
+        child.map_err(|source| SandboxError::Supervisor { program: "in bubblewrap".into(), source })
+    }
+
     fn spawn(&self, mode: &str) -> Result<Child, SandboxError> {
         self.command(mode)
             .spawn()
@@ -122,7 +143,32 @@ impl Supervisor {
 
     /// Has every wall tried once.
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
-        let output = self.spawn(MODE_PROBE)?.wait_with_output();
+        let mut probe = Self::answer(self.spawn(MODE_PROBE)?)?;
+        if probe.namespaces.is_some() {
+            probe.bubblewrap = self.try_bubblewrap(&probe).err();
+        }
+        Ok(probe)
+    }
+
+    /// Whether all walls of this probe hold inside bubblewrap as well; the error is why not.
+    fn try_bubblewrap(&self, outside: &Probe) -> Result<(), String> {
+        let child = self.wrapped(MODE_PROBE, None).and_then(|mut command| command.spawn());
+        let inside = Self::answer(child.map_err(|error| error.to_string())?).map_err(|error| error.to_string())?;
+        let walls = |probe: &Probe| {
+            let active = |report: &LayerReport| report.active.then_some(report.layer);
+            layers::reports(probe).iter().filter_map(active).collect::<Vec<_>>()
+        };
+        let (inside, outside) = (walls(&inside), walls(outside));
+        let own = [Layer::Namespaces, Layer::Bubblewrap];
+        match outside.iter().find(|layer| !own.contains(layer) && !inside.contains(layer)) {
+            Some(layer) => Err(format!("it takes away: {}", layer.name())),
+            None => Ok(()),
+        }
+    }
+
+    /// What a prober says.
+    fn answer(child: Child) -> Result<Probe, SandboxError> {
+        let output = child.wait_with_output();
         let lost = |how: String| SandboxError::Lost { how };
         let output = output.map_err(|error| lost(error.to_string()))?;
         wire::receive(&output.stdout[..]).map_err(|_| {
@@ -185,6 +231,22 @@ impl Backend {
         Ok(Self { kind, layers: reports.into() })
     }
 
+    /// The same with bubblewrap in place of the grader's own namespaces, to prove that it holds, too. By itself a backend
+    /// takes bubblewrap only where the grader cannot make namespaces.
+    ///
+    /// # Errors
+    ///
+    /// [`SandboxError::Missing`] when bubblewrap is not installed or takes other walls away.
+    pub fn in_bubblewrap(&self) -> Result<Self, SandboxError> {
+        let missing = |missing| SandboxError::Missing { missing };
+        let Kind::Launcher { supervisor, .. } = &self.kind else { return Ok(self.clone()) };
+        let probe = Supervisor::answer(supervisor.spawn(MODE_PROBE)?)?;
+        supervisor.try_bubblewrap(&probe).map_err(missing)?;
+        let reports = layers::in_bubblewrap(&self.layers);
+        let walls = layers::walls(&reports).map_err(missing)?;
+        Ok(Self { kind: Kind::Launcher { supervisor: supervisor.clone(), walls }, layers: reports.into() })
+    }
+
     /// Every wall that holds on this host, however few: nothing is refused for a missing one. For
     /// `--unsafe-no-sandbox`. The layers say what is missing, see [`Backend::weaknesses`].
     ///
@@ -242,7 +304,7 @@ impl Backend {
             Some(name) => Some(TracePipe::make(&wire::path(&order.folder), name)?),
             None => None,
         };
-        let mut child = supervisor.spawn(MODE_RUN)?;
+        let mut child = supervisor.spawn_for(&order)?;
         let sent = child.stdin.as_mut().map_or(Ok(()), |stdin| wire::send(stdin, &order));
         let first = match (sent, child.stdout.as_mut()) {
             (Ok(()), Some(stdout)) => wire::receive(stdout),

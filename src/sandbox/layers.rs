@@ -30,11 +30,13 @@ pub enum Layer {
     Namespaces,
     /// A control group per run: the kernel's own counts, and an end for all at one word.
     ControlGroup,
+    /// Bubblewrap, in place of namespaces that the grader cannot make by itself.
+    Bubblewrap,
 }
 
 impl Layer {
     /// All of them, in the order of a report.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::NoNewPrivileges,
         Self::Limits,
         Self::Reaper,
@@ -45,6 +47,7 @@ impl Layer {
         Self::OwnUser,
         Self::Namespaces,
         Self::ControlGroup,
+        Self::Bubblewrap,
     ];
 
     /// The name in reports.
@@ -61,6 +64,7 @@ impl Layer {
             Self::OwnUser => "a user per program",
             Self::Namespaces => "namespaces",
             Self::ControlGroup => "control group",
+            Self::Bubblewrap => "bubblewrap",
         }
     }
 }
@@ -199,6 +203,22 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
             "use Linux 5.14 or newer with version 2, and start the grader in a group of its own, for example by \
              systemd-run --user --scope -p Delegate=yes",
         ),
+        match (&probe.namespaces, &probe.bubblewrap) {
+            (None, _) => LayerReport {
+                layer: Layer::Bubblewrap,
+                active: false,
+                required: false,
+                detail: "not needed: the grader makes namespaces by itself".into(),
+                remedy: None,
+            },
+            (Some(_), problem) => report(
+                Layer::Bubblewrap,
+                problem.clone(),
+                "a run sees its own processes only, no network, and can change its folder only",
+                false,
+                "install bubblewrap; some systems allow it the namespaces that they refuse to others",
+            ),
+        },
     ]
 }
 
@@ -211,6 +231,16 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
             report.detail = "switched off on request".into();
             report.remedy = None;
         }
+    }
+    reports
+}
+
+/// The same reports with bubblewrap in place of the grader's own namespaces.
+pub(super) fn in_bubblewrap(reports: &[LayerReport]) -> Vec<LayerReport> {
+    let mut reports = without(reports, Layer::Namespaces);
+    for report in reports.iter_mut().filter(|report| report.layer == Layer::Bubblewrap) {
+        report.active = true;
+        report.detail = "switched on on request".into();
     }
     reports
 }
@@ -251,6 +281,7 @@ fn active(reports: &[LayerReport]) -> Walls {
         own_user: active(Layer::OwnUser),
         namespaces: active(Layer::Namespaces),
         group: active(Layer::ControlGroup),
+        bubblewrap: active(Layer::Bubblewrap),
     }
 }
 
@@ -288,10 +319,23 @@ mod tests {
             own_user: true,
             namespaces: true,
             group: true,
+            bubblewrap: false,
         };
         assert_eq!(walls(&reports(&healthy(true))), Ok(all));
         assert_eq!(walls(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
         assert_eq!(reports(&healthy(true)).iter().map(|report| report.layer).collect::<Vec<_>>(), Layer::ALL);
+    }
+
+    #[test]
+    fn bubblewrap_steps_in_where_the_grader_makes_no_namespaces() {
+        let refused = Probe { namespaces: Some("not permitted".into()), ..healthy(false) };
+        let walls = super::walls(&reports(&refused)).unwrap();
+        assert!(walls.bubblewrap && !walls.namespaces);
+        let neither = Probe { bubblewrap: Some("it is not installed".into()), ..refused };
+        let walls = super::walls(&reports(&neither)).unwrap();
+        assert!(!walls.bubblewrap && walls.landlock, "it is never required");
+        let walls = super::walls(&in_bubblewrap(&reports(&healthy(true)))).unwrap();
+        assert!(walls.bubblewrap && !walls.namespaces && walls.own_user);
     }
 
     #[test]

@@ -18,6 +18,7 @@
 //! silently when a required layer is missing ([`Backend::best`] refuses).
 
 mod backend;
+mod bubblewrap;
 pub mod collect;
 mod decide;
 mod fake;

@@ -43,6 +43,8 @@ pub(super) struct Walls {
     pub(super) own_user: bool,
     pub(super) namespaces: bool,
     pub(super) group: bool,
+    /// Whether the supervisor itself is inside bubblewrap.
+    pub(super) bubblewrap: bool,
 }
 
 /// What the supervisor is to run.
@@ -75,7 +77,7 @@ pub(super) struct Order {
 /// What the supervisor answers.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Event {
-    /// The child was forked: its session, unless it has a process namespace and with it numbers of its own,
+    /// The child was forked: its session, unless its process namespace has numbers of its own,
     /// and the user it runs as if it has its own.
     Ready { session: Option<i32>, user: Option<u32> },
     /// The sandbox could not be put up; our fault.
@@ -151,6 +153,8 @@ pub(super) struct Probe {
     pub(super) reaper: Option<String>,
     pub(super) namespaces: Option<String>,
     pub(super) group: Option<String>,
+    /// Why bubblewrap does not help. Only tried when the supervisor cannot make namespaces by itself.
+    pub(super) bubblewrap: Option<String>,
     /// What the kernel limits for a group here.
     pub(super) group_controls: Vec<String>,
 }

@@ -35,6 +35,7 @@ pub(super) fn doctor() -> Result<u8> {
         let state = match (report.active, report.required) {
             (true, _) => "holds",
             (false, true) => "MISSING",
+            (false, false) if report.remedy.is_none() => "unused",
             (false, false) => "missing",
         };
         let _ = writeln!(text, "{state:<8} {:<24} {}", report.layer.name(), report.detail);

@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::sandbox::sys;
 use crate::sandbox::wire::Order;
@@ -56,7 +56,9 @@ impl Group {
     }
 
     fn make_in(place: &Path) -> io::Result<Self> {
-        let path = place.join(format!("{PREFIX}{}", std::process::id()));
+        // In process namespaces, others may have our number.
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+        let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
         std::fs::create_dir(&path)?;
         let group = File::open(&path).map(|folder| Self { path, folder })?;
         // Only a group that can be ended and entered is of use.

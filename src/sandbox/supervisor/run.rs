@@ -197,7 +197,8 @@ impl Run {
     fn finish(mut self, answers: &mut File) -> Result<Option<Finished>, Failure> {
         let user = self.slot.as_ref().map(|(slot, _)| slot.user);
         // A grader that is gone shows as the end of the control pipe, too.
-        let session = (!self.order.walls.namespaces).then_some(self.child);
+        let walls = self.order.walls;
+        let session = (!walls.namespaces && !walls.bubblewrap).then_some(self.child);
         let _ = wire::send(answers, &Event::Ready { session, user });
         let watched = self.watch();
         let wall = self.wall();
