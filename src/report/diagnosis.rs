@@ -72,7 +72,7 @@ impl Diagnosis {
 
     fn is_common(&self, explanation: &Explanation) -> bool {
         self.common.as_ref().is_some_and(|common| {
-            common.key == explanation.key || explanation.same_as.iter().any(|other| *other == common.key)
+            common.key == explanation.key || explanation.same_as.contains(&common.key)
         })
     }
 
