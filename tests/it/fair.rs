@@ -8,6 +8,7 @@ use fosssim_oracle::{
     },
     scene::{Scene, original},
     student::{self, CATALOGUE, Row, Student},
+    trace::{Frame, Layout, Reader, Writer},
 };
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -111,6 +112,30 @@ fn the_factor_and_the_form_of_the_polynomials_are_found() {
     assert_eq!(of("rearranged-pe").scale(), None);
     assert_eq!(of("quintic-right").form, Form::Right);
     assert_eq!(of("scale-3").form, Form::Course);
+}
+
+/// One polynomial in the right form among others that are the course's bit for bit: its t^3, which the right form lacks, is lost.
+#[test]
+fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
+    let scenes = assets();
+    let (_, scene) = scenes.iter().find(|(name, _)| name == "ContinuousTimeTests/spinning-edge-sweeps-balls").unwrap();
+    let layout = Layout::of(scene);
+    let trace = simulated(scene, None).unwrap();
+    let mut reader = Reader::of_slice(&trace, layout);
+    let mut writer = Writer::new(Vec::new(), layout);
+    let (mut frame, mut number) = (Frame::default(), 0);
+    while reader.next(&mut frame).unwrap() {
+        let log = std::mem::take(&mut frame.polynomials);
+        for (index, polynomial) in log.iter().enumerate() {
+            let lost = usize::from((number, index) == (17, 15) || (number, index) == (18, 15));
+            frame.polynomials.push(&polynomial[lost..]);
+        }
+        writer.frame(&frame);
+        number += 1;
+    }
+    let (_, fair) = judged(scene, &writer.finish().unwrap().0, 1);
+    assert_eq!(fair.counts.get(Kind::MixedForms), 1, "{fair:?}");
+    assert_eq!(fair.counts.total(), 1);
 }
 
 /// What the fair rules find does not depend on how many threads look.

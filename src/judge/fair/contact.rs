@@ -8,12 +8,18 @@ use crate::{
     judge::finding::{Detail, Finding},
     num::{
         bounded::{Bounded, UNIT_ROUNDOFF},
+        certificate::excludes_unit_interval,
         decision::{Certainty, decide},
-        tolerances::{FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_TIME, FAIR_UNITS},
-        vector::{at, length},
+        first_time::first_time,
+        polynomial::{MAX_COEFFICIENTS, Polynomial},
+        tolerances::{
+            FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_TIME, FAIR_UNITS, SEARCH_LARGEST_COEFFICIENT,
+            SEARCH_SMALLEST_COEFFICIENT,
+        },
+        vector::{Vec2, at, length},
     },
     scene::Collision,
-    sim::{Impulse, State},
+    sim::{Decision, Impulse, State},
     trace::LoggedImpulse,
 };
 
@@ -119,7 +125,7 @@ pub(super) fn states(
         };
         let position_tolerance = tolerance(position_floor, |known| &known.positions);
         let (expected, actual) = (at(&own.positions, particle), at(&logged.positions, particle));
-        let residual = length(expected - actual);
+        let residual = distance(expected, actual);
         if !(residual <= position_tolerance) {
             let detail = Detail::Position { particle, expected: expected.into(), actual: actual.into(), residual };
             judged.charge(Finding { step: judged.step, frame, detail });
@@ -127,7 +133,7 @@ pub(super) fn states(
         }
         let velocity_tolerance = tolerance(velocity_floor, |known| &known.velocities);
         let (expected, actual) = (at(&own.velocities, particle), at(&logged.velocities, particle));
-        let velocity_residual = length(expected - actual);
+        let velocity_residual = distance(expected, actual);
         if !(velocity_residual <= velocity_tolerance) {
             let (expected, actual, residual) = (expected.into(), actual.into(), velocity_residual);
             let detail = Detail::Velocity { particle, expected, actual, residual };
@@ -141,6 +147,39 @@ pub(super) fn states(
             judged.shares.velocity = judged.shares.velocity.max(velocity_residual / velocity_tolerance);
         }
     }
+}
+
+/// How far two vectors are apart. Where the reference itself has no number, or an infinite one, from the trace's own
+/// state, a trace that has the same is not to blame: such components are no distance. NaN against a number is NaN.
+fn distance(expected: Vec2, actual: Vec2) -> f64 {
+    let apart = |expected: f64, actual: f64| {
+        let same = expected == actual || expected.is_nan() && actual.is_nan();
+        if same { 0.0 } else { expected - actual }
+    };
+    length(Vec2::new(apart(expected.x, actual.x), apart(expected.y, actual.y)))
+}
+
+/// A logged collision as a decision, if a response can be computed from it.
+pub(super) fn followed(logged: LoggedImpulse) -> Option<Decision> {
+    let LoggedImpulse { normal, time, .. } = logged;
+    let is_usable = normal.x.is_finite() && normal.y.is_finite() && time.is_finite() && normal != normal * 0.0;
+    is_usable.then_some(Decision::Hit { time, normal })
+}
+
+/// Whether the root finder certainly ends with these coefficients.
+pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
+    coefficients.len() <= MAX_COEFFICIENTS
+        && coefficients
+            .iter()
+            .all(|c| *c == 0.0 || (SEARCH_SMALLEST_COEFFICIENT..=SEARCH_LARGEST_COEFFICIENT).contains(&c.abs()))
+}
+
+/// What these polynomials decide, as they are; `None` where the root finder does not end.
+pub(super) fn outcome(polynomials: &[Polynomial]) -> Option<bool> {
+    if excludes_unit_interval(polynomials) {
+        return Some(false);
+    }
+    first_time(polynomials).ok().map(|time| time <= 1.0)
 }
 
 /// What the polynomials decide, where round-off can't change it.
@@ -176,4 +215,21 @@ pub(super) fn possible_time(expected: &Expected) -> f64 {
     }
     let earliest = decide(&polynomials[..expected.count()], FAIR_UNITS).time;
     earliest.map_or(1.0, |[low, high]| low.midpoint(high).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bits aside, a program that ends with no number where the reference has none has done what the scene asks.
+    #[test]
+    fn what_is_no_number_for_the_reference_either_is_no_distance() {
+        let (nan, infinite) = (f64::NAN, f64::INFINITY);
+        assert_eq!(distance(Vec2::new(nan, infinite), Vec2::new(-nan, infinite)), 0.0);
+        assert_eq!(distance(Vec2::new(nan, 1.0), Vec2::new(nan, 4.0)), 3.0);
+        assert_eq!(distance(Vec2::new(infinite, 0.0), Vec2::new(-infinite, 0.0)), infinite);
+        for (expected, actual) in [(1.0, nan), (nan, 1.0), (infinite, nan)] {
+            assert!(distance(Vec2::new(0.0, expected), Vec2::new(0.0, actual)).is_nan(), "{expected} {actual}");
+        }
+    }
 }

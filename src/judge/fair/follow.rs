@@ -10,14 +10,11 @@ use super::{
 use crate::{
     judge::finding::{Detail, Finding, Part, PolynomialPlace, Role},
     num::{
-        certificate::excludes_unit_interval,
-        first_time::first_time,
         polynomial::{MAX_COEFFICIENTS, Polynomial},
-        tolerances::{SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT},
         vector::Vec2,
     },
     scene::Collision,
-    sim::{Decision, Detection, Impulse, Observer, Pair, Pass, Resume, Stage, State, Time, Zone},
+    sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, State, Time, Zone},
     trace::LoggedImpulse,
 };
 
@@ -306,6 +303,21 @@ impl<'a> Follower<'a> {
         self.expected = Some((seen, expected));
     }
 
+    /// Notes that an approach polynomial which is the reference's bit for bit is of the course's form, where the two
+    /// forms differ.
+    fn note_course_form(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize) {
+        let number = 3;
+        if pair.kind != PairKind::ParticleEdge || self.judged.course_form.is_some() {
+            return;
+        }
+        let logged = self.records.end.polynomials.get(index + number);
+        let expected = Motion::of(self.context.scene, pair, q_start, q_end).polynomials();
+        if expected.other_form(number).is_some_and(|right| compare(right, logged, &[1.0]).is_err()) {
+            let role = Role::of(pair.kind, number);
+            self.judged.course_form = Some(PolynomialPlace { pass: self.pass, pair, role, index: index + number });
+        }
+    }
+
     fn charge_polynomial(&mut self, place: PolynomialPlace, number: usize, expected: &Expected, mismatch: Mismatch) {
         let part = self.part();
         let is_known = self.known_positions().is_some();
@@ -392,7 +404,7 @@ impl<'a> Follower<'a> {
                 if let Some(detail) = finding {
                     self.charge(detail);
                 }
-                followed(actual).unwrap_or(Decision::Hit { time, normal })
+                contact::followed(actual).unwrap_or(Decision::Hit { time, normal })
             }
             (Decision::Hit { time, normal }, None) => {
                 if self.is_borderline(call) {
@@ -408,32 +420,10 @@ impl<'a> Follower<'a> {
                 } else {
                     self.charge(Detail::SuperfluousCollision { actual });
                 }
-                followed(actual).unwrap_or(own)
+                contact::followed(actual).unwrap_or(own)
             }
         }
     }
-}
-
-/// A logged collision as a decision, if a response can be computed from it.
-fn followed(logged: LoggedImpulse) -> Option<Decision> {
-    let LoggedImpulse { normal, time, .. } = logged;
-    let is_usable = normal.x.is_finite() && normal.y.is_finite() && time.is_finite() && normal != normal * 0.0;
-    is_usable.then_some(Decision::Hit { time, normal })
-}
-
-/// Whether the root finder certainly ends with these coefficients.
-fn is_searchable(coefficients: &[f64]) -> bool {
-    coefficients.len() <= MAX_COEFFICIENTS
-        && coefficients
-            .iter()
-            .all(|c| *c == 0.0 || (SEARCH_SMALLEST_COEFFICIENT..=SEARCH_LARGEST_COEFFICIENT).contains(&c.abs()))
-}
-
-fn decides(polynomials: &[Polynomial]) -> Option<bool> {
-    if excludes_unit_interval(polynomials) {
-        return Some(false);
-    }
-    first_time(polynomials).ok().map(|time| time <= 1.0)
 }
 
 impl Observer for Follower<'_> {
@@ -469,6 +459,7 @@ impl Observer for Follower<'_> {
                 let motion = Motion::of(self.context.scene, pair, q_start, q_end);
                 self.expected = Some((motion, motion.polynomials()));
             }
+            self.note_course_form(pair, q_start, q_end, index);
             return;
         }
         let findings = self.judged.total();
@@ -477,10 +468,10 @@ impl Observer for Follower<'_> {
         let lost = polynomials.iter().enumerate().any(|(number, own)| own.coefficients().len() != logged(number).len());
         if right && lost {
             self.judged.lost += 1;
-            self.own_decision = decides(polynomials);
+            self.own_decision = contact::outcome(polynomials);
         }
         // What the submission solved is what decides, even if it is wrong: a wrong polynomial is charged once.
-        if (0..polynomials.len()).all(|number| is_searchable(logged(number))) {
+        if (0..polynomials.len()).all(|number| contact::is_searchable(logged(number))) {
             for (number, own) in polynomials.iter_mut().enumerate() {
                 *own = Polynomial::untrimmed(logged(number));
             }
