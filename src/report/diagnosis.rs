@@ -71,9 +71,9 @@ impl Diagnosis {
     }
 
     fn is_common(&self, explanation: &Explanation) -> bool {
-        self.common.as_ref().is_some_and(|common| {
-            common.key == explanation.key || explanation.same_as.contains(&common.key)
-        })
+        self.common
+            .as_ref()
+            .is_some_and(|common| common.key == explanation.key || explanation.same_as.contains(&common.key))
     }
 
     /// For programs.
