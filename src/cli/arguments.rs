@@ -154,8 +154,8 @@ Example:
   fosssim-oracle explain --program ./FOSSSim
   fosssim-oracle explain --program ./FOSSSim scenes/test00.xml
 
-With a program at hand it runs, in the sandbox, on small scenes that make every term of every formula visible. The exit
-code is 0 when the fair rules accept everything, else 1.")]
+With a program at hand it runs, in the sandbox, on small scenes that make every term of every
+formula visible. The exit code is 0 when the fair rules accept everything, else 1.")]
 pub(super) struct Explain {
     /// The scene and the trace; with --program, scenes to run besides the built-in ones.
     #[arg(value_name = "SCENE TRACE")]

@@ -32,6 +32,10 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
             }
         }
     }
+    if known.iter().any(Explanation::is_complete) {
+        // It reproduces the polynomials, too: what is said about them besides only follows from it.
+        polynomials.clear();
+    }
     let mut all = known;
     all.append(&mut polynomials);
     // A stable sort: among equals the known mistake stays first.

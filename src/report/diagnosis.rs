@@ -131,7 +131,9 @@ fn alone(case: &Case, style: Style) -> String {
     if let Some((first, _)) = first {
         let _ = writeln!(text, "{first}");
     }
-    if explanations.is_empty() {
+    if explanations.is_empty() && first.is_none() {
+        text += "No known mistake explains it.\n";
+    } else if explanations.is_empty() {
         text += "No known mistake explains it. The first divergence is where to look: the step starts from the trace's own\n\
                  state, so nothing before it is to blame.\n";
     } else {

@@ -18,14 +18,20 @@ pub fn lines(explanations: &[Explanation]) -> Vec<String> {
 /// The sentence about the likeliest mistake, for formats with room for one line.
 #[must_use]
 pub fn sentence(explanations: &[Explanation]) -> Option<String> {
-    explanations.first().map(|explanation| format!("likely mistake: {}", explanation.what))
+    explanations.first().map(|explanation| match explanation.reproduced {
+        0 => explanation.what.clone(),
+        _ => format!("likely mistake: {}", explanation.what),
+    })
 }
 
 fn of_one(explanation: &Explanation) -> Vec<String> {
-    let mut lines = vec![format!(
-        "likely mistake: {} (reproduces {} of {})",
-        explanation.what, explanation.reproduced, explanation.samples
-    )];
+    // What reproduces nothing is an observation, not a mistake that is likely.
+    let mut lines = vec![match explanation {
+        Explanation { what, reproduced: 0, samples, .. } => format!("{what} ({samples} looked at)"),
+        Explanation { what, reproduced, samples, .. } => {
+            format!("likely mistake: {what} (reproduces {reproduced} of {samples})")
+        }
+    }];
     lines.extend(explanation.details.iter().map(|detail| format!("  {detail}")));
     if !explanation.same_as.is_empty() {
         let (shown, more) = explanation.same_as.split_at(explanation.same_as.len().min(LISTED));
@@ -184,9 +190,13 @@ pub(crate) mod tests {
             given     x1 = (0.5, -1), R = 0.25
             expected  1, -0.125
             actual    1, nan
-        likely mistake: Nothing that is known explains the overlap polynomial. (reproduces 0 of 9)
+        Nothing that is known explains the overlap polynomial. (9 looked at)
         ");
         assert_eq!(sentence(&explanations()).as_deref(), Some("likely mistake: The sum of radii is not squared."));
+        assert_eq!(
+            sentence(&explanations()[1..]).as_deref(),
+            Some("Nothing that is known explains the overlap polynomial.")
+        );
         assert_eq!((lines(&[]), sentence(&[])), (Vec::new(), None));
     }
 

@@ -350,11 +350,11 @@ catalogue! {
     }
     Wrong ImpulseLoop {
         ImpulsesEmpty "loop-empty": "The impulse loop is left empty: it reports failure at once.";
-        ImpulsesOneFewer "loop-one-fewer": "One round too few.";
-        ImpulsesOneMore "loop-one-more": "One round too many.";
-        ImpulsesOnlyOne "loop-only-one": "One round only, whatever maxiters says.";
-        ImpulsesAlwaysTen "loop-always-ten": "Ten rounds, whatever maxiters says.";
-        ImpulsesDouble "loop-double": "Twice as many rounds as maxiters allows.";
+        ImpulsesOneFewer "loop-one-fewer": "The impulse loop makes one round fewer than maxiters allows.";
+        ImpulsesOneMore "loop-one-more": "The impulse loop makes one round more than maxiters allows.";
+        ImpulsesOnlyOne "loop-only-one": "The impulse loop makes one round only, whatever maxiters says.";
+        ImpulsesAlwaysTen "loop-always-ten": "The impulse loop makes up to ten rounds, whatever maxiters says.";
+        ImpulsesDouble "loop-double": "The impulse loop makes twice as many rounds as maxiters allows.";
         ImpulsesCountContacts "loop-counts-contacts": "Contacts are counted against maxiters, not rounds.";
         ImpulsesDetectAfterLast "loop-detects-after-last": "A pass after the last round decides whether it succeeded.";
         ImpulsesPassWhenZero "loop-pass-when-zero": "A detection pass is made although maxiters is 0.";

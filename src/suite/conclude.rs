@@ -117,7 +117,8 @@ fn wrong(account: Account<'_>, steps: u32) -> String {
             format!("the first record is wrong: {}", first.kind())
         }
         Some(first) => {
-            let share = format!("{} of {steps} steps are wrong", account.wrong_steps);
+            let verb = if account.wrong_steps == 1 { "is" } else { "are" };
+            let share = format!("{} of {steps} steps {verb} wrong", account.wrong_steps);
             format!("{share}, first step {}: {}", first.step, first.kind())
         }
         None => "small errors add up beyond the tolerance".to_owned(),

@@ -13,6 +13,7 @@ use crate::{
         parity::{self, Options},
     },
     report::{
+        check::stopped,
         diagnosis::{Case, Diagnosis},
         style::Style,
     },
@@ -28,6 +29,9 @@ use std::{
 
 /// So much of a trace is looked at, in bytes.
 const LONGEST: usize = 64 << 20;
+
+/// So often a program may take too long; then it is not run any more.
+const PATIENCE: usize = 2;
 
 pub(super) fn run(arguments: &Explain) -> Result<u8> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
@@ -63,6 +67,8 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<Cas
 fn case(name: String, trace: String, scene: &Scene, bytes: &[u8], note: Option<String>, hints: Hints) -> Case {
     let options = Options { fair: true, ..Options::default() };
     let outcome = parity::judge(scene, bytes, &options, &mut ());
+    // How the program ended tells more than how its trace did.
+    let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, &outcome)));
     let fair = outcome.fair.unwrap_or_default();
     let accepted = fair.verdict == Verdict::Accepted && note.is_none();
     let explanations = if fair.verdict == Verdict::Accepted { Vec::new() } else { diagnose::explain(scene, bytes) };
@@ -91,7 +97,15 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
         cancellation: &cancellation,
     };
     let mut cases = Vec::new();
+    let mut late = 0;
     for task in &tasks {
+        if late == PATIENCE {
+            let note = Some(format!("not run: the program took too long {PATIENCE} times before"));
+            let shown = program.display().to_string();
+            let (accepted, first, explanations) = (false, None, Vec::new());
+            cases.push(Case { scene: task.name.clone(), trace: shown, accepted, note, first, explanations });
+            continue;
+        }
         if cancellation.is_cancelled() {
             bail!("stopped");
         }
@@ -99,6 +113,7 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
         if let Ended::CouldNotStart(problem) = &outcome.ended {
             bail!("{}: {problem}", program.display());
         }
+        late += usize::from(matches!(outcome.ended, Ended::CpuLimit | Ended::WallLimit));
         let note = (!matches!(outcome.ended, Ended::Exited(0))).then(|| format!("the program {}", outcome.ended));
         let shown = program.display().to_string();
         cases.push(case(task.name.clone(), shown, &task.scene, &trace, note, arguments.hints.into()));

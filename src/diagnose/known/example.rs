@@ -7,6 +7,7 @@ use super::{
 };
 use crate::{
     diagnose::Example,
+    judge::Role,
     num::vector::at,
     scene::Scene,
     sim::{Pair, PairKind, RootSearch, Simulation, State},
@@ -33,7 +34,10 @@ pub(super) fn example(scene: &Scene, correct: Correct, sample: &Sample) -> Examp
             };
             let place = capture.place(index).map_or_else(
                 || format!("polynomial {index}"),
-                |(pair, pass, number)| format!("{}, pass {}, polynomial {}", describe(pair), pass.index, number + 1),
+                |(pair, pass, number)| {
+                    let role = Role::of(pair.kind, number);
+                    format!("{}, pass {}, {role} polynomial", describe(pair), pass.index)
+                },
             );
             (place, list(&ours.end.polynomials), list(&theirs.end.polynomials))
         }

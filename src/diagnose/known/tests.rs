@@ -71,7 +71,7 @@ fn a_right_approach_hides_no_mistake() {
         let [explanation] = &explanations[..] else { panic!("{id} is not explained") };
         assert!(explanation.key == id || explanation.same_as.iter().any(|other| other == id), "{id}: {explanation:?}");
         let example = explanation.example.as_ref().expect("an example");
-        assert!(!example.place.ends_with("polynomial 4"), "the approach is right: {example:?}");
+        assert!(!example.place.ends_with("approach polynomial"), "the approach is right: {example:?}");
     }
     let trace = student::trace(&scene(), Student::default().with_right_approach()).expect("a trace");
     assert_eq!(known(&scene(), &trace[..]), []);
@@ -86,7 +86,7 @@ fn an_example_names_the_first_wrong_step() {
     assert_eq!((explanation.key.as_str(), explanation.what.as_str()), (row.id, row.explanation));
     assert_eq!(explanation.reproduced, explanation.samples);
     let example = explanation.example.as_ref().expect("an example");
-    assert_eq!((example.step, example.place.as_str()), (1, "particle 0 and particle 1, pass 0, polynomial 1"));
+    assert_eq!((example.step, example.place.as_str()), (1, "particle 0 and particle 1, pass 0, overlap polynomial"));
     assert_eq!(example.expected.len(), 3);
     assert!((example.expected[1] - 2.0 * example.actual[1]).abs() < 1e-9, "{example:?}");
 }

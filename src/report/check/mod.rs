@@ -8,6 +8,8 @@ mod fair;
 mod fair_view;
 mod text;
 
+pub use text::stopped;
+
 use super::{
     describe::step_error,
     explain::ExplanationView,

@@ -70,8 +70,21 @@ fn head(check: &Check<'_>, style: Style) -> String {
     format!("{verdict}: {summary}\n  scene {}\n  trace {}\n", check.scene, check.trace)
 }
 
+/// Where a trace can't be followed any further, and why: one line.
+#[must_use]
+pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
+    let (place, message, _) = parts(stop, outcome);
+    format!("the trace can't be followed any further at {place}: {message}")
+}
+
 fn problem(stop: &Stop, outcome: &Outcome, style: Style) -> String {
-    let (place, message, advice) = match stop {
+    let (place, message, advice) = parts(stop, outcome);
+    format!("{} {place}\n  {message}\n  {advice}\n", style.paint(Look::Strong, "Stopped at"))
+}
+
+/// Where it is, what is the matter, and what to look at.
+fn parts(stop: &Stop, outcome: &Outcome) -> (String, String, &'static str) {
+    match stop {
         Stop::Trace { frame, step, cause, offset, message } => {
             let advice = match cause {
                 Unreadable::Io => "the file could not be read on; check the disk, or who else writes to it",
@@ -99,8 +112,7 @@ fn problem(stop: &Stop, outcome: &Outcome, style: Style) -> String {
                           absurdly large in the steps before";
             (format!("step {step} of {}", outcome.steps), message, advice)
         }
-    };
-    format!("{} {place}\n  {message}\n  {advice}\n", style.paint(Look::Strong, "Stopped at"))
+    }
 }
 
 fn residuals(outcome: &Outcome, style: Style) -> String {
