@@ -87,12 +87,7 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
     let shared = vote.shared?;
     match vote.told {
         Some(told) => Some(Explanation { same_as, ..told.clone() }),
-        None => Some(Explanation {
-            key: (*key).to_owned(),
-            what: find(key)?.explanation.to_owned(),
-            same_as,
-            ..shared.clone()
-        }),
+        None => Some(Explanation { key: (*key).to_owned(), what: find(key)?.sentence(), same_as, ..shared.clone() }),
     }
 }
 

@@ -131,6 +131,20 @@ impl Student {
     }
 }
 
+impl Row {
+    /// The explanation with the kind of pair in front, where the mistake is made for one kind only.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let kind = match self.id.split_once('-') {
+            Some(("pp", _)) => "Particle-particle: ",
+            Some(("pe", _)) => "Particle-edge: ",
+            Some(("ph", _)) => "Particle-half-plane: ",
+            _ => "",
+        };
+        format!("{kind}{}", self.explanation)
+    }
+}
+
 /// The row with this id.
 pub fn find(id: &str) -> Option<&'static Row> {
     CATALOGUE.iter().find(|row| row.id == id)

@@ -112,7 +112,7 @@ fn a_dropped_term_is_named_with_an_example() {
     let run = workspace.run(["explain", SPINNING, "submission.bin"]);
     assert_eq!(run.code, Some(1), "{}", run.err());
     let text = run.out();
-    assert!(text.contains("The t^2 coefficient lacks -4 e h."), "{text}");
+    assert!(text.contains("Particle-edge: The t^2 coefficient lacks -4 e h."), "{text}");
     assert!(text.contains("expected") && text.contains("actual"), "{text}");
     let run = workspace.run(["explain", SPINNING, "submission.bin", "--format", "json"]);
     let report = validated(&run.out());

@@ -109,7 +109,7 @@ fn plausibility(row: &Row) -> u8 {
 fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
         key: row.id.to_owned(),
-        what: row.explanation.to_owned(),
+        what: row.sentence(),
         details: vec![remedy::remedy(row.area).to_owned()],
         reproduced,
         samples,

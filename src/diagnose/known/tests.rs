@@ -83,7 +83,7 @@ fn an_example_names_the_first_wrong_step() {
     let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
     let explanations = known(&scene(), &trace[..]);
     let [explanation] = &explanations[..] else { panic!("one explanation") };
-    assert_eq!((explanation.key.as_str(), explanation.what.as_str()), (row.id, row.explanation));
+    assert_eq!((&*explanation.key, &explanation.what), (row.id, &row.sentence()));
     assert_eq!(explanation.reproduced, explanation.samples);
     let example = explanation.example.as_ref().expect("an example");
     assert_eq!((example.step, example.place.as_str()), (1, "particle 0 and particle 1, pass 0, overlap polynomial"));
