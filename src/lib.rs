@@ -1,27 +1,26 @@
 //! **fosssim-oracle** re-simulates every step of a FOSSSim submission from the submission's own state, compares every
 //! polynomial that it logged with the one it should have logged, and says what is right, what is wrong and where.
 //!
-//! The modules are listed from the lowest layer to the highest; a module imports only from those above it in this
-//! list. `ARCHITECTURE.md` tells the whole flow.
+//! The rooms are crates of the workspace; this is the program on top of them and a facade under one name for each.
+//! They are listed from the lowest layer to the highest; a room imports only from those above it in this list.
+//! `ARCHITECTURE.md` tells the whole flow.
 
-pub mod num;
+pub use fosssim_num as num;
 
-pub mod scene;
+pub use fosssim_model::{scene, sim, trace};
 
-pub mod sim;
+pub use fosssim_mistakes::student;
 
-pub mod trace;
+pub use fosssim_judge as judge;
 
-pub mod student;
+pub use fosssim_sandbox as sandbox;
 
-pub mod judge;
+pub use fosssim_mistakes::diagnose;
 
-pub mod sandbox;
+pub use fosssim_grading as suite;
 
-pub mod diagnose;
+pub use fosssim_report as report;
 
-pub mod suite;
-
-pub mod report;
+pub use fosssim_render as render;
 
 pub mod cli;

@@ -7,6 +7,7 @@ The oracle is any program with the original's command line: fosssim-oracle calle
 FOSSSimOracle is one. This script trusts the program it runs; `fosssim-oracle grade` does not.
 """
 import argparse
+import os
 import pathlib
 import subprocess
 import sys
@@ -21,13 +22,22 @@ def main():
     parser.add_argument("scenes", type=pathlib.Path, help="a folder of scenes")
     arguments = parser.parse_args()
     program, oracle = (str(pathlib.Path(path).absolute()) for path in (arguments.program, arguments.oracle))
+    for what, path in (("program", program), ("oracle", oracle)):
+        if not os.path.isfile(path):
+            parser.exit(2, f"there is no {what} at {path}; build it first, or name another with --{what}\n")
+        if not os.access(path, os.X_OK):
+            parser.exit(2, f"the {what} {path} can't be run; is it the built program (chmod +x)?\n")
     scenes = sorted(arguments.scenes.rglob("*.xml"))
     if not scenes:
         parser.error(f"no scene below {arguments.scenes}")
     passed, failed = 0, 0
     with tempfile.TemporaryDirectory() as folder:
         for scene in scenes:
-            verdict = grade(program, oracle, str(scene.absolute()), folder, arguments.seconds)
+            try:
+                verdict = grade(program, oracle, str(scene.absolute()), folder, arguments.seconds)
+            except OSError as error:
+                # Such as a program for another machine: it is the same for every scene.
+                parser.exit(2, f"{error.filename} can't be run: {error.strerror}\n")
             print(f"{scene.relative_to(arguments.scenes)}: {verdict}")
             passed += verdict == "Passed."
             failed += verdict != "Passed."

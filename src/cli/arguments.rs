@@ -1,5 +1,9 @@
 //! The command line as typed. What it means is decided by the commands.
-use super::grading::{Demo, Doctor, Grade, Selftest, Suite};
+use super::{
+    grading::{Demo, Doctor, Grade, Selftest, Suite},
+    pictures::{Detect, Render},
+    scenes::Scene,
+};
 use crate::{judge, suite::config};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -9,8 +13,19 @@ use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
 #[derive(Debug, Parser)]
 #[command(name = "fosssim-oracle", version, max_term_width = 100, after_help = EXIT_CODES)]
 pub(super) struct Arguments {
+    /// When to use colours; auto is for a terminal, unless NO_COLOR objects or CLICOLOR_FORCE insists.
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = Colour::Auto, display_order = 900)]
+    pub(super) color: Colour,
     #[command(subcommand)]
     pub(super) command: Command,
+}
+
+/// When colours are used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Colour {
+    Auto,
+    Always,
+    Never,
 }
 
 const EXIT_CODES: &str = "\
@@ -27,12 +42,16 @@ pub(super) enum Command {
     Simulate(Simulate),
     Check(Check),
     Explain(Explain),
+    Detect(Box<Detect>),
+    Render(Box<Render>),
     #[command(subcommand)]
     Trace(Trace),
     Record(Record),
     Grade(Grade),
     #[command(subcommand)]
     Suite(Suite),
+    #[command(subcommand)]
+    Scene(Scene),
     Demo(Demo),
     Doctor(Doctor),
     Selftest(Selftest),
@@ -154,8 +173,7 @@ Example:
   fosssim-oracle explain --program ./FOSSSim
   fosssim-oracle explain --program ./FOSSSim scenes/test00.xml
 
-With a program at hand it runs, in the sandbox, on small scenes that make every term of every
-formula visible. The exit code is 0 when the fair rules accept everything, else 1.")]
+With a program at hand it runs, in the sandbox, on small scenes that make every term of every formula visible. The exit code is 0 when the fair rules accept everything, else 1.")]
 pub(super) struct Explain {
     /// The scene and the trace; with --program, scenes to run besides the built-in ones.
     #[arg(value_name = "SCENE TRACE")]
@@ -247,7 +265,7 @@ Example:
   fosssim-oracle record --check
   fosssim-oracle record --assets my-scenes --references my-references
 
-Scenes are read from ASSETS/<Group>/<name>.xml. REFERENCES gets <Group>/<name>.bin.zst, a digest per step in
+Scenes are read from ASSETS/<Group>/<name>.xml. REFERENCES gets <Group>/<name>.bin.zst, a digest per step in \
 <Group>/<name>.steps, and manifest.txt.")]
 pub(super) struct Record {
     /// Write nothing; simulate in memory, and fail with a diff when a byte differs. Without an assets folder this

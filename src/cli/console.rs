@@ -1,21 +1,65 @@
-//! The terminal: standard output that survives a closed pipe, the decision about colours, and the progress bar.
+//! The terminal: standard output that survives a closed pipe, the decision about colours, lines that fit, and the
+//! progress bar.
+use super::arguments::{Colour, Format};
 use crate::{
     judge::parity::{Progress, Remark},
-    report::style::Style,
+    report::{style::Style, wrap},
 };
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
     io::{self, IsTerminal, Write},
+    sync::OnceLock,
     time::{Duration, Instant},
 };
+use terminal_size::{Width, terminal_size_of};
 
-/// The style of reports on standard output: colours only on a terminal, and only when nobody objects (`NO_COLOR`,
-/// `TERM=dumb`).
+/// What `--color` says.
+static COLOUR: OnceLock<Colour> = OnceLock::new();
+
+/// Remembers what `--color` says; the first word counts.
+pub(super) fn choose_colour(colour: Colour) {
+    let _ = COLOUR.set(colour);
+}
+
+/// The style of reports on standard output. Unless `--color` says so, colours only where nobody objects (`NO_COLOR`),
+/// and only where somebody wants them (`CLICOLOR_FORCE`) or a terminal shows them (not `TERM=dumb`, not `CLICOLOR=0`).
 pub(super) fn style() -> Style {
-    let objected = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
-        || std::env::var_os("TERM").is_some_and(|value| value == "dumb");
-    if io::stdout().is_terminal() && !objected { Style::Colour } else { Style::Plain }
+    let is = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
+    let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let wanted = match COLOUR.get().copied().unwrap_or(Colour::Auto) {
+        Colour::Always => true,
+        Colour::Never => false,
+        Colour::Auto if is_set("NO_COLOR") => false,
+        Colour::Auto if is_set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") => true,
+        Colour::Auto => io::stdout().is_terminal() && !is("TERM", "dumb") && !is("CLICOLOR", "0"),
+    };
+    if wanted { Style::Colour } else { Style::Plain }
+}
+
+/// Narrower than this no line is wrapped: a terminal that says so has not been told its size.
+const NARROWEST: u16 = 20;
+
+/// Prints a report for people. On a terminal its lines are broken at words.
+///
+/// # Errors
+/// As [`print`].
+pub(super) fn report(text: &str) -> Result<()> {
+    match terminal_size_of(io::stdout()) {
+        Some((Width(width), _)) if width >= NARROWEST => print(wrap::wrapped(text, width.into()).as_bytes()),
+        _ => print(text.as_bytes()),
+    }
+}
+
+/// Prints what was written in this format.
+///
+/// # Errors
+/// As [`print`].
+pub(super) fn show(text: &str, format: Format) -> Result<()> {
+    match format {
+        Format::Text => report(text),
+        Format::Json => print(text.as_bytes()),
+    }
 }
 
 /// Prints to standard output. Nobody listening any more is no error: the verdict is in the exit code.

@@ -11,11 +11,11 @@ Example:
   fosssim-oracle grade submissions/ --suite course.toml --output grades
   fosssim-oracle grade ./FOSSSim --format text --format gradescope=results.json
 
-A folder holds one submission per entry: a program, or a folder with a program of the name that --program gives; with
---single the folder itself is one submission. When the suite has a [build] table, folders are built first.
+A folder holds one submission per entry: a program, or a folder with a program of the name that --program gives; \
+with --single the folder itself is one submission. When the suite has a [build] table, folders are built first.
 
-With --output (for several submissions always; fosssim-grades by default) results are kept as they come: an
-interrupted grading goes on where it stopped, and nothing is run twice unless the program, the scene or the rules
+With --output (for several submissions always; fosssim-grades by default) results are kept as they come: an \
+interrupted grading goes on where it stopped, and nothing is run twice unless the program, the scene or the rules \
 changed. The folder gets grades.csv, grades.jsonl, scenes.csv and a log per run.")]
 pub(super) struct Grade {
     /// Programs, or folders of submissions.
@@ -45,7 +45,7 @@ pub(super) struct Grade {
     /// Forget earlier results.
     #[arg(long)]
     pub(super) fresh: bool,
-    /// Stop a run at its first wrong step.
+    /// Stop at a submission's first scene that is not accepted: its other scenes are not run, so that it has no points.
     #[arg(long)]
     pub(super) fail_fast: bool,
     /// Judge against the recorded traces instead of the reference simulator: nothing is taken over from the submission,
@@ -92,7 +92,7 @@ pub(super) struct SuiteCheck {
     pub(super) suite: String,
 }
 
-/// Lists the scenes that come with the program.
+/// Lists the scenes that come with the program, as `scene list` does.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -129,4 +129,10 @@ pub(super) struct Selftest {
     /// The C compiler that builds the hostile programs.
     #[arg(long, value_name = "PROGRAM", default_value = "cc")]
     pub(super) compiler: String,
+    /// Tries the attacks as on a host that lacks this layer (its name in `doctor`).
+    #[arg(long, value_name = "LAYER", hide = true)]
+    pub(super) without: Vec<String>,
+    /// Tries only attacks whose names hold this text.
+    #[arg(long, value_name = "TEXT", hide = true)]
+    pub(super) only: Option<String>,
 }

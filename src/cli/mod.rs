@@ -8,6 +8,9 @@ mod grading;
 mod input;
 mod original;
 mod output;
+mod pictures;
+mod scenes;
+mod selection;
 
 use clap::Parser;
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
@@ -38,6 +41,11 @@ pub fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { exit::FAULT } else { exit::ACCEPTED });
         }
     };
+    console::choose_colour(arguments.color);
+    // Options before the command kept it from being recognised above.
+    if let arguments::Command::Original(original) = &arguments.command {
+        return original::main(&[program.as_bytes(), b" original"].concat(), &original.words);
+    }
     let code = commands::run(&arguments.command).unwrap_or_else(|error| {
         console::complain(format!("error: {error:#}\n").as_bytes());
         exit::FAULT

@@ -74,27 +74,21 @@ impl Output {
         if folder.symlink_metadata().is_err_and(|error| error.kind() == io::ErrorKind::NotFound) {
             bail!("there is no folder {}; make it first", folder.display());
         }
-        clean_up_when_interrupted();
-        let mut pending = pending();
-        let temporary = tempfile::Builder::new()
-            .prefix(".fosssim-oracle-")
-            .permissions(Permissions::from_mode(mode.unwrap_or(0o666)))
-            .tempfile_in(folder)
-            // The error itself would name the temporary file, which nobody has asked for.
-            .map_err(|error| io::Error::from(error.kind()))
-            .with_context(|| format!("no file can be made in {}", folder.display()))?;
-        pending.push(temporary.path().to_owned());
-        drop(pending);
-        if let Some(mode) = mode {
-            // The mode of a new file loses what the umask forbids; that of a replaced one must stay as it was.
-            temporary.as_file().set_permissions(Permissions::from_mode(mode))?;
-        }
+        let temporary = temporary(folder, mode)?;
         Ok(Self::File { temporary, target })
     }
 
     /// Whether this is standard output, so that nothing else may be printed there.
     pub(super) const fn is_stdout(&self) -> bool {
         matches!(self, Self::Stdout)
+    }
+
+    /// Where the bytes of a file lie before it appears under its name, for a program that writes them.
+    pub(super) fn temporary_path(&self) -> Option<&Path> {
+        match self {
+            Self::File { temporary, .. } => Some(temporary.path()),
+            Self::Nowhere | Self::Stdout | Self::Device(..) => None,
+        }
     }
 
     /// Writes everything at once, and lets the file appear under its name.
@@ -178,6 +172,75 @@ pub(super) fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result
         return options.open(name);
     }
     Ok(first)
+}
+
+/// A temporary file in a folder, which an interrupt removes.
+fn temporary(folder: &Path, mode: Option<u32>) -> Result<NamedTempFile> {
+    clean_up_when_interrupted();
+    let mut pending = pending();
+    let temporary = tempfile::Builder::new()
+        .prefix(".fosssim-oracle-")
+        .permissions(Permissions::from_mode(mode.unwrap_or(0o666)))
+        .tempfile_in(folder)
+        // The error itself would name the temporary file, which nobody has asked for.
+        .map_err(|error| io::Error::from(error.kind()))
+        .with_context(|| format!("no file can be made in {}", folder.display()))?;
+    pending.push(temporary.path().to_owned());
+    drop(pending);
+    if let Some(mode) = mode {
+        // The mode of a new file loses what the umask forbids; that of a replaced one must stay as it was.
+        temporary.as_file().set_permissions(Permissions::from_mode(mode))?;
+    }
+    Ok(temporary)
+}
+
+/// A folder that many files of our own names are written into, each by rename. What has such a name already is replaced,
+/// and links are not followed: whoever prepares a folder can't make us write elsewhere.
+#[derive(Debug)]
+pub(super) struct Folder(PathBuf);
+
+impl Folder {
+    /// An existing folder, or a new one.
+    ///
+    /// # Errors
+    /// When it is none, or can't be made.
+    pub(super) fn open(name: &Path) -> Result<Self> {
+        match fs::create_dir(name) {
+            Ok(()) => {}
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && name.is_dir() => {}
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                bail!("{} is no folder; name one for the pictures", name.display())
+            }
+            Err(error) => return Err(error).with_context(|| format!("cannot make the folder {}", name.display())),
+        }
+        Ok(Self(name.to_owned()))
+    }
+
+    /// An existing folder.
+    pub(super) fn existing(name: &Path) -> Option<Self> {
+        name.is_dir().then(|| Self(name.to_owned()))
+    }
+
+    /// Its name as typed, fit for printing.
+    pub(super) fn name(&self) -> String {
+        self.0.display().to_string()
+    }
+
+    /// Whether there is a file of this name.
+    pub(super) fn holds(&self, name: &str) -> bool {
+        self.0.join(name).symlink_metadata().is_ok()
+    }
+
+    /// Writes a whole file by rename.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        let target = self.0.join(name);
+        let mut output = Output::File { temporary: temporary(&self.0, None)?, target };
+        output.write_all(bytes).with_context(|| format!("cannot write {}", self.0.join(name).display()))?;
+        output.finish()
+    }
 }
 
 /// Temporary files that an interrupt has to remove.

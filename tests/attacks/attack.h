@@ -52,6 +52,53 @@ static void refused(long answer, const char *what) {
     if (answer != -1) breach(what);
 }
 
+// A call that the sandbox forbids on pain of ending the program. Where another filter lies around the sandbox, as in a
+// container, it may be refused instead: exit code 77.
+static void forbidden(long answer, const char *what) {
+    if (answer != -1 || (errno != EPERM && errno != ENOSYS && errno != EACCES)) breach(what);
+    _exit(77);
+}
+
+// Goes on in another thread after the main thread has left: the process then looks dead from outside.
+static volatile int main_thread_is_here = 1;
+static void *leave_and_go_on(void *rest) {
+    while (main_thread_is_here) sched_yield();
+    ((void (*)(void))rest)();
+    return NULL;
+}
+static void without_leader(void (*rest)(void)) {
+    pthread_t thread;
+    // The kernel clears the word when the main thread has let go of its memory.
+    syscall(SYS_set_tid_address, &main_thread_is_here);
+    if (pthread_create(&thread, NULL, leave_and_go_on, (void *)rest)) exit(97);
+    syscall(SYS_exit, 0);
+}
+
+// A block of bytes that are not zero.
+static char block[1 << 16];
+static void *full_block(void) {
+    memset(block, 1, sizeof block);
+    return block;
+}
+
+// Memory that is in use.
+static void take_memory(size_t mebibytes) {
+    for (size_t i = 0; i < mebibytes; i++) {
+        char *part = mmap(NULL, 1 << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (part == MAP_FAILED) break;
+        memset(part, 1, 1 << 20);
+    }
+}
+
+// A file of so many mebibytes that has no name any more, open.
+static int nameless(int mebibytes) {
+    signal(SIGXFSZ, SIG_IGN);
+    int fd = open("hidden", O_RDWR | O_CREAT, 0644);
+    unlink("hidden");
+    for (int i = 0; i < 16 * mebibytes; i++) write(fd, full_block(), sizeof block);
+    return fd;
+}
+
 // A file that must not be readable.
 static void unreadable(const char *path) {
     int fd = open(path, O_RDONLY | O_NONBLOCK);

@@ -1,6 +1,5 @@
 // promise: A submission cannot execute itself again.
 // expect: violation execve
-// needs: named violations
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

@@ -1,6 +1,5 @@
 // promise: A submission cannot execute another program.
 // expect: violation execve
-// needs: named violations
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

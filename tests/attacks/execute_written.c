@@ -1,6 +1,5 @@
 // promise: A submission cannot execute what it has written.
 // expect: violation execveat
-// needs: named violations
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

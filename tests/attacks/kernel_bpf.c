@@ -4,6 +4,5 @@
 int main(int argc, char **argv) {
     begin(argc);
     char attributes[128] = {0};
-    syscall(SYS_bpf, 0, attributes, sizeof attributes);
-    breach("bpf");
+    forbidden(syscall(SYS_bpf, 0, attributes, sizeof attributes), "bpf");
 }

@@ -3,6 +3,5 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    chroot(".");
-    breach("chroot");
+    forbidden(chroot("."), "chroot");
 }

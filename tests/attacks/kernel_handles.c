@@ -4,6 +4,5 @@
 int main(int argc, char **argv) {
     begin(argc);
     char handle[128] = {0};
-    syscall(SYS_open_by_handle_at, AT_FDCWD, handle, O_RDONLY);
-    breach("open_by_handle_at");
+    forbidden(syscall(SYS_open_by_handle_at, AT_FDCWD, handle, O_RDONLY), "open_by_handle_at");
 }

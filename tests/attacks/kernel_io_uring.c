@@ -4,6 +4,5 @@
 int main(int argc, char **argv) {
     begin(argc);
     char parameters[256] = {0};
-    syscall(SYS_io_uring_setup, 4, parameters);
-    breach("io_uring_setup");
+    forbidden(syscall(SYS_io_uring_setup, 4, parameters), "io_uring_setup");
 }

@@ -3,6 +3,5 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    setns(0, 0);
-    breach("setns");
+    forbidden(setns(0, 0), "setns");
 }

@@ -3,6 +3,5 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    syscall(SYS_keyctl, 0, -3, 0);
-    breach("keyctl");
+    forbidden(syscall(SYS_keyctl, 0, -3, 0), "keyctl");
 }

@@ -3,6 +3,5 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    syscall(SYS_init_module, "", 0, "");
-    breach("init_module");
+    forbidden(syscall(SYS_init_module, "", 0, ""), "init_module");
 }

@@ -3,6 +3,5 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    syscall(SYS_fsopen, "tmpfs", 0);
-    breach("fsopen");
+    forbidden(syscall(SYS_fsopen, "tmpfs", 0), "fsopen");
 }

@@ -4,6 +4,5 @@
 int main(int argc, char **argv) {
     begin(argc);
     char attributes[128] = {0};
-    syscall(SYS_perf_event_open, attributes, 0, -1, -1, 0);
-    breach("perf_event_open");
+    forbidden(syscall(SYS_perf_event_open, attributes, 0, -1, -1, 0), "perf_event_open");
 }

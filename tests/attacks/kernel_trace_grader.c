@@ -4,6 +4,5 @@
 #include <sys/ptrace.h>
 int main(int argc, char **argv) {
     begin(argc);
-    ptrace(PTRACE_ATTACH, atoi(argv[2]), 0, 0);
-    breach("ptrace");
+    forbidden(ptrace(PTRACE_ATTACH, atoi(argv[2]), 0, 0), "ptrace");
 }

@@ -4,6 +4,5 @@
 #include <sys/ptrace.h>
 int main(int argc, char **argv) {
     begin(argc);
-    ptrace(PTRACE_TRACEME, 0, 0, 0);
-    breach("ptrace");
+    forbidden(ptrace(PTRACE_TRACEME, 0, 0, 0), "ptrace");
 }

@@ -4,6 +4,5 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    unshare(CLONE_NEWUSER | CLONE_NEWNS);
-    breach("unshare");
+    forbidden(unshare(CLONE_NEWUSER | CLONE_NEWNS), "unshare");
 }

@@ -3,6 +3,5 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    syscall(SYS_userfaultfd, 0);
-    breach("userfaultfd");
+    forbidden(syscall(SYS_userfaultfd, 0), "userfaultfd");
 }

@@ -2,7 +2,7 @@
 // expect: violation bpf
 #include "attack.h"
 static void *attack(void *nothing) {
-    syscall(SYS_bpf, 0, nothing, 0);
+    forbidden(syscall(SYS_bpf, 0, nothing, 0), "bpf");
     return nothing;
 }
 int main(int argc, char **argv) {

@@ -1,6 +1,6 @@
 // promise: Files in memory do not exist for a program.
 // expect: exited 0
-// needs: file rules
+// needs: hidden files
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

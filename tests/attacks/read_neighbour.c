@@ -1,6 +1,6 @@
 // promise: Other submissions cannot be read or listed.
 // expect: exited 0
-// needs: file rules
+// needs: hidden files
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

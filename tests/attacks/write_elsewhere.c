@@ -1,6 +1,6 @@
 // promise: Nothing can be written outside the working folder.
 // expect: exited 0
-// needs: file rules
+// needs: hidden files
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

@@ -1,6 +1,6 @@
 // promise: The scene can be read and not rewritten.
 // expect: exited 0
-// needs: file rules
+// needs: hidden files
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

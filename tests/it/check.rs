@@ -414,3 +414,50 @@ fn the_bundled_trace_of_the_readme_shows_its_mistake() {
     let out = run.out();
     assert!(out.starts_with("WRONG ANSWER") && out.contains("coefficient of t^2"), "{out}");
 }
+
+/// A right trace that breaks off inside a polynomial list, as that of a program that crashed or was killed does.
+fn broken_off(trace: &[u8], length: usize) -> String {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BEAM);
+    workspace.write("trace.bin", &trace[..length]);
+    workspace.run(["check", "scene.xml", "trace.bin", "--rules", "both"]).out()
+}
+
+#[test]
+fn what_is_left_of_the_record_in_which_a_trace_breaks_off_is_nobodys_mistake() {
+    let trace = trace_of(BEAM);
+    let lengths = (1..60).map(|part| trace.len() * part / 60);
+    for length in lengths.chain([trace.len() - 1, trace.len() - 8, trace.len() - 60]) {
+        let text = broken_off(&trace, length);
+        for blame in ["likely mistake", "No simple mistake", "First divergence", "wrong coefficient", "What to look at"]
+        {
+            assert!(!text.contains(blame), "cut at {length} of {}: {blame} in\n{text}", trace.len());
+        }
+        assert!(text.starts_with("BAD TRACE") || text.contains("the trace is damaged"), "{text}");
+    }
+}
+
+#[test]
+fn a_mistake_before_the_break_is_still_told() {
+    let mut trace = changed(BEAM, |frames| scale(&mut frames[2], 0, 2.0));
+    trace.truncate(trace.len() - 8);
+    let text = broken_off(&trace, trace.len());
+    assert!(text.contains("1 of ") && text.contains("First divergence: step 1 of"), "{text}");
+}
+
+#[test]
+fn another_scenes_trace_is_asked_about_and_not_explained() {
+    let other = BEAM.replace("px=\"0.25\"", "px=\"0.5\"");
+    assert_ne!(other, BEAM);
+    for (trace, longer) in [(trace_of(&other), false), ([trace_of(&other), vec![0; 400]].concat(), true)] {
+        let (text, json) = reports(BEAM, &trace);
+        let out = text.out();
+        let first = out.lines().next().unwrap_or_default();
+        assert!(first.ends_with("its length.") == longer && first.contains("Is this trace of this scene?"), "{first}");
+        for blame in ["likely mistake", "First divergence", "What to look at", "What explains it"] {
+            assert!(!out.contains(blame), "{blame} in\n{out}");
+        }
+        assert_eq!(json["explanations"][0]["key"], "other-scene");
+        assert_eq!(json["explanations"].as_array().map(Vec::len), Some(1));
+    }
+}

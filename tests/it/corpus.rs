@@ -2,6 +2,7 @@
 //!
 //! It is not part of the project. Tests over it say how many cases they ran; without it they say that they were
 //! skipped, and an empty corpus is a failure.
+use fosssim_testing::{Need, skip};
 use std::path::{Path, PathBuf};
 
 /// The corpus folder: `FOSSSIM_CORPUS`, else `../shared/corpus` beside the checkout.
@@ -11,7 +12,7 @@ pub fn folder() -> Option<PathBuf> {
     if folder.is_dir() {
         Some(folder)
     } else {
-        eprintln!("skipped: no corpus at {}", folder.display());
+        skip(Need::Corpus, format_args!("there is none at {}", folder.display()));
         None
     }
 }

@@ -1,5 +1,6 @@
 //! The drop-in: the original's command line, files and output, over our own scenes.
 use super::workspace::{BEAM, BOUNCE, DRIFT, Workspace, finish, trace_of};
+use fosssim_oracle::{scene, student};
 use std::{
     ffi::OsStr,
     fs,
@@ -129,22 +130,43 @@ fn what_makes_the_original_die_gets_a_clear_message() {
 }
 
 #[test]
-fn windows_and_pictures_are_refused() {
+fn windows_are_refused() {
     let workspace = Workspace::with_trace(BOUNCE);
-    fs::create_dir(workspace.path("folder")).unwrap();
-    for (arguments, says) in [
-        (&["-s", "scene.xml"][..], "there is no window"),
-        (&["-s", "scene.xml", "-d", "1", "-o", "x"], "add -d 0"),
-        (&["-s", "scene.xml", "-d", "0", "-g", "1"], "PNG pictures"),
-        (&["-s", "scene.xml", "-d", "0", "-m", "folder"], "SVG pictures"),
-    ] {
+    for (arguments, says) in
+        [(&["-s", "scene.xml"][..], "there is no window"), (&["-s", "scene.xml", "-d", "1", "-o", "x"], "add -d 0")]
+    {
         let run = workspace.original(arguments);
         assert_eq!((run.code, run.stdout.len()), (Some(1), 0), "{arguments:?}");
         assert!(run.err().contains(says), "{}", run.err());
     }
+    assert!(!workspace.exists("x"));
+}
+
+#[test]
+fn pictures_are_made_beside_the_usual_output() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    fs::create_dir(workspace.path("folder")).unwrap();
     let run = workspace.original(["-s", "scene.xml", "-d", "0", "-m", "nowhere"]);
     assert_eq!((run.code, run.err().as_str()), (Some(1), "Failure writing SVG file!\n"));
-    assert!(!workspace.exists("x"));
+    // The original aborts here.
+    let run = workspace.original(["-s", "scene.xml", "-d", "0", "-g", "1"]);
+    assert_eq!((run.code, run.stdout.len()), (Some(1), 0));
+    assert!(run.err().starts_with("Error opening pngs/frame00001.png: there is no folder pngs"), "{}", run.err());
+    fs::create_dir(workspace.path("pngs")).unwrap();
+    let plain = workspace.original(["-s", "scene.xml", "-d", "0", "-o", "new.bin"]);
+    let run = workspace.original(["-s", "scene.xml", "-d", "0", "-o", "new.bin", "-g", "1", "-m", "folder"]);
+    assert_eq!(run.shown(), plain.shown());
+    for name in ["pngs/frame00001.png", "pngs/frame00002.png", "folder/frame00000000000000000002.svg"] {
+        assert!(workspace.exists(name), "{name}");
+    }
+    assert!(!workspace.exists("pngs/frame00003.png") && !workspace.exists("pngs/frame00000.png"));
+    let first = workspace.read("pngs/frame00002.png");
+    // Grading draws the trace.
+    fs::remove_file(workspace.path("pngs/frame00002.png")).unwrap();
+    let plain = workspace.original(GRADE);
+    let run = workspace.original(GRADE.iter().chain(&["-g", "1"]));
+    assert_eq!(run.shown(), plain.shown());
+    assert!(workspace.read("pngs/frame00002.png") == first);
 }
 
 #[test]
@@ -256,4 +278,40 @@ fn nobody_listening_changes_neither_exit_code_nor_files() {
     drop(child.stdout.take());
     assert_eq!(child.wait().unwrap().code(), Some(0));
     assert!(workspace.exists("residual.txt"));
+}
+
+/// Ten balls, each with a velocity of its own, so that every pass logs polynomials of full length.
+fn ten_balls(rounds: u32) -> String {
+    let ball = |number: u32| {
+        let i = f64::from(number);
+        let (y, vx, vy) = (0.01 * i * i, if number == 0 { 9.0 } else { -0.1 * i }, 0.05 * i);
+        format!(r#"<particle m="1" px="{number}" py="{y}" vx="{vx}" vy="{vy}" fixed="0" radius="0.1"/>"#)
+    };
+    let balls: String = (0..10).map(ball).collect();
+    format!(
+        r#"<scene><duration time="0.1"/><integrator type="symplectic-euler" dt="0.1"/>
+        <collision type="hybrid" COR="1" maxiters="{rounds}" k="0" thickness="0"/>{balls}</scene>"#
+    )
+}
+
+#[test]
+fn an_impulse_loop_that_never_converges_fails_however_long_its_record_is() {
+    // The response changes velocities only, so every one of the rounds finds the same collisions.
+    let row = student::find("response-velocities-only").expect("a known mistake");
+    let scene = scene::read("scene.xml", ten_balls(10_000).as_bytes()).expect("a scene").scene;
+    let trace = student::trace(&scene, student::Student::new(Some(row.mistake))).expect("a trace");
+    assert!(trace.len() > 40_000_000, "one record is as long as its rounds make it: {}", trace.len());
+    let workspace = Workspace::new();
+    workspace.write("trace.bin", trace);
+    // In a scene that allows no such record it is as wrong, and says the same.
+    for rounds in [10_000, 5] {
+        workspace.write("scene.xml", ten_balls(rounds));
+        let run = workspace.original(GRADE);
+        assert_eq!((run.code, run.err()), (Some(0), String::new()), "{rounds} rounds");
+        assert!(run.out().contains("Wrong number of polynomials!\n"), "{}", run.shown());
+        assert!(run.out().contains("Collisions Passed: No.\nOverall success: Failed.\n"), "{}", run.shown());
+        let check = workspace.run(["check", "scene.xml", "trace.bin", "--rules", "parity", "--no-explain"]);
+        assert_eq!(check.code, Some(1), "{}", check.shown());
+        assert!(check.out().contains("900180 polynomials logged, expected 360"), "{}", check.shown());
+    }
 }

@@ -3,6 +3,7 @@
 //! The submissions are `fosssim-sample` under links that name their mistakes. Where the sandbox can't be had, the tests
 //! say so and are skipped.
 use crate::workspace::{Workspace, finish};
+use fosssim_testing::{Need, skip};
 use std::{
     os::unix::fs::symlink,
     path::Path,
@@ -22,7 +23,7 @@ fn workspace() -> Option<Workspace> {
     if doctor.code == Some(0) {
         Some(workspace)
     } else {
-        eprintln!("skipped: no sandbox here\n{}", doctor.out());
+        skip(Need::Sandbox, doctor.out().lines().last().unwrap_or_default());
         None
     }
 }
@@ -88,7 +89,7 @@ fn the_rules_decide_the_points_and_reports_say_where_they_differ() {
     let both = grade(&[]);
     assert_eq!(both.code, Some(1), "{}", both.shown());
     assert!(both.out().contains("the rule books differ: the original fails it, the fair rules accept it"));
-    assert!(both.out().contains("rules parity (the fair rules differ in "), "{}", both.shown());
+    assert!(both.out().contains("by the original's rules (the fair rules differ in "), "{}", both.shown());
     let scenes = String::from_utf8(workspace.read("out/scenes.csv")).expect("text");
     assert!(scenes.contains(",absolute_coefficients"), "{scenes}");
     // The same folder: results by other rules are not taken for these.
@@ -233,7 +234,7 @@ fn what_can_not_be_run_is_explained() {
 fn sources_are_built_in_the_sandbox_and_a_failed_build_is_a_compile_error() {
     let Some(workspace) = workspace() else { return };
     if !Path::new("/usr/bin/cc").exists() {
-        eprintln!("skipped: no C compiler");
+        skip(Need::Cc, "there is no /usr/bin/cc");
         return;
     }
     let build = "[build]\ncommand = [\"cc\", \"-o\", \"FOSSSim\", \"main.c\"]\nprogram = \"FOSSSim\"\n[[group]]";
@@ -285,7 +286,7 @@ fn the_gradescope_zip_works_in_its_layout() {
     let Some(workspace) = workspace() else { return };
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     if Command::new("python3").arg("--version").output().is_err() {
-        eprintln!("skipped: no python3");
+        skip(Need::Python, "there is no python3");
         return;
     }
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -329,7 +330,7 @@ fn the_gradescope_zip_works_in_its_layout() {
 fn a_course_script_counts_with_the_drop_in() {
     let workspace = Workspace::new();
     if Command::new("python3").arg("--version").output().is_err() {
-        eprintln!("skipped: no python3");
+        skip(Need::Python, "there is no python3");
         return;
     }
     for name in ["SimpleTests/two-balls-overlap-at-step-end", "ContinuousTimeTests/spinning-edge-sweeps-balls"] {

@@ -1,7 +1,7 @@
 //! Judging against a recording instead of the simulator.
 use crate::workspace::{embedded, simulate};
 use fosssim_oracle::{
-    judge::{Detail, Overall, Stop, parity, recorded},
+    judge::{Book, Detail, Finding, Kind, Overall, Stop, parity, recorded},
     scene::Collision,
     suite::library,
     trace::Layout,
@@ -47,6 +47,17 @@ fn another_start_is_a_difference_of_step_0() {
     wrong[..8].copy_from_slice(&77.0_f64.to_le_bytes());
     let outcome = recorded::judge(&scene, &wrong[..], &right[..], &mut ()).expect("a recording");
     assert_eq!(outcome.first_divergence.expect("a divergence").step, 0);
+    assert_eq!((outcome.wrong_steps, outcome.right_steps(Book::Parity)), (0, scene.steps() - 1));
+}
+
+#[test]
+fn the_first_record_is_no_step() {
+    let scene = embedded("ContinuousTimeTests/head-on-equal-masses");
+    let right = simulate(&scene);
+    let mut other = scene.clone();
+    other.particles.iter_mut().for_each(|particle| particle.velocity.x += 0.125);
+    let outcome = recorded::judge(&scene, &simulate(&other)[..], &right[..], &mut ()).expect("a recording");
+    assert_eq!((outcome.wrong_steps, outcome.right_steps(Book::Parity)), (u64::from(scene.steps()), 0));
 }
 
 #[test]
@@ -57,6 +68,13 @@ fn cut_traces_have_no_verdict_and_cut_recordings_are_a_fault() {
     let outcome = recorded::judge(&scene, half, &right[..], &mut ()).expect("a recording");
     assert_eq!(outcome.overall, Overall::None);
     assert!(matches!(outcome.stop, Some(Stop::Trace { .. })));
+    // What was found before the end is listed in the order of the kinds, as in any other outcome.
+    let mut faster = scene.clone();
+    faster.particles.iter_mut().for_each(|particle| particle.velocity *= 1.25);
+    let wrong = simulate(&faster);
+    let outcome = recorded::judge(&scene, &wrong[..wrong.len() - 1], &right[..], &mut ()).expect("a recording");
+    let kinds: Vec<Kind> = outcome.examples.iter().map(Finding::kind).collect();
+    assert!(kinds.contains(&Kind::SuperfluousCollision) && kinds.is_sorted(), "{kinds:?}");
     let error = recorded::judge(&scene, &right[..], half, &mut ()).expect_err("half a recording").to_string();
     assert!(error.starts_with("the recording can't be used: frame ") && error.ends_with("record it again"), "{error}");
 }

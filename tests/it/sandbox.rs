@@ -9,21 +9,18 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use fosssim_testing::{Need, skip};
+
 use fosssim_oracle::sandbox::{
     Backend, Ended, Job, Layer, Limits, Outcome, Policy, StartProblem, Stream, Supervisor, TraceTooLong, collect,
 };
 
 /// The sandbox under the real binary; tests without the required walls are skipped with a line.
 pub fn backend() -> Option<&'static Backend> {
-    static BACKEND: OnceLock<Option<Backend>> = OnceLock::new();
-    let make = || match Backend::best(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle"))) {
-        Ok(backend) => Some(backend),
-        Err(error) => {
-            eprintln!("skipped: {error}");
-            None
-        }
-    };
-    BACKEND.get_or_init(make).as_ref()
+    static BACKEND: OnceLock<Result<Backend, String>> = OnceLock::new();
+    let make = || Backend::best(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle")));
+    let backend = BACKEND.get_or_init(|| make().map_err(|error| error.to_string()));
+    backend.as_ref().map_err(|error| skip(Need::Sandbox, error)).ok()
 }
 
 /// Limits that a small program keeps and that a hostile one meets soon.
@@ -200,7 +197,7 @@ fn a_refused_request_for_memory_is_the_memory_limit() {
     std::fs::write(&from, source).unwrap();
     let built = std::process::Command::new("c++").args(["-O0", "-w", "-o"]).args([&program, &from]).status();
     if !built.is_ok_and(|status| status.success()) {
-        eprintln!("skipped: there is no C++ compiler (c++)");
+        skip(Need::Cxx, "there is no C++ compiler (c++)");
         return;
     }
     assert_eq!(bench.run(&program, &[]).ended, Ended::MemoryLimit);
@@ -244,7 +241,7 @@ fn a_submission_starts_no_process_and_no_second_program() {
 fn a_script_in_another_language_runs_as_one_program() {
     let Some(bench) = Bench::new() else { return };
     if !Path::new("/usr/bin/python3").exists() {
-        eprintln!("skipped: there is no python3");
+        skip(Need::Python, "there is no python3");
         return;
     }
     let program = bench.script("#!/usr/bin/env python3\nprint(6 * 7)\n");
@@ -277,7 +274,7 @@ fn a_run_in_namespaces_sees_a_world_of_its_own() {
     let Some(bench) = Bench::new() else { return };
     let holds = |layer| bench.backend.layers().iter().any(|report| report.layer == layer && report.active);
     if !holds(Layer::Namespaces) {
-        eprintln!("skipped: there are no namespaces");
+        skip(Need::Walls, "there are no namespaces");
         return;
     }
     let outcome = bench.run("/bin/cat", &["/proc/self/stat"]);
@@ -372,7 +369,7 @@ fn compiled(folder: &Path, source: &str, options: &[&str]) -> Option<PathBuf> {
     match built {
         Ok(output) if output.status.success() => Some(to),
         _ => {
-            eprintln!("skipped: cc cannot build this here ({options:?})");
+            skip(Need::Cc, format_args!("cc can't build this here ({options:?})"));
             None
         }
     }
@@ -398,8 +395,11 @@ fn a_sanitised_program_runs_and_its_memory_is_limited_all_the_same() {
     let source = "#include <stdlib.h>\n#include <string.h>\nint main(int count, char **words) {\n\
                   int size = atoi(words[1]); memset(malloc(size), 1, size); return 0; }";
     let Some(program) = compiled(bench.folder.path(), source, &["-fsanitize=address"]) else { return };
-    assert_eq!(bench.run(&program, &["1000"]).ended, Ended::Exited(0));
-    assert_eq!(bench.run(&program, &["200000000"]).ended, Ended::MemoryLimit);
+    let unasked = bench.run(&program, &["1000"]).ended;
+    assert_eq!(unasked, Ended::CouldNotStart(StartProblem::Sanitised), "only by the suite's own word");
+    let run = |size| bench.finish(&bench.job(&program, &[size]).sanitisers(true)).ended;
+    assert_eq!(run("1000"), Ended::Exited(0));
+    assert_eq!(run("200000000"), Ended::MemoryLimit);
 }
 
 #[test]
@@ -413,7 +413,7 @@ fn a_build_step_compiles_a_program_in_the_sandbox() {
     let limits = Limits { cpu: Duration::from_secs(10), folder_bytes: 64 << 20, ..Limits::default() };
     for job in [bench.job("/usr/bin/make", &[]), bench.job("/usr/bin/cc", &["-o", "built", "source.c"])] {
         if !Path::new("/usr/bin/make").exists() {
-            eprintln!("skipped: there is no make");
+            skip(Need::Make, "there is no make");
             return;
         }
         let outcome = bench.finish(&job.policy(Policy::Tools).limits(limits.clone()));
@@ -549,4 +549,74 @@ fn a_supervisor_that_is_none_is_our_fault_and_not_a_verdict() {
     let error = Backend::best(Supervisor::at("/bin/true")).unwrap_err();
     assert!(error.to_string().contains("supervisor"), "{error}");
     assert!(Backend::best(Supervisor::at("/no/such/program")).is_err());
+}
+
+#[test]
+fn a_script_is_read_by_its_interpreter_and_executes_nothing_else() {
+    let Some(bench) = Bench::new() else { return };
+    let loader =
+        ["/lib64/ld-linux-x86-64.so.2", "/lib/ld-linux-aarch64.so.1"].into_iter().find(|path| Path::new(path).exists());
+    let Some(loader) = loader else { return };
+    // By the loader a script could run any file that it can read.
+    let script = bench.script(&format!("#!/bin/sh\nexec {loader} /bin/echo run\n"));
+    for backend in [bench.backend.clone(), bench.backend.without(Layer::NamedCalls).unwrap()] {
+        let outcome = backend.start(&bench.job(&script, &[])).unwrap().wait().unwrap();
+        assert!(matches!(outcome.ended, Ended::Violation { .. }), "{:?}", outcome.ended);
+        let plain = bench.folder.path().join("plain");
+        std::fs::write(&plain, "#!/usr/bin/env -S VALUE=7 sh -e\necho \"$VALUE $1\"\nfalse\necho more\n").unwrap();
+        std::fs::set_permissions(&plain, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let outcome = backend.start(&bench.job(&plain, &["one two"])).unwrap().wait().unwrap();
+        assert_eq!((outcome.ended, text(&outcome.stdout.bytes)), (Ended::Exited(1), "7 one two\n"));
+    }
+}
+
+#[test]
+fn a_script_in_a_folder_that_is_closed_to_others_runs_all_the_same() {
+    let Some(bench) = Bench::new() else { return };
+    let closed = tempfile::tempdir().unwrap();
+    let script = closed.path().join("script");
+    std::fs::write(&script, "#!/bin/sh\necho here\n").unwrap();
+    for (mode, inner) in [(0o700, 0o755), (0o755, 0o700), (0o700, 0o700)] {
+        std::fs::set_permissions(closed.path(), std::fs::Permissions::from_mode(mode)).unwrap();
+        std::fs::set_permissions(&script, std::fs::Permissions::from_mode(inner)).unwrap();
+        for backend in [bench.backend.clone(), bench.backend.without(Layer::Namespaces).unwrap()] {
+            let outcome = backend.start(&bench.job(&script, &[])).unwrap().wait().unwrap();
+            assert_eq!(text(&outcome.stdout.bytes), "here\n", "{mode:o} {inner:o} {outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn a_staged_program_that_is_gone_or_changed_is_our_fault() {
+    use fosssim_oracle::sandbox::Identity;
+    let Some(bench) = Bench::new() else { return };
+    let program = bench.script("#!/bin/sh\nexit 0\n");
+    let job = bench.job(&program, &[]).staged(Identity::of(&program));
+    assert_eq!(bench.finish(&job).ended, Ended::Exited(0));
+    std::fs::write(&program, "#!/bin/sh\nexit 1\n").unwrap();
+    let changed = bench.backend.start(&job).unwrap_err();
+    assert!(changed.to_string().contains("changed or removed"), "{changed}");
+    std::fs::remove_file(&program).unwrap();
+    assert!(bench.backend.start(&job).unwrap_err().to_string().contains("changed or removed"));
+}
+
+/// Runs the program's own commands where the temporary folder is mounted so that nothing may be executed in it.
+#[test]
+fn a_temporary_folder_without_execution_is_told_and_graded_from_memory() {
+    let Some(_) = backend() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let line = "mount -t tmpfs -o noexec,mode=1777 tmpfs \"$0\" && export TMPDIR=\"$0\" && \"$1\" doctor; \"$1\" demo --sample \"$2\"";
+    let output = std::process::Command::new("unshare")
+        .args(["-m", "sh", "-c", line])
+        .arg(folder.path())
+        .args([env!("CARGO_BIN_EXE_fosssim-oracle"), env!("CARGO_BIN_EXE_fosssim-sample")])
+        .output();
+    let Ok(output) = output else { return };
+    let (out, err) = (text(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    if out.is_empty() {
+        eprintln!("skipped: {err}");
+        return;
+    }
+    assert!(out.contains("in memory, because the temporary folder is mounted noexec"), "{out}{err}");
+    assert!(output.status.success() && out.contains("everything works on this machine"), "{out}{err}");
 }

@@ -60,8 +60,7 @@ fn compare(row: &Value, workspace: &Workspace, run: &Run) {
     // The corpus holds bytes as Latin-1.
     let actual: String = run.stdout.iter().map(|&byte| char::from(byte)).collect();
     if actual != expected {
-        let diff = similar::TextDiff::from_lines(expected, &actual);
-        let diff = diff.unified_diff().context_radius(2).header("original", "drop-in").to_string();
+        let diff = fosssim_textdiff::unified(("original", expected), ("drop-in", &actual));
         panic!("{}: standard output differs\n{}", name(row), diff.chars().take(4000).collect::<String>());
     }
     assert_eq!(run.err(), row["oracle_stderr"].as_str().unwrap(), "{}", name(row));

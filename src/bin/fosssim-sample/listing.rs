@@ -17,11 +17,12 @@ struct Entry {
     kind: &'static str,
     area: &'static str,
     explanation: &'static str,
+    term: &'static str,
 }
 
 impl From<&Row> for Entry {
     fn from(row: &Row) -> Self {
-        Self { id: row.id, kind: row.kind.name(), area: row.area.name(), explanation: row.explanation }
+        Self { id: row.id, kind: row.kind.name(), area: row.area.name(), explanation: row.what, term: row.term }
     }
 }
 
@@ -50,7 +51,7 @@ fn table() -> String {
         let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.kind == kind).collect();
         text += &format!("{title} ({})\n\n", rows.len());
         for row in rows {
-            text += &format!("  {:36} {}\n", row.id, row.explanation);
+            text += &format!("  {:36} {}\n", row.id, row.what);
         }
         text.push('\n');
     }

@@ -82,7 +82,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     };
     match target {
         Some(target) => target.finish_with(text.as_bytes())?,
-        None => console::print(text.as_bytes())?,
+        None => console::show(&text, arguments.format)?,
     }
     let disagreements = outcome.searches.disagreements;
     if disagreements > 0 {

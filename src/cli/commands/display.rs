@@ -1,8 +1,7 @@
 //! How a grading goes, on standard error: bars on a terminal, otherwise a line per finished submission.
 use crate::{
-    report::grade::{one_line, points},
+    report::grade::{no_points, one_line, score},
     suite::{
-        Verdict,
         batch::{Event, Submission},
         plan::Plan,
     },
@@ -61,16 +60,14 @@ impl<'a> Display<'a> {
                 if self.submissions.len() == 1 {
                     return;
                 }
-                let reached = grade.points.map_or_else(|| "no points".to_owned(), points);
-                let not_run = grade.count(Verdict::NotRun);
-                let rest = if not_run > 0 { format!(", {not_run} scenes not run") } else { String::new() };
+                let reached = grade.points.map(|reached| score(reached, grade.max_points));
                 let line = format!(
-                    "[{}/{}] {}: {}, {reached} of {}{rest}",
+                    "[{}/{}] {}: {}, {}",
                     self.graded,
                     self.submissions.len(),
                     one_line(&grade.submission),
                     grade.verdict,
-                    points(grade.max_points),
+                    reached.or_else(|| no_points(grade)).unwrap_or_default(),
                 );
                 match &self.bars {
                     Some(bars) => drop(bars.all.println(line)),

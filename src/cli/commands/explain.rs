@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
     };
     match target {
         Some(target) => target.finish_with(text.as_bytes())?,
-        None => console::print(text.as_bytes())?,
+        None => console::show(&text, arguments.format)?,
     }
     Ok(if diagnosis.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
@@ -92,9 +92,10 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
         limits: &plan.limits,
         rules: Rules::Fair,
         hints: Hints::Full,
-        fail_fast: false,
         recorded: false,
         cancellation: &cancellation,
+        faults: Path::new(""),
+        rehearse: &|_| {},
     };
     let mut cases = Vec::new();
     let mut late = 0;

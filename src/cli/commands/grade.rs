@@ -6,12 +6,13 @@ use crate::{
     report::{
         explain,
         grade::{self, Format},
+        number::counted,
     },
     sandbox::{Backend, Supervisor},
     suite::{
         Cancellation, Grade, Verdict,
-        batch::{self, BatchOptions, Submission},
-        config,
+        batch::{self, Batch, BatchOptions, Submission},
+        config, guarded,
         journal::Journal,
         plan::{self, Plan},
     },
@@ -27,6 +28,9 @@ use std::{
 
 /// Where results go when several submissions are graded and no folder is named.
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
+
+/// Where traces on which the grader itself failed go when there is no folder for results.
+const FAULTS: &str = "fosssim-faults";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let mut plan = load_suite(&arguments.suite)?;
@@ -79,7 +83,7 @@ pub(super) fn load_suite(name: &str) -> Result<Plan> {
 
 fn in_file(name: &str, error: &config::SuiteError) -> anyhow::Error {
     let lines: Vec<String> = error.problems.iter().map(|(at, text)| format!("{name}:{at}: {text}")).collect();
-    anyhow::anyhow!("the suite has {} problems:\n{}", lines.len(), lines.join("\n"))
+    anyhow::anyhow!("the suite has {}:\n{}", counted(lines.len() as u64, "problem"), lines.join("\n"))
 }
 
 /// The sandbox, or a refusal that says what is missing.
@@ -182,25 +186,26 @@ impl Session<'_> {
             fail_fast: self.arguments.fail_fast,
             recorded: self.arguments.recorded,
         };
+        let faults = self.folder.as_deref().map_or_else(|| PathBuf::from(FAULTS), |folder| folder.join("faults"));
+        let batch = Batch {
+            plan: self.plan,
+            backend: self.backend,
+            options,
+            cancellation: self.cancellation,
+            faults: &faults,
+            rehearse: &grade::rehearse,
+        };
         let mut display = Display::new(self.plan, submissions);
         let mut log_error = None;
-        let graded = batch::run(
-            self.plan,
-            submissions,
-            self.backend,
-            journal.as_mut(),
-            options,
-            self.cancellation,
-            &mut |event| {
-                display.event(&event);
-                if let (Some(folder), batch::Event::Graded { grade, .. }) = (&self.folder, &event)
-                    && log_error.is_none()
-                    && let Err(error) = write_logs(folder, grade)
-                {
-                    log_error = Some(error);
-                }
-            },
-        );
+        let graded = batch.run(submissions, journal.as_mut(), &mut |event| {
+            display.event(&event);
+            if let (Some(folder), batch::Event::Graded { grade, .. }) = (&self.folder, &event)
+                && log_error.is_none()
+                && let Err(error) = write_logs(folder, grade)
+            {
+                log_error = Some(error);
+            }
+        });
         drop(display);
         let fault = graded.fault.map(anyhow::Error::from);
         Ok((graded.grades, fault.or(log_error)))
@@ -212,16 +217,16 @@ impl Session<'_> {
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if let Some(folder) = &self.folder {
-            let lines: String = grades.iter().map(grade::json_line).collect();
-            keep(output::write(&folder.join("grades.csv"), &[], grade::csv_of_submissions(grades).as_bytes()));
-            keep(output::write(&folder.join("scenes.csv"), &[], Format::Csv.render(grades).as_bytes()));
-            keep(output::write(&folder.join("grades.jsonl"), &[], lines.as_bytes()));
+            let lines = || grades.iter().map(grade::json_line).collect();
+            keep(write(&folder.join("grades.csv"), || grade::csv_of_submissions(grades)));
+            keep(write(&folder.join("scenes.csv"), || Format::Csv.render(grades)));
+            keep(write(&folder.join("grades.jsonl"), lines));
         }
         for report in reports {
-            let text = report.format.render(grades);
+            let render = || report.format.render(grades);
             match &report.file {
-                Some(file) => keep(output::write(file, &[], text.as_bytes())),
-                None => keep(console::print(text.as_bytes())),
+                Some(file) => keep(write(file, render)),
+                None => keep(made("the report", render).and_then(|text| console::print(text.as_bytes()))),
             }
         }
         match wrong {
@@ -266,6 +271,17 @@ impl Session<'_> {
             }
         }
     }
+}
+
+/// Makes a text and writes it.
+fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
+    let text = made(&file.display().to_string(), text)?;
+    output::write(file, &[], text.as_bytes())
+}
+
+/// A text, or what the grader failed on while it made it.
+fn made(name: &str, text: impl FnOnce() -> String) -> Result<String> {
+    guarded(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
 }
 
 /// What tells that a submission has changed: the newest change below it, and its size.

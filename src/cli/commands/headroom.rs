@@ -30,7 +30,7 @@ pub(super) fn run(scenes: &[PathBuf], arguments: &Check) -> Result<u8> {
     };
     match target {
         Some(target) => target.finish_with(text.as_bytes())?,
-        None => console::print(text.as_bytes())?,
+        None => console::show(&text, arguments.format)?,
     }
     let is_fair = measured.iter().all(|(_, headroom)| headroom.is_fair());
     Ok(if is_fair { exit::ACCEPTED } else { exit::NOT_ACCEPTED })

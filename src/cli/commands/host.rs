@@ -5,11 +5,11 @@ use crate::{
         console, exit,
         grading::{Demo, Selftest},
     },
-    report::grade::Format,
+    report::grade::{Format, rehearse},
     sandbox::{self, selftest},
     suite::{
         Verdict,
-        batch::{self, BatchOptions, Submission},
+        batch::{Batch, BatchOptions, Submission},
         plan,
     },
 };
@@ -49,7 +49,7 @@ pub(super) fn doctor() -> Result<u8> {
     } else {
         "\nA required layer is missing: `grade` refuses unless --unsafe-no-sandbox is given.\n"
     };
-    console::print(text.as_bytes())?;
+    console::report(&text)?;
     Ok(if safe { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
@@ -79,8 +79,15 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     ] {
         let plan = plan::Plan { run, ..plan.clone() };
         let submission = Submission { name, path: sample.clone(), program: None };
-        let options = BatchOptions { jobs, fail_fast: false, recorded: false };
-        let grades = batch::run(&plan, &[submission], &backend, None, options, &cancellation, &mut |_| {}).grades;
+        let batch = Batch {
+            plan: &plan,
+            backend: &backend,
+            options: BatchOptions { jobs, fail_fast: false, recorded: false },
+            cancellation: &cancellation,
+            faults: Path::new("fosssim-faults"),
+            rehearse: &rehearse,
+        };
+        let grades = batch.run(&[submission], None, &mut |_| {}).grades;
         console::print(Format::Text.render(&grades).as_bytes())?;
         if cancellation.is_cancelled() {
             return Ok(exit::INTERRUPTED);
@@ -96,12 +103,17 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
 }
 
 pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {
-    let backend = backend(false)?;
+    let mut backend = backend(false)?;
+    for name in &arguments.without {
+        let layer = sandbox::Layer::ALL.into_iter().find(|layer| layer.name() == name);
+        backend = backend.without(layer.with_context(|| format!("doctor shows no layer {name}"))?)?;
+    }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
     // The programs run as another user when this is root, who has to reach them.
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
     let mut done = 0;
-    let table = selftest::run(&backend, Path::new(&arguments.compiler), folder.path(), |promise| {
+    let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
+    let table = selftest::run_some(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
         done += 1;
         if let selftest::Verdict::Broken(how) = &promise.verdict {
             console::complain(format!("not held: {}: {how}\n", promise.attack).as_bytes());
@@ -121,6 +133,6 @@ pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {
     let broken = table.broken().count();
     let untested = table.promises.len() - table.held() - broken;
     let _ = writeln!(text, "\n{} promises held, {broken} not held, {untested} not tested here", table.held());
-    console::print(text.as_bytes())?;
+    console::report(&text)?;
     Ok(if broken == 0 && table.held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }

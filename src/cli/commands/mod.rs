@@ -1,12 +1,15 @@
 //! The commands: each reads its inputs, lets the rooms below do the work, and prints what a renderer makes of it.
 
 mod check;
+mod detect;
 mod display;
 mod explain;
 mod grade;
 mod headroom;
 mod host;
 mod record;
+mod render;
+mod scene;
 mod shell;
 mod simulate;
 mod submissions;
@@ -25,18 +28,21 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Detect(arguments) => detect::run(arguments),
+        Command::Render(arguments) => render::run(arguments),
         Command::Trace(Trace::Info(arguments)) => trace::info(arguments),
         Command::Trace(Trace::Show(arguments)) => trace::show(arguments),
         Command::Trace(Trace::Diff(arguments)) => trace::diff(arguments),
         Command::Record(arguments) => record::run(arguments),
         Command::Grade(arguments) => grade::run(arguments),
         Command::Suite(arguments) => suite::run(arguments),
+        Command::Scene(arguments) => scene::run(arguments),
         Command::Demo(arguments) => host::demo(arguments),
         Command::Doctor(_) => host::doctor(),
         Command::Selftest(arguments) => host::selftest(arguments),
         Command::Completions(arguments) => shell::completions(arguments),
         Command::Man(arguments) => shell::manual(arguments),
-        // Its words never get here: they are not read by this parser.
+        // Never gets here: it has its own way of ending.
         Command::Original(_) => Ok(super::exit::FAULT),
     }
 }

@@ -1,7 +1,7 @@
 //! `record`: the recordings of a folder of scenes.
 use crate::{
     cli::{arguments::Record, console, exit, output},
-    report::number::count,
+    report::number::counted,
     suite::{
         library,
         recording::{self, Recording},
@@ -117,7 +117,7 @@ fn check(recordings: &[Recording], old: &dyn Old) -> Result<u8> {
     text += &recording::diff("manifest.txt", &String::from_utf8_lossy(&manifest), &recording::manifest(recordings));
     if text.is_empty() {
         let steps = recordings.iter().map(|recording| u64::from(recording.steps)).sum();
-        let (recordings, steps) = (number(recordings.len() as u64, "recording"), number(steps, "step"));
+        let (recordings, steps) = (counted(recordings.len() as u64, "recording"), counted(steps, "step"));
         console::print(format!("{recordings}, {steps}: all the same\n").as_bytes())?;
         return Ok(exit::ACCEPTED);
     }
@@ -149,15 +149,10 @@ fn write(recordings: &[Recording], folder: &Path) -> Result<u8> {
         }
     }
     replace(&folder.join("manifest.txt"), recording::manifest(recordings).as_bytes())?;
-    let (recordings, bytes) = (number(recordings.len() as u64, "recording"), number(bytes, "byte"));
+    let (recordings, bytes) = (counted(recordings.len() as u64, "recording"), counted(bytes, "byte"));
     let line = format!("{recordings}, {bytes}, in {}\n", folder.display());
     console::print(line.as_bytes())?;
     Ok(exit::ACCEPTED)
-}
-
-/// A number of things.
-fn number(many: u64, thing: &str) -> String {
-    format!("{} {thing}{}", count(many), if many == 1 { "" } else { "s" })
 }
 
 fn replace(path: &Path, bytes: &[u8]) -> Result<()> {

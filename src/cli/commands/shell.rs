@@ -5,12 +5,27 @@ use crate::cli::{
 };
 use anyhow::{Result, bail};
 use clap::CommandFactory;
+use clap_complete::Shell;
+
+/// The name under which the program is installed.
+const NAME: &str = "fosssim-oracle";
 
 pub(super) fn completions(arguments: &Completions) -> Result<u8> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Arguments::command(), "fosssim-oracle", &mut script);
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), NAME, &mut script);
+    if arguments.shell == Shell::Bash {
+        script = mended(&script);
+    }
     console::print(&script)?;
     Ok(exit::ACCEPTED)
+}
+
+/// A bash script whose labels are those that it asks for. clap writes a hyphen in the program's name once as `__` and
+/// once as the mark of a command, so that nothing is completed behind a command (clap issue 6421). Without a hyphen, or
+/// when clap is mended, nothing changes.
+fn mended(script: &[u8]) -> Vec<u8> {
+    let (asked, written) = (NAME.replace('-', "__"), NAME.replace('-', "__subcmd__"));
+    String::from_utf8_lossy(script).replace(&written, &asked).into_bytes()
 }
 
 pub(super) fn manual(arguments: &Man) -> Result<u8> {
@@ -20,7 +35,7 @@ pub(super) fn manual(arguments: &Man) -> Result<u8> {
     for name in &arguments.command {
         let Some(found) = command.find_subcommand(name) else {
             let known: Vec<_> = command.get_subcommands().map(clap::Command::get_name).collect();
-            let whole = command.get_bin_name().unwrap_or("fosssim-oracle");
+            let whole = command.get_bin_name().unwrap_or(NAME);
             if known.is_empty() {
                 bail!("{whole} has no commands of its own, and so no `{name}`");
             }
@@ -29,7 +44,10 @@ pub(super) fn manual(arguments: &Man) -> Result<u8> {
         command = found.clone();
     }
     let mut page = Vec::new();
-    clap_mangen::Man::new(command).render(&mut page)?;
-    console::print(&page)?;
+    // The foot of a page tells the version; of a command clap knows none.
+    let source = format!("{NAME} {}", env!("CARGO_PKG_VERSION"));
+    clap_mangen::Man::new(command).source(source).manual("Manual of fosssim-oracle").render(&mut page)?;
+    let page = String::from_utf8_lossy(&page).replace("\n.SH EXTRA\n", "\n.SH EXAMPLES AND NOTES\n");
+    console::print(page.as_bytes())?;
     Ok(exit::ACCEPTED)
 }

@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Simulate) -> Result<u8> {
     if to_stdout {
         console::complain(text.as_bytes());
     } else {
-        console::print(text.as_bytes())?;
+        console::show(&text, arguments.format)?;
     }
     if searches.disagreements > 0 {
         bail!("{} disagreements between certificates and the root finder; please report this", searches.disagreements);

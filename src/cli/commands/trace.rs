@@ -5,7 +5,10 @@ use crate::{
         console, exit,
         input::{self, SceneInput, TraceInput},
     },
-    report::trace::{self as report, Record, Shown},
+    report::{
+        number::counted,
+        trace::{self as report, Record, Shown},
+    },
     trace::{Frame, Layout, Reader, Summary, compare, labels},
 };
 use anyhow::{Context, Result, bail};
@@ -21,7 +24,7 @@ pub(super) fn info(arguments: &TraceInfo) -> Result<u8> {
         Format::Text => summary.to_string(),
         Format::Json => report::info_json(&scene.name, &trace.name, &summary),
     };
-    console::print(text.as_bytes())?;
+    console::show(&text, arguments.format)?;
     Ok(if summary.stopped.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
@@ -32,7 +35,7 @@ pub(super) fn show(arguments: &TraceShow) -> Result<u8> {
     let steps = scene.scene.steps();
     let step = arguments.step;
     if step > steps {
-        bail!("the scene {} has {steps} steps; there is no step {step}", scene.name);
+        bail!("the scene {} has {}; there is no step {step}", scene.name, counted(steps.into(), "step"));
     }
     let layout = Layout::of(&scene.scene);
     let mut reader = reader(&scene, &mut trace);
@@ -70,7 +73,7 @@ pub(super) fn show(arguments: &TraceShow) -> Result<u8> {
         Format::Text => shown.text(console::style()),
         Format::Json => shown.json(&scene.name, &trace.name),
     };
-    console::print(text.as_bytes())?;
+    console::show(&text, arguments.format)?;
     Ok(exit::ACCEPTED)
 }
 
@@ -87,7 +90,7 @@ pub(super) fn diff(arguments: &TraceDiff) -> Result<u8> {
         Format::Text => report::diff_text(&names, &comparison, console::style()),
         Format::Json => report::diff_json(&names, &comparison),
     };
-    console::print(text.as_bytes())?;
+    console::show(&text, arguments.format)?;
     Ok(if report::same(&comparison) { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 

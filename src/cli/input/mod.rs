@@ -3,6 +3,7 @@
 //! Nothing here waits for ever: a named pipe that nobody writes to is refused. Nothing is read whole but scenes, whose
 //! size is limited; traces are streams, decompressed on the way when they are zstd files.
 
+pub(super) mod pair;
 mod scene;
 mod trace;
 

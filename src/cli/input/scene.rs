@@ -1,5 +1,5 @@
 //! Scenes as inputs: strict reading, all problems at once.
-use super::{Identity, asset, no_asset, open, read_limited};
+use super::{Identity, asset, no_asset, open, read_limited, trace::ZSTD_MAGIC};
 use crate::{
     cli::console,
     report::problems,
@@ -33,6 +33,9 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         }
         None => scene_file(name).with_context(|| format!("cannot read the scene {shown}"))?,
     };
+    if is_binary(&bytes) {
+        bail!("{shown} is no scene but a trace, or other binary data: SCENE comes first, then TRACE");
+    }
     match scene::read(&shown, &bytes) {
         Ok(Loaded { scene, warnings, .. }) => {
             // Embedded scenes are as they are meant to be.
@@ -43,6 +46,13 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         }
         Err(refused) => bail!("{}", problems::errors(&shown, &bytes, &refused)),
     }
+}
+
+/// Whether these bytes are no text at all: what its reader could say of them would help nobody. No XML in UTF-8 holds a
+/// NUL; UTF-16, which does, begins with its mark and gets the reader's own words.
+fn is_binary(bytes: &[u8]) -> bool {
+    let is_utf_16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
+    bytes.starts_with(&ZSTD_MAGIC) || (!is_utf_16 && !bytes.starts_with(b"<") && bytes.contains(&0))
 }
 
 /// The bytes of a scene file, which may not be larger than any sensible scene.

@@ -85,7 +85,7 @@ impl Read for Watched {
 }
 
 /// The first bytes of every zstd frame.
-const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+pub(super) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// Frames that need a larger window than 8 MiB are refused: memory stays bounded. The window is the packer's choice and
 /// most of what unpacking needs: 2 MiB at zstd's usual level 3, 8 MiB at level 19. A smaller bound would refuse the

@@ -1,5 +1,5 @@
 //! Recording and grading as the original does them (oracle-behaviour.md 2).
-use super::arguments::Arguments;
+use super::{arguments::Arguments, pictures::Pictures};
 use crate::{
     cli::{
         console,
@@ -9,15 +9,15 @@ use crate::{
     judge::{Stop, Unreadable, parity, parity::Progress},
     report::describe::step_error,
     report::original::{
-        Heading, INPUT_AND_OUTPUT, NO_PICTURE_FOLDER, NO_VORTEX_HESSIAN, Task, Transcript, input_not_opened,
-        output_not_opened, residual_file,
+        Heading, INPUT_AND_OUTPUT, NO_VORTEX_HESSIAN, Task, Transcript, input_not_opened, output_not_opened,
+        residual_file,
     },
     scene::{
         Integrator, LARGEST_IMPLICIT, Scene,
         original::{self, OriginalScene, Refusal, RefusalKind},
     },
     sim::{RootSearch, Simulation, StepError},
-    trace::{Layout, Recorder},
+    trace::{Frame, Layout, Reader, Recorder},
 };
 use std::{
     fs::{self, File, OpenOptions},
@@ -41,6 +41,10 @@ pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
     if let Some(message) = unsupported(arguments, &scene.scene) {
         return complain(&message);
     }
+    let pictures = match Pictures::new(arguments, &scene.scene) {
+        Ok(pictures) => pictures,
+        Err(message) => return complain(&message),
+    };
     let task = match (&arguments.output, &arguments.input) {
         (Some(file), _) => Task::Record(file.as_bytes()),
         (None, Some(file)) => Task::Grade(file.as_bytes()),
@@ -51,7 +55,7 @@ pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
     let mut transcript = Transcript::new(BufWriter::new(io::stdout()), heading);
     match (&arguments.output, &arguments.input) {
         (Some(file), _) => match create(Path::new(file), identity) {
-            Ok(file) => simulate(&scene.scene, file, transcript),
+            Ok(file) => simulate(&scene.scene, file, transcript, pictures),
             Err(message) => {
                 console::complain(&message);
                 FAILED
@@ -59,6 +63,11 @@ pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
         },
         (None, Some(file)) => {
             if let Ok(trace) = open(Path::new(file)) {
+                if let Some(pictures) = pictures
+                    && let Err(message) = draw(&scene.scene, Path::new(file), pictures)
+                {
+                    return complain(&message);
+                }
                 return grade(&scene.scene, trace, transcript);
             }
             let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
@@ -67,7 +76,7 @@ pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
             drop(transcript.finish());
             FAILED
         }
-        (None, None) => simulate(&scene.scene, io::sink(), transcript),
+        (None, None) => simulate(&scene.scene, io::sink(), transcript, pictures),
     }
 }
 
@@ -110,15 +119,6 @@ fn unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     if arguments.display {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
     }
-    if arguments.generate {
-        return Some("PNG pictures of the steps (-g 1) are not supported; leave -g out, or give -g 0\n".to_owned());
-    }
-    if let Some(folder) = &arguments.movie {
-        if !Path::new(folder).is_dir() {
-            return Some(NO_PICTURE_FOLDER.to_owned());
-        }
-        return Some("SVG pictures of the steps (-m) are not supported; leave -m out\n".to_owned());
-    }
     let implicit = matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler);
     let particles = scene.particles.len();
     (implicit && particles > LARGEST_IMPLICIT).then(|| {
@@ -149,7 +149,12 @@ fn open(name: &Path) -> io::Result<Box<dyn Read + Send>> {
 }
 
 /// Simulates, and records into `file`.
-fn simulate<W: Write>(scene: &Scene, file: W, mut transcript: Transcript<'_, impl Write>) -> u8 {
+fn simulate<W: Write>(
+    scene: &Scene,
+    file: W,
+    mut transcript: Transcript<'_, impl Write>,
+    mut pictures: Option<Pictures>,
+) -> u8 {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(file, Layout::of(scene), simulation.state());
     transcript.begins();
@@ -159,6 +164,12 @@ fn simulate<W: Write>(scene: &Scene, file: W, mut transcript: Transcript<'_, imp
         stopped = simulation.step(&mut recorder).err();
         if stopped.is_some() || recorder.failed() {
             break;
+        }
+        if let Some(pictures) = &mut pictures
+            && let Err(error) = pictures.step(step, &simulation.state().positions)
+        {
+            drop(transcript.finish());
+            return complain(&format!("{error:#}\n"));
         }
     }
     let written = recorder.finish();
@@ -173,6 +184,25 @@ fn simulate<W: Write>(scene: &Scene, file: W, mut transcript: Transcript<'_, imp
         (None, Err(error)) => complain(&format!("the trace could not be written: {error}\n")),
         (None, Ok(_)) => 0,
     }
+}
+
+/// Draws the states of a trace, as far as it can be read; what is wrong with it the grading says.
+fn draw(scene: &Scene, name: &Path, mut pictures: Pictures) -> Result<(), String> {
+    if !fs::metadata(name).is_ok_and(|data| data.is_file()) {
+        return Err("pictures of a trace (-g, -m with -i) need a file, which can be read twice\n".to_owned());
+    }
+    let trace = open(name).map_err(|error| format!("cannot read {}: {error}\n", name.display()))?;
+    let layout = Layout::of(scene);
+    let mut reader = Reader::new(trace, layout);
+    let mut frame = Frame::default();
+    while let Ok(true) = reader.next(&mut frame) {
+        let record = reader.records() - 1;
+        let step = layout.step_of(record);
+        if step > 0 && record == layout.end_record(step) {
+            pictures.step(step, &frame.state.positions).map_err(|error| format!("{error:#}\n"))?;
+        }
+    }
+    Ok(())
 }
 
 /// Grades a trace and writes `residual.txt`.
@@ -190,9 +220,13 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
         None => 0,
         Some(Stop::Step(error)) => step_failed(error),
         Some(Stop::Trace { cause: Unreadable::State | Unreadable::Impulses, .. }) => FAILED,
-        Some(Stop::Trace { cause: Unreadable::Memory | Unreadable::Io, frame, step, offset, message }) => {
-            complain(&format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {message}\n"))
-        }
+        Some(Stop::Trace {
+            cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io,
+            frame,
+            step,
+            offset,
+            message,
+        }) => complain(&format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {message}\n")),
     }
 }
 

@@ -1,0 +1,450 @@
+//! `suite.toml`: what to grade, with what limits, points and visibility.
+//!
+//! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
+//! that `suite init` writes ([`TEMPLATE`]).
+pub use super::{hints::Hints, patience::Patience};
+use fosssim_judge::Rules;
+use serde::Deserialize;
+use std::{ops::Range, time::Duration};
+use toml::Spanned;
+
+/// The commented file that `suite init` writes; it is itself a valid suite.
+pub const TEMPLATE: &str = include_str!("template.toml");
+
+/// A validated suite, its scenes not yet looked up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Suite {
+    /// Its name, shown in reports.
+    pub name: String,
+    /// How the program is run; `{program}`, `{scene}` and `{trace}` are replaced.
+    pub run: Vec<String>,
+    /// The rule books to ask; the official one gives verdicts and points.
+    pub rules: Rules,
+    /// How much a report tells.
+    pub hints: Hints,
+    /// Whether students see what their programs print even though some groups are not visible to them.
+    pub show_output: bool,
+    /// The build step.
+    pub build: Option<BuildStep>,
+    /// Limits of each run.
+    pub limits: RunLimits,
+    /// When the rest of a submission is not run any more.
+    pub patience: Patience,
+    /// The groups.
+    pub groups: Vec<Group>,
+}
+
+/// A group of scenes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// Its name.
+    pub name: String,
+    /// Patterns: `asset:Group/*` for embedded scenes, else files relative to the suite's own folder.
+    pub scenes: Vec<String>,
+    /// Where each pattern stands, for messages about patterns that match nothing.
+    pub positions: Vec<Position>,
+    /// Points of the whole group, shared evenly among its scenes.
+    pub points: f64,
+    /// How partial success counts.
+    pub credit: Credit,
+    /// Who sees it.
+    pub visibility: Visibility,
+}
+
+/// How the sources are built.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BuildStep {
+    /// The command, run in a copy of the submission's folder.
+    pub command: Vec<String>,
+    /// The program that it makes, relative to the folder.
+    pub program: String,
+    /// Wall time.
+    pub wall: Duration,
+    /// Memory in bytes.
+    pub memory: u64,
+}
+
+/// Limits of one run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunLimits {
+    /// Processor time.
+    pub cpu: Duration,
+    /// Wall time.
+    pub wall: Duration,
+    /// Address space in bytes.
+    pub memory: u64,
+    /// Bytes of standard output and of standard error, each.
+    pub output: u64,
+    /// Bytes of the trace.
+    pub trace: u64,
+    /// Bytes in the working folder.
+    pub folder: u64,
+    /// Files in the working folder.
+    pub files: u64,
+    /// Whether programs that were built with a sanitiser may run, whose address space can't be limited.
+    pub sanitizers: bool,
+}
+
+impl Default for RunLimits {
+    fn default() -> Self {
+        Self {
+            cpu: Duration::from_secs(10),
+            wall: Duration::from_secs(20),
+            memory: 512 << 20,
+            output: 1 << 20,
+            trace: 256 << 20,
+            folder: 64 << 20,
+            files: 100,
+            sanitizers: false,
+        }
+    }
+}
+
+/// How partial success counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Credit {
+    /// The group's points times the share of accepted scenes.
+    Scenes,
+    /// Within each scene, the share of steps without a finding.
+    Steps,
+    /// All or nothing.
+    All,
+}
+
+/// Who sees a group's results, in Gradescope's words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Visibility {
+    /// Everybody, at once.
+    Visible,
+    /// Staff only.
+    Hidden,
+    /// Students, after the due date.
+    AfterDueDate,
+    /// Students, after grades are published.
+    AfterPublished,
+}
+
+impl Visibility {
+    /// Gradescope's key.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Visible => "visible",
+            Self::Hidden => "hidden",
+            Self::AfterDueDate => "after_due_date",
+            Self::AfterPublished => "after_published",
+        }
+    }
+}
+
+/// A place in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Position {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
+impl Position {
+    fn of(text: &str, offset: usize) -> Self {
+        let before = text.get(..offset).unwrap_or(text);
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+        Self { line, column }
+    }
+}
+
+impl std::fmt::Display for Position {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "{}:{}", self.line, self.column)
+    }
+}
+
+/// What is wrong with a suite file.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{}", problems.iter().map(|(at, text)| format!("{at}: {text}")).collect::<Vec<_>>().join("\n"))]
+pub struct SuiteError {
+    /// Every problem with its position, in order.
+    pub problems: Vec<(Position, String)>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSuite {
+    schema: Spanned<u32>,
+    name: Spanned<String>,
+    rules: Option<Spanned<String>>,
+    hints: Option<Hints>,
+    show_output: Option<bool>,
+    run: Option<Spanned<Vec<String>>>,
+    build: Option<Spanned<RawBuild>>,
+    limits: Option<RawLimits>,
+    #[serde(default)]
+    group: Vec<Spanned<RawGroup>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawBuild {
+    command: Vec<String>,
+    program: String,
+    wall_seconds: Option<Spanned<f64>>,
+    memory_mib: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawLimits {
+    cpu_seconds: Option<Spanned<f64>>,
+    wall_seconds: Option<Spanned<f64>>,
+    memory_mib: Option<Spanned<f64>>,
+    output_mib: Option<Spanned<f64>>,
+    trace_mib: Option<Spanned<f64>>,
+    folder_mib: Option<Spanned<f64>>,
+    files: Option<Spanned<f64>>,
+    sanitizers: Option<bool>,
+    time_outs: Option<Spanned<f64>>,
+    total_seconds: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawGroup {
+    name: Spanned<String>,
+    scenes: Spanned<Vec<Spanned<String>>>,
+    points: Option<Spanned<f64>>,
+    credit: Option<Credit>,
+    visibility: Option<Visibility>,
+}
+
+/// Collects problems with their positions while values are checked.
+struct Checker<'a> {
+    text: &'a str,
+    problems: Vec<(Position, String)>,
+}
+
+impl Checker<'_> {
+    fn problem(&mut self, span: Range<usize>, text: String) {
+        self.problems.push((Position::of(self.text, span.start), text));
+    }
+
+    /// A number in a range; the default when it is absent or wrong.
+    fn number(&mut self, name: &str, value: Option<&Spanned<f64>>, default: f64, range: Range<f64>) -> f64 {
+        match value {
+            None => default,
+            Some(value) if range.contains(value.get_ref()) => *value.get_ref(),
+            Some(value) => {
+                let text =
+                    format!("{name} is {}: it has to lie between {} and {}", value.get_ref(), range.start, range.end);
+                self.problem(value.span(), text);
+                default
+            }
+        }
+    }
+}
+
+const MIB: f64 = 1024.0 * 1024.0;
+
+/// Reads and validates a suite.
+///
+/// # Errors
+/// Every problem with line and column: syntax, unknown keys, values out of range, groups without scenes.
+pub fn read(text: &str) -> Result<Suite, SuiteError> {
+    let raw: RawSuite = toml::from_str(text).map_err(|error| {
+        let at = Position::of(text, error.span().map_or(0, |span| span.start));
+        SuiteError { problems: vec![(at, error.message().trim().replace('\n', " "))] }
+    })?;
+    let mut checker = Checker { text, problems: Vec::new() };
+    if *raw.schema.get_ref() != 1 {
+        checker.problem(
+            raw.schema.span(),
+            format!("schema {} is not known: this version reads schema 1", raw.schema.get_ref()),
+        );
+    }
+    let rules = raw.rules.as_ref().map_or(Some(Rules::default()), |rules| Rules::from_name(rules.get_ref()));
+    if let (None, Some(rules)) = (rules, &raw.rules) {
+        let known = "there are \"parity\", \"fair\" and \"both\"";
+        checker.problem(rules.span(), format!("rules \"{}\" is not known: {known}", rules.get_ref()));
+    }
+    if raw.name.get_ref().trim().is_empty() {
+        checker.problem(raw.name.span(), "the suite's name is empty".to_owned());
+    }
+    let run = read_run(&mut checker, raw.run);
+    let raw_limits = raw.limits.unwrap_or_default();
+    let limits = read_limits(&mut checker, &raw_limits);
+    let patience = read_patience(&mut checker, &raw_limits);
+    let build = raw.build.map(|build| read_build(&mut checker, build));
+    if raw.group.is_empty() {
+        checker.problem(0..0, "the suite has no [[group]], so there is nothing to grade".to_owned());
+    }
+    let groups: Vec<Group> = raw.group.into_iter().map(|group| read_group(&mut checker, group.into_inner())).collect();
+    for (number, group) in groups.iter().enumerate() {
+        if groups[..number].iter().any(|other| other.name == group.name) {
+            checker.problems.push((
+                group.positions.first().copied().unwrap_or_default(),
+                format!("two groups have the name \"{}\"", group.name),
+            ));
+        }
+    }
+    if checker.problems.is_empty() {
+        Ok(Suite {
+            name: raw.name.into_inner(),
+            run,
+            rules: rules.unwrap_or_default(),
+            hints: raw.hints.unwrap_or(Hints::What),
+            show_output: raw.show_output.unwrap_or(false),
+            build,
+            limits,
+            patience,
+            groups,
+        })
+    } else {
+        checker.problems.sort_by_key(|(at, _)| (at.line, at.column));
+        Err(SuiteError { problems: checker.problems })
+    }
+}
+
+/// The course's protocol.
+fn default_run() -> Vec<String> {
+    ["{program}", "-s", "{scene}", "-d", "0", "-o", "{trace}"].map(str::to_owned).into()
+}
+
+fn read_run(checker: &mut Checker<'_>, run: Option<Spanned<Vec<String>>>) -> Vec<String> {
+    let Some(run) = run else { return default_run() };
+    for part in ["{program}", "{scene}", "{trace}"] {
+        if !run.get_ref().iter().any(|word| word.contains(part)) {
+            checker.problem(run.span(), format!("run has no {part}: the program would not get it"));
+        }
+    }
+    if run.get_ref().first().is_some_and(|word| word != "{program}") {
+        checker.problem(run.span(), "run has to begin with {program}".to_owned());
+    }
+    run.into_inner()
+}
+
+fn read_limits(checker: &mut Checker<'_>, raw: &RawLimits) -> RunLimits {
+    let default = RunLimits::default();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
+    let mut mib = |name: &str, value: Option<&Spanned<f64>>, default: u64| {
+        #[expect(clippy::cast_precision_loss, reason = "defaults are small powers of two")]
+        let default = default as f64 / MIB;
+        (checker.number(name, value, default, 0.001..1e6) * MIB) as u64
+    };
+    let memory = mib("memory_mib", raw.memory_mib.as_ref(), default.memory);
+    let output = mib("output_mib", raw.output_mib.as_ref(), default.output);
+    let trace = mib("trace_mib", raw.trace_mib.as_ref(), default.trace);
+    let folder = mib("folder_mib", raw.folder_mib.as_ref(), default.folder);
+    let cpu = checker.number("cpu_seconds", raw.cpu_seconds.as_ref(), default.cpu.as_secs_f64(), 0.01..86_400.0);
+    let wall = checker.number(
+        "wall_seconds",
+        raw.wall_seconds.as_ref(),
+        default.wall.as_secs_f64().max(2.0 * cpu),
+        0.01..86_400.0,
+    );
+    #[expect(clippy::cast_precision_loss, reason = "the default is small")]
+    let files = checker.number("files", raw.files.as_ref(), default.files as f64, 1.0..1e6);
+    RunLimits {
+        cpu: Duration::from_secs_f64(cpu),
+        wall: Duration::from_secs_f64(wall),
+        memory,
+        output,
+        trace,
+        folder,
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
+        files: files as u64,
+        sanitizers: raw.sanitizers.unwrap_or(default.sanitizers),
+    }
+}
+
+fn read_patience(checker: &mut Checker<'_>, raw: &RawLimits) -> Patience {
+    let default = Patience::default();
+    let time_outs = checker.number("time_outs", raw.time_outs.as_ref(), f64::from(default.time_outs), 0.0..1e6);
+    let total =
+        checker.number("total_seconds", raw.total_seconds.as_ref(), default.total.as_secs_f64(), 0.01..86_400_000.0);
+    Patience {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
+        time_outs: time_outs as u32,
+        total: Duration::from_secs_f64(total),
+    }
+}
+
+fn read_build(checker: &mut Checker<'_>, build: Spanned<RawBuild>) -> BuildStep {
+    let span = build.span();
+    let raw = build.into_inner();
+    if raw.command.is_empty() {
+        checker.problem(span.clone(), "build.command is empty: say what builds the program".to_owned());
+    }
+    if raw.program.is_empty() || raw.program.starts_with('/') || raw.program.split('/').any(|part| part == "..") {
+        let text = format!("build.program \"{}\" has to be a path inside the submission's folder", raw.program);
+        checker.problem(span, text);
+    }
+    let wall = checker.number("build.wall_seconds", raw.wall_seconds.as_ref(), 120.0, 0.01..86_400.0);
+    let memory = checker.number("build.memory_mib", raw.memory_mib.as_ref(), 2048.0, 1.0..1e6);
+    BuildStep {
+        command: raw.command,
+        program: raw.program,
+        wall: Duration::from_secs_f64(wall),
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
+        memory: (memory * MIB) as u64,
+    }
+}
+
+fn read_group(checker: &mut Checker<'_>, raw: RawGroup) -> Group {
+    if raw.name.get_ref().trim().is_empty() {
+        checker.problem(raw.name.span(), "the group's name is empty".to_owned());
+    }
+    if raw.scenes.get_ref().is_empty() {
+        checker.problem(raw.scenes.span(), format!("group \"{}\" has no scenes", raw.name.get_ref()));
+    }
+    let points = checker.number("points", raw.points.as_ref(), 1.0, 0.0..1e6);
+    let positions =
+        raw.scenes.get_ref().iter().map(|pattern| Position::of(checker.text, pattern.span().start)).collect();
+    Group {
+        name: raw.name.into_inner(),
+        scenes: raw.scenes.into_inner().into_iter().map(Spanned::into_inner).collect(),
+        positions,
+        points,
+        credit: raw.credit.unwrap_or(Credit::Scenes),
+        visibility: raw.visibility.unwrap_or(Visibility::Visible),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_template_is_a_valid_suite() {
+        let suite = read(TEMPLATE).expect("the template");
+        assert_eq!((suite.limits, suite.patience), (RunLimits::default(), Patience::default()));
+        assert_eq!(suite.run, default_run());
+        assert_eq!(suite.rules, Rules::Both);
+        assert!(!suite.groups.is_empty());
+    }
+
+    #[test]
+    fn every_problem_is_told_with_its_position() {
+        let text = "schema = 2\nname = \"\"\nrules = \"kind\"\nrun = [\"sh\", \"{scene}\"]\n[limits]\ncpu_seconds = -1.0\n\
+                    [[group]]\nname = \"a\"\nscenes = []\npoints = -5.0\n";
+        insta::assert_snapshot!(read(text).expect_err("wrong"), @r#"
+        1:10: schema 2 is not known: this version reads schema 1
+        2:8: the suite's name is empty
+        3:9: rules "kind" is not known: there are "parity", "fair" and "both"
+        4:7: run has no {program}: the program would not get it
+        4:7: run has no {trace}: the program would not get it
+        4:7: run has to begin with {program}
+        6:15: cpu_seconds is -1: it has to lie between 0.01 and 86400
+        9:10: group "a" has no scenes
+        10:10: points is -5: it has to lie between 0 and 1000000
+        "#);
+    }
+
+    #[test]
+    fn misspelt_keys_are_named() {
+        let error = read("schema = 1\nnmae = \"x\"\n").expect_err("wrong").to_string();
+        assert!(error.starts_with("2:1: unknown field `nmae`"), "{error}");
+    }
+}

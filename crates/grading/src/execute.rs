@@ -1,0 +1,342 @@
+//! Runs one program on one scene in the sandbox and judges its trace while it is written.
+use super::{
+    conclude::{Run, conclude},
+    config::{Hints, RunLimits},
+    fault::{self, Stage},
+    grade::SceneResult,
+    guard::{Fault, guarded},
+    staging::Staged,
+    temporary::Temporary,
+    verdict::Verdict,
+};
+use fosssim_judge::{
+    Outcome, Rules,
+    parity::{self, Options, Progress, Remark},
+    recorded::{self, RecordingError},
+};
+use fosssim_mistakes::diagnose::{self, Explanation};
+use fosssim_model::scene::Scene;
+use fosssim_sandbox::{self as sandbox, Backend, Canceller, Identity, Job, Limits, Policy, Running, SandboxError};
+use std::{
+    io::{self, Read},
+    path::Path,
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+};
+
+/// Name of the scene's copy in the working folder, and of the trace.
+const SCENE_FILE: &str = "scene.xml";
+const TRACE_FILE: &str = "trace.bin";
+
+/// A fault of ours or of the machine is tried so often before it is reported.
+const ATTEMPTS: u32 = 2;
+
+/// So much of a trace is kept in memory until it is judged, in bytes: should it be wrong, its beginning is explained, and
+/// should the grader fail on it, it is put aside. The course's largest trace has 18 MB.
+const KEPT_TRACE: usize = 24 << 20;
+
+/// A scene to run.
+#[derive(Debug, Clone)]
+pub struct SceneTask {
+    /// Its name, `Group/name`.
+    pub name: String,
+    /// Its XML, as the program gets it.
+    pub xml: Vec<u8>,
+    /// The scene itself.
+    pub scene: Scene,
+    /// Its recorded trace, compressed with zstd, when there is one.
+    pub recording: Option<&'static [u8]>,
+}
+
+/// How scenes are run.
+#[derive(Clone, Copy)]
+pub struct Runner<'a> {
+    /// The sandbox.
+    pub backend: &'a Backend,
+    /// The command line; `{program}`, `{scene}` and `{trace}` are replaced.
+    pub run: &'a [String],
+    /// Limits of each run.
+    pub limits: &'a RunLimits,
+    /// The rule books to ask.
+    pub rules: Rules,
+    /// How much the result tells.
+    pub hints: Hints,
+    /// Whether traces are judged against the recordings instead of the reference simulator.
+    pub recorded: bool,
+    /// Stops everything from outside.
+    pub cancellation: &'a Cancellation,
+    /// The folder for traces on which the grader itself failed; made when it is needed.
+    pub faults: &'a Path,
+    /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of this
+    /// scene, and the trace is still at hand.
+    pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
+}
+
+impl Runner<'_> {
+    /// Runs `program` on a scene, in a working folder of its own that is gone afterwards, and judges it. A fault of
+    /// ours is tried once more, then it is the verdict. `on_step` hears the number of every judged step.
+    #[must_use]
+    pub fn grade(&self, program: &Staged, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
+        let without_run = |verdict, why: String| SceneResult::without_run(&task.name, task.scene.steps(), verdict, why);
+        let mut attempt = 1;
+        loop {
+            if self.cancellation.is_cancelled() {
+                return without_run(Verdict::NotRun, "grading was stopped".to_owned());
+            }
+            match self.attempt(program, task, on_step) {
+                Ok(result) => return result,
+                Err(_) if attempt < ATTEMPTS => attempt += 1,
+                Err(error) => return without_run(Verdict::JudgeError, error.to_string()),
+            }
+        }
+    }
+
+    fn attempt(
+        &self,
+        program: &Staged,
+        task: &SceneTask,
+        on_step: &mut dyn FnMut(u32),
+    ) -> Result<SceneResult, ExecuteError> {
+        let (mut running, _folder) = self.start(&program.program, program.identity, task)?;
+        let _registered = self.cancellation.register(running.canceller());
+        let bytes = AtomicU64::new(0);
+        let mut kept = Vec::new();
+        let options =
+            Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
+        let mut watch = Watch { on_step };
+        let judged = match running.trace() {
+            Some(inner) => {
+                let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep: KEPT_TRACE };
+                let judged = guarded(|| {
+                    fault::injected(Stage::Judging, &program.program);
+                    self.judge(task, &mut trace, &options, &mut watch)
+                });
+                // What the judge did not want is read all the same, within the limit: a program must not die of our
+                // closing the pipe. An error here ends the program as well, and its outcome says so.
+                let _ = io::copy(&mut trace, &mut io::sink());
+                judged
+            }
+            None => guarded(|| self.judge(task, io::empty(), &options, &mut watch)),
+        };
+        let outcome = running.wait()?;
+        let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, &kept);
+        let judged = match judged {
+            Ok(judged) => judged?,
+            Err(fault) => return Ok(failed(Stage::Judging, &fault)),
+        };
+        let run = Run {
+            scene: &task.name,
+            program: &outcome,
+            judged: &judged,
+            trace_bytes: bytes.load(Ordering::Relaxed),
+            rules: self.rules,
+            hints: self.hints,
+        };
+        let result = guarded(|| conclude(&run));
+        let result = match result {
+            Ok(result) => result,
+            Err(fault) => return Ok(failed(Stage::Judging, &fault)),
+        };
+        let explained = guarded(|| {
+            fault::injected(Stage::Explaining, &program.program);
+            self.hints.cut(explain(&result, task, &kept))
+        });
+        let result = match explained {
+            Ok(explanations) => SceneResult { explanations, ..result },
+            Err(fault) => return Ok(failed(Stage::Explaining, &fault)),
+        };
+        match guarded(|| (self.rehearse)(&result)) {
+            Ok(()) => Ok(result),
+            Err(fault) => Ok(failed(Stage::Reporting, &fault)),
+        }
+    }
+
+    /// Runs `program` on a scene as for grading, and hands its trace over unjudged, at most `keep` bytes of it.
+    ///
+    /// # Errors
+    /// Faults of ours or of the machine, in words.
+    pub fn collect(
+        &self,
+        program: &Path,
+        task: &SceneTask,
+        keep: usize,
+    ) -> Result<(Vec<u8>, sandbox::Outcome), String> {
+        let (mut running, _folder) = self.start(program, None, task).map_err(|error| error.to_string())?;
+        let _registered = self.cancellation.register(running.canceller());
+        let (bytes, mut kept) = (AtomicU64::new(0), Vec::new());
+        if let Some(inner) = running.trace() {
+            let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep };
+            // An error here ends the program as well, and its outcome says so.
+            let _ = io::copy(&mut trace, &mut io::sink());
+        }
+        let outcome = running.wait().map_err(|error| error.to_string())?;
+        Ok((kept, outcome))
+    }
+
+    /// Starts `program` on a scene, in a working folder of its own that lives as long as the result.
+    fn start(
+        &self,
+        program: &Path,
+        identity: Option<Identity>,
+        task: &SceneTask,
+    ) -> Result<(Running, Temporary), ExecuteError> {
+        let folder = Temporary::make("run").map_err(ExecuteError::Folder)?;
+        let scene_file = folder.path().join(SCENE_FILE);
+        std::fs::write(&scene_file, &task.xml).map_err(ExecuteError::Folder)?;
+        let job = Job::new(program, folder.path())
+            .arguments(self.arguments(program))
+            .trace_pipe(TRACE_FILE)
+            .policy(Policy::Submission)
+            .sanitisers(self.limits.sanitizers)
+            .staged(identity)
+            .limits(self.sandbox_limits());
+        Ok((self.backend.start(&job)?, folder))
+    }
+
+    fn judge(
+        &self,
+        task: &SceneTask,
+        trace: impl Read + Send,
+        options: &Options,
+        watch: &mut Watch<'_>,
+    ) -> Result<Outcome, ExecuteError> {
+        if !self.recorded {
+            return Ok(parity::judge(&task.scene, trace, options, watch));
+        }
+        let packed = task.recording.ok_or_else(|| ExecuteError::NoRecording(task.name.clone()))?;
+        let recording = zstd::Decoder::with_buffer(packed).map_err(ExecuteError::Recording)?;
+        Ok(recorded::judge(&task.scene, trace, recording, watch)?)
+    }
+
+    fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
+        self.run
+            .iter()
+            .skip(1)
+            .map(|word| {
+                word.replace("{scene}", SCENE_FILE)
+                    .replace("{trace}", TRACE_FILE)
+                    .replace("{program}", &program.to_string_lossy())
+                    .into()
+            })
+            .collect()
+    }
+
+    fn sandbox_limits(&self) -> Limits {
+        let limits = self.limits;
+        Limits {
+            cpu: limits.cpu,
+            wall: limits.wall,
+            memory: limits.memory,
+            output_bytes: limits.output,
+            trace_bytes: limits.trace,
+            folder_bytes: limits.folder,
+            folder_files: limits.files,
+            ..Limits::default()
+        }
+    }
+}
+
+/// What is likely wrong with a program whose trace is: nothing where the fair rules find no fault, or where what the program
+/// did besides is its worse fault.
+fn explain(result: &SceneResult, task: &SceneTask, trace: &[u8]) -> Vec<Explanation> {
+    match result.verdict {
+        Verdict::WrongAnswer | Verdict::BadTrace if result.differs.is_none() => diagnose::explain(&task.scene, trace),
+        _ => Vec::new(),
+    }
+}
+
+/// Why a scene could not be run: always our fault or the machine's.
+#[derive(Debug, thiserror::Error)]
+enum ExecuteError {
+    #[error("no working folder for a run: {0}")]
+    Folder(io::Error),
+    #[error("there is no recording of {0}: judge it without --recorded")]
+    NoRecording(String),
+    #[error("a recording can't be unpacked: {0}")]
+    Recording(io::Error),
+    #[error(transparent)]
+    Damaged(#[from] RecordingError),
+    #[error(transparent)]
+    Sandbox(#[from] SandboxError),
+}
+
+/// Counts the bytes that arrive, and keeps the first ones.
+struct Counted<'a, R> {
+    inner: R,
+    bytes: &'a AtomicU64,
+    kept: &'a mut Vec<u8>,
+    /// So many are kept.
+    keep: usize,
+}
+
+impl<R: Read> Read for Counted<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        self.bytes.fetch_add(count as u64, Ordering::Relaxed);
+        let room = self.keep - self.kept.len();
+        self.kept.extend_from_slice(&buffer[..count.min(room)]);
+        Ok(count)
+    }
+}
+
+/// Tells how judging goes.
+struct Watch<'a> {
+    on_step: &'a mut dyn FnMut(u32),
+}
+
+impl Progress for Watch<'_> {
+    fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
+        (self.on_step)(step);
+    }
+}
+
+/// Stops a grading from outside, for example on Ctrl-C: no new run begins, and every run at work is ended.
+#[derive(Debug, Default)]
+pub struct Cancellation {
+    cancelled: AtomicBool,
+    next: AtomicU64,
+    running: Mutex<Vec<(u64, Canceller)>>,
+}
+
+impl Cancellation {
+    /// Stops everything, now and later.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::SeqCst);
+        for (_, canceller) in self.lock().iter() {
+            canceller.cancel();
+        }
+    }
+
+    /// Whether grading has been stopped.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::SeqCst)
+    }
+
+    /// Adds a run for as long as the result lives. A run that begins after the stop is ended at once.
+    pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
+        let number = self.next.fetch_add(1, Ordering::Relaxed);
+        self.lock().push((number, canceller.clone()));
+        if self.is_cancelled() {
+            canceller.cancel();
+        }
+        Registered { cancellation: self, number }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<(u64, Canceller)>> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+struct Registered<'a> {
+    cancellation: &'a Cancellation,
+    number: u64,
+}
+
+impl Drop for Registered<'_> {
+    fn drop(&mut self) {
+        self.cancellation.lock().retain(|(number, _)| *number != self.number);
+    }
+}

@@ -1,0 +1,56 @@
+//! What becomes of a scene on which the grader itself failed: a judge error, and its trace put aside for whoever mends it.
+use super::{execute::SceneTask, grade::SceneResult, guard::Fault, verdict::Verdict};
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+/// What the grader was doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stage {
+    Judging,
+    Explaining,
+    Reporting,
+}
+
+impl Stage {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Judging => "judging",
+            Self::Explaining => "explaining",
+            Self::Reporting => "reporting",
+        }
+    }
+}
+
+/// The result of a scene on which the grader failed, with the beginning of its trace.
+pub(super) fn result(task: &SceneTask, folder: &Path, stage: Stage, fault: &Fault, trace: &[u8]) -> SceneResult {
+    let summary = format!("the grader failed while {} this scene: {fault}", stage.words());
+    let mut result = SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, summary);
+    result.details.push(match keep(folder, task, trace) {
+        Ok(path) => format!("the trace is kept in {}; please report this with the scene and the trace", path.display()),
+        Err(error) => format!("the trace could not be kept in {}: {error}", folder.display()),
+    });
+    result
+}
+
+/// Writes a trace into the folder under the name of its scene and its own digest.
+fn keep(folder: &Path, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
+    fs::create_dir_all(folder)?;
+    let scene: String =
+        task.name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    let digest = blake3::hash(trace).to_hex();
+    let path = folder.join(format!("{}-{}.bin", scene.trim_start_matches('.'), &digest[..8]));
+    fs::write(&path, trace)?;
+    Ok(path)
+}
+
+/// Lets tests have the grader fail: a program of this name makes it panic at this stage.
+#[cfg(test)]
+pub(super) fn injected(stage: Stage, program: &Path) {
+    let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    assert!(name != format!("fault-while-{}", stage.words()), "a fault of the grader's own");
+}
+
+#[cfg(not(test))]
+pub(super) const fn injected(_: Stage, _: &Path) {}

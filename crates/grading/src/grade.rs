@@ -1,0 +1,183 @@
+//! The grade: what one submission got, scene by scene.
+use super::{config::Visibility, verdict::Verdict};
+use fosssim_judge::{Rules, fair::Cause};
+use fosssim_mistakes::diagnose::{Explanation, common};
+use std::{ops::Deref, time::Duration};
+
+/// The grade of one submission on one suite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grade {
+    /// The submission's name: its file or folder name.
+    pub submission: String,
+    /// The suite's name.
+    pub suite: String,
+    /// The rule books that were asked; verdicts and points are by the official one.
+    pub rules: Rules,
+    /// The worst verdict of all scenes.
+    pub verdict: Verdict,
+    /// Points reached; `None` when the grader failed or was stopped before the last scene, which is nobody's zero.
+    pub points: Option<f64>,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// Groups in the suite's order.
+    pub groups: Vec<GroupGrade>,
+    /// Whether reports for students show what the program printed: not where groups are hidden, unless the suite says so.
+    pub shows_output: bool,
+    /// How the build ended, when the suite builds.
+    pub build: Option<Build>,
+    /// What weakened the sandbox, in words; empty when every required layer held.
+    pub warnings: Vec<String>,
+    /// Layers of the sandbox that were active.
+    pub layers: Vec<String>,
+    /// Wall time of all runs together, those taken from an earlier grading included.
+    pub wall: Duration,
+}
+
+impl Grade {
+    /// All scenes in order.
+    pub fn scenes(&self) -> impl Iterator<Item = &SceneGrade> {
+        self.groups.iter().flat_map(|group| &group.scenes)
+    }
+
+    /// Whether the grader failed somewhere, so that the grade must not reach a student.
+    #[must_use]
+    pub fn is_our_fault(&self) -> bool {
+        self.verdict == Verdict::JudgeError
+    }
+
+    /// Whether scenes were not run, so that there are no points yet.
+    #[must_use]
+    pub fn is_incomplete(&self) -> bool {
+        self.count(Verdict::NotRun) > 0
+    }
+
+    /// How many scenes the two rule books judge differently.
+    #[must_use]
+    pub fn differing(&self) -> usize {
+        self.scenes().filter(|scene| scene.differs.is_some()).count()
+    }
+
+    /// The mistake that explains most wrong scenes, where several have explanations: together they nearly always tell
+    /// mistakes apart that one scene can't.
+    #[must_use]
+    pub fn likely_mistake(&self) -> Option<Explanation> {
+        let explained: Vec<&[Explanation]> =
+            self.scenes().map(|scene| scene.explanations.as_slice()).filter(|list| !list.is_empty()).collect();
+        if explained.len() > 1 { common(explained) } else { None }
+    }
+
+    /// How many scenes' explanations name this mistake first.
+    #[must_use]
+    pub fn explained_by(&self, key: &str) -> usize {
+        let names = |one: &Explanation| one.key == key || one.same_as.iter().any(|other| other == key);
+        self.scenes().filter(|scene| scene.explanations.iter().any(names)).count()
+    }
+
+    /// How many scenes have this verdict.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.scenes().filter(|scene| scene.verdict == verdict).count()
+    }
+}
+
+/// The build step's end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Build {
+    /// Whether it succeeded.
+    pub succeeded: bool,
+    /// How it ended, in words.
+    pub end: String,
+    /// The compiler's output, capped; raw text that a report has to escape.
+    pub output: String,
+}
+
+/// One group of scenes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupGrade {
+    /// Its name.
+    pub name: String,
+    /// Who sees it.
+    pub visibility: Visibility,
+    /// Points reached; `None` when a scene has none.
+    pub points: Option<f64>,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// The worst verdict of its scenes.
+    pub verdict: Verdict,
+    /// Its scenes.
+    pub scenes: Vec<SceneGrade>,
+}
+
+/// One scene with its points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneGrade {
+    /// What happened.
+    pub result: SceneResult,
+    /// Points reached; `None` when the grader failed or did not come to run it, which is nobody's zero.
+    pub points: Option<f64>,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// Whether the result was taken from an earlier run.
+    pub cached: bool,
+}
+
+impl Deref for SceneGrade {
+    type Target = SceneResult;
+
+    fn deref(&self) -> &SceneResult {
+        &self.result
+    }
+}
+
+/// What happened on one scene: everything but its points, which follow from the suite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneResult {
+    /// The scene's name, `Group/name`.
+    pub scene: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// One sentence that says what happened.
+    pub summary: String,
+    /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
+    pub differs: Option<Cause>,
+    /// More lines of explanation: the first divergence, counts, hints. Plain text.
+    pub details: Vec<String>,
+    /// Likely mistakes, the likeliest first; no more of them than the suite's hints let through.
+    pub explanations: Vec<Explanation>,
+    /// Steps without a finding, of all steps.
+    pub right_steps: u32,
+    /// Steps of the scene.
+    pub steps: u32,
+    /// Processor time of the program.
+    pub cpu: Duration,
+    /// Wall time of the run.
+    pub wall: Duration,
+    /// Peak memory of the program in bytes, when known.
+    pub memory: Option<u64>,
+    /// What the program wrote to its standard output, capped; raw text that a report has to escape.
+    pub stdout: String,
+    /// What the program wrote to its standard error, capped; raw text that a report has to escape.
+    pub stderr: String,
+}
+
+impl SceneResult {
+    /// A scene without a run, with the reason.
+    #[must_use]
+    pub fn without_run(scene: &str, steps: u32, verdict: Verdict, summary: impl Into<String>) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            verdict,
+            summary: summary.into(),
+            differs: None,
+            details: Vec::new(),
+            explanations: Vec::new(),
+            right_steps: 0,
+            steps,
+            cpu: Duration::ZERO,
+            wall: Duration::ZERO,
+            memory: None,
+            stdout: String::new(),
+            stderr: String::new(),
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Faults of our own: what panics while one scene is judged, explained or reported must not end a class's grading.
+//!
+//! A panic is caught where the work on one scene begins, with its place in the source, and becomes a judge error of that
+//! scene. Nothing is repaired: what the work had in its hands is dropped.
+use std::{
+    any::Any,
+    cell::{Cell, RefCell},
+    fmt,
+    panic::{self, AssertUnwindSafe},
+    sync::Once,
+};
+
+/// A panic in words: the message and where in the source it was.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault(String);
+
+impl fmt::Display for Fault {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+thread_local! {
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+    static CAUGHT: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Does some work; a panic in it comes back as a fault and is not printed.
+///
+/// The caller has to drop what the work was changing, as after any error: its state is whatever the panic left.
+///
+/// # Errors
+/// When the work panics.
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
+    listen();
+    let outer = GUARDED.replace(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(work));
+    GUARDED.set(outer);
+    result.map_err(|payload| Fault(CAUGHT.take().unwrap_or_else(|| message(&*payload))))
+}
+
+/// Has panics of guarded work told to us, with their place; all others go where they went before.
+fn listen() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let others = panic::take_hook();
+        panic::set_hook(Box::new(move |panic| {
+            if !GUARDED.get() {
+                return others(panic);
+            }
+            let place = panic.location().map(|place| format!(" at {}:{}", place.file(), place.line()));
+            CAUGHT.set(Some(message(panic.payload()) + &place.unwrap_or_default()));
+        }));
+    });
+}
+
+/// The words of a panic, on one line.
+fn message(payload: &(dyn Any + Send)) -> String {
+    let words = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let words = words.or_else(|| payload.downcast_ref::<String>().cloned());
+    words.map_or_else(|| "a panic without words".to_owned(), |words| words.replace('\n', " "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_comes_back_with_its_words_and_place() {
+        let fault = guarded(|| -> u32 { panic!("no {}\nleft", "tea") }).expect_err("a panic").to_string();
+        assert!(fault.starts_with("no tea left at ") && fault.contains("guard.rs:"), "{fault}");
+        assert_eq!(guarded(|| 7), Ok(7));
+        // One within the other, and one that went through another thread.
+        let nested = guarded(|| guarded(|| panic!("inner")).map_err(|fault| fault.to_string().len()));
+        assert!(matches!(nested, Ok(Err(1..))), "{nested:?}");
+        // One that began on another thread goes on without a hook being asked.
+        let elsewhere = guarded(|| panic::resume_unwind(Box::new("elsewhere")));
+        assert_eq!(elsewhere, Err(Fault("elsewhere".to_owned())));
+    }
+}

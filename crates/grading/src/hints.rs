@@ -1,0 +1,157 @@
+//! How much a report tells a student, and what of findings and explanations that lets through.
+//!
+//! What is not to be told is cut here, before a report or the journal sees it, so that no format can let it out.
+use fosssim_judge::{Detail, Finding, PairWords};
+use fosssim_mistakes::diagnose::Explanation;
+use serde::Deserialize;
+
+/// How much a report tells a student.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hints {
+    /// The verdict only.
+    None,
+    /// Where: kind, step, pair and polynomial of the first divergence.
+    Where,
+    /// What: the likely mistake in a sentence, too.
+    What,
+    /// Everything: expected and actual values, and the mistake in detail. May give a right formula away.
+    Full,
+}
+
+impl Hints {
+    /// Its name in suites, and what it means in a few words.
+    #[must_use]
+    pub const fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::None => ("none", "the verdict only"),
+            Self::Where => ("where", "where the first divergence is"),
+            Self::What => ("what", "where the first divergence is, and the likely mistake in a sentence"),
+            Self::Full => ("full", "everything, formulas and values included"),
+        }
+    }
+
+    /// What of explanations may be told: nothing below [`Hints::What`]; at that level the sentence, which holds no formula;
+    /// exact forms, keys of others and examples in [`Hints::Full`] only.
+    #[must_use]
+    pub fn cut(self, explanations: Vec<Explanation>) -> Vec<Explanation> {
+        match self {
+            Self::None | Self::Where => Vec::new(),
+            Self::What => explanations
+                .into_iter()
+                .map(|explanation| Explanation {
+                    details: Vec::new(),
+                    example: None,
+                    same_as: Vec::new(),
+                    ..explanation
+                })
+                .collect(),
+            Self::Full => explanations,
+        }
+    }
+
+    /// What of the first divergence may be told, as a line.
+    #[must_use]
+    pub fn first_divergence(self, first: &Finding) -> Option<String> {
+        match self {
+            Self::None => None,
+            Self::Where | Self::What => {
+                Some(format!("first divergence: step {}{}: {}", first.step, place(&first.detail), first.kind()))
+            }
+            Self::Full => Some(format!("first divergence: {first}")),
+        }
+    }
+}
+
+/// Where in its step a finding lies, with a comma in front.
+fn place(detail: &Detail) -> String {
+    match detail {
+        Detail::MissedCollision { expected }
+        | Detail::WrongNormal { expected, .. }
+        | Detail::ContactTime { expected, .. } => {
+            format!(", {}", PairWords(expected.pair))
+        }
+        Detail::PolynomialDegree { place, .. }
+        | Detail::VanishingPolynomial { place, .. }
+        | Detail::Coefficient { place, .. }
+        | Detail::PassPositions { place }
+        | Detail::TrimmedDecision { place, .. }
+        | Detail::MixedForms { place } => format!(", {place}"),
+        Detail::Position { particle, .. } | Detail::Velocity { particle, .. } => format!(", particle {particle}"),
+        Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
+            format!(", objects {} and {}", actual.first, actual.second)
+        }
+        Detail::PolynomialCount { .. }
+        | Detail::PassCount { .. }
+        | Detail::RecordsDiffer { .. }
+        | Detail::ImpossibleLog => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_mistakes::{
+        diagnose::{Example, explain, formula_in},
+        student::{self, CATALOGUE, Kind, Student},
+    };
+    use fosssim_model::scene::original;
+
+    fn explanation() -> Explanation {
+        let example =
+            Example { step: 3, place: String::new(), given: Vec::new(), expected: vec![1.0], actual: vec![2.0] };
+        Explanation {
+            key: "pe-square-no-eh".to_owned(),
+            what: "A term is missing.".to_owned(),
+            details: vec!["t^2: (e.h) has weight 0, expected -4".to_owned()],
+            reproduced: 3,
+            samples: 3,
+            example: Some(example),
+            same_as: vec!["other".to_owned()],
+        }
+    }
+
+    #[test]
+    fn each_level_tells_more_and_formulas_come_last() {
+        let told = |hints: Hints| hints.cut(vec![explanation()]);
+        assert_eq!((told(Hints::None), told(Hints::Where)), (Vec::new(), Vec::new()));
+        let what = told(Hints::What).remove(0);
+        assert_eq!((what.what.as_str(), what.details.len(), what.example), ("A term is missing.", 0, None));
+        assert!(what.same_as.is_empty());
+        assert_eq!(told(Hints::Full), [explanation()]);
+    }
+
+    #[test]
+    fn values_are_told_in_full_only() {
+        let detail = Detail::Position { particle: 2, expected: [1.5, 0.0], actual: [1.25, 0.0], residual: 0.25 };
+        let line = |hints: Hints| hints.first_divergence(&Finding { step: 4, frame: 8, detail });
+        assert_eq!(line(Hints::None), None);
+        assert_eq!(line(Hints::Where).as_deref(), Some("first divergence: step 4, particle 2: wrong position"));
+        assert_eq!(line(Hints::What), line(Hints::Where));
+        assert!(line(Hints::Full).expect("a line").contains("1.25"));
+    }
+
+    /// An edge that turns and two discs that meet it and each other, above a slanted half-plane.
+    const SCENE: &str = "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\
+        <collision type=\"hybrid\" COR=\"0.8\" maxiters=\"2\"/>\
+        <particle m=\"1\" px=\"-2\" py=\"0.1\" vx=\"3\" vy=\"0\" fixed=\"0\" radius=\"0.3\"/>\
+        <particle m=\"2\" px=\"0\" py=\"-1\" vx=\"0.5\" vy=\"0\" fixed=\"0\" radius=\"0.25\"/>\
+        <particle m=\"3\" px=\"0.5\" py=\"1\" vx=\"-0.25\" vy=\"0\" fixed=\"0\" radius=\"0.2\"/>\
+        <particle m=\"1\" px=\"1\" py=\"-2\" vx=\"-3\" vy=\"-1\" fixed=\"0\" radius=\"0.2\"/>\
+        <edge i=\"1\" j=\"2\" radius=\"0.15\"/><halfplane px=\"0\" py=\"-2.5\" nx=\"1\" ny=\"3\"/></scene>";
+
+    #[test]
+    fn no_mistake_of_the_catalogue_gives_a_formula_away_below_full() {
+        let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
+        let mut told = 0;
+        for row in CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong) {
+            let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+            for one in Hints::What.cut(explain(&scene, &trace)) {
+                assert_eq!(formula_in(&one.what), None, "{}: {one:?}", row.id);
+                assert!(one.details.is_empty() && one.same_as.is_empty() && one.example.is_none(), "{one:?}");
+                told += 1;
+            }
+        }
+        assert!(told > 100, "{told} explanations");
+    }
+}

@@ -1,0 +1,198 @@
+//! A suite with its scenes looked up: what a grading really runs.
+use super::{
+    config::{self, BuildStep, Hints, Patience, RunLimits, Suite, SuiteError},
+    execute::SceneTask,
+    library,
+    score::Stakes,
+};
+use fosssim_judge::Rules;
+use fosssim_model::scene;
+use std::{collections::BTreeMap, path::Path};
+
+/// The suites that come with the program: name and text.
+const BUILT_IN: [(&str, &str); 2] = [("t2m2", include_str!("t2m2.toml")), ("earlier", include_str!("earlier.toml"))];
+
+/// A suite ready to run.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Its name.
+    pub name: String,
+    /// The command line.
+    pub run: Vec<String>,
+    /// The rule books to ask.
+    pub rules: Rules,
+    /// How much a report tells.
+    pub hints: Hints,
+    /// Whether students see what their programs print even though some groups are not visible to them.
+    pub show_output: bool,
+    /// The build step.
+    pub build: Option<BuildStep>,
+    /// Limits of each run.
+    pub limits: RunLimits,
+    /// When the rest of a submission is not run any more.
+    pub patience: Patience,
+    /// The groups.
+    pub groups: Vec<PlannedGroup>,
+}
+
+/// A group with its scenes.
+#[derive(Debug, Clone)]
+pub struct PlannedGroup {
+    /// Its name.
+    pub name: String,
+    /// Its points, credit and visibility.
+    pub stakes: Stakes,
+    /// Its scenes, in the order of the patterns, each pattern's in alphabetical order.
+    pub scenes: Vec<SceneTask>,
+}
+
+impl Plan {
+    /// All scenes in order.
+    pub fn scenes(&self) -> impl Iterator<Item = &SceneTask> {
+        self.groups.iter().flat_map(|group| &group.scenes)
+    }
+
+    /// Points that can be reached.
+    #[must_use]
+    pub fn max_points(&self) -> f64 {
+        self.groups.iter().map(|group| group.stakes.points).sum()
+    }
+}
+
+/// The text of a built-in suite.
+#[must_use]
+pub fn built_in(name: &str) -> Option<&'static str> {
+    BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// The names of the built-in suites.
+pub fn built_in_names() -> impl Iterator<Item = &'static str> {
+    BUILT_IN.iter().map(|(name, _)| *name)
+}
+
+/// Looks up the scenes of a suite; files are relative to `folder`.
+///
+/// # Errors
+/// Patterns that match nothing, scenes that can't be read or are not sound, each at the pattern's position.
+pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
+    let mut problems = Vec::new();
+    let mut seen = BTreeMap::new();
+    let mut groups = Vec::new();
+    for group in &suite.groups {
+        let mut scenes = Vec::new();
+        for (pattern, &position) in group.scenes.iter().zip(&group.positions) {
+            let found = match pattern.strip_prefix("asset:") {
+                Some(pattern) => embedded(pattern),
+                None => files(pattern, folder),
+            };
+            match found {
+                Ok(found) => {
+                    for (name, xml) in found {
+                        match seen.insert(name.clone(), group.name.clone()) {
+                            Some(other) => {
+                                problems.push((position, format!("scene {name} is in group \"{other}\" already")));
+                            }
+                            None => match scene::read(&name, &xml) {
+                                Ok(loaded) => {
+                                    // A file of an embedded scene's name has a recording only if it is that scene.
+                                    let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
+                                    let recording = known.then(|| library::recording(&name)).flatten();
+                                    scenes.push(SceneTask { name, xml, scene: loaded.scene, recording });
+                                }
+                                Err(error) => problems.push((position, format!("scene {name} is not sound:\n{error}"))),
+                            },
+                        }
+                    }
+                }
+                Err(message) => problems.push((position, message)),
+            }
+        }
+        let stakes = Stakes { points: group.points, credit: group.credit, visibility: group.visibility };
+        groups.push(PlannedGroup { name: group.name.clone(), stakes, scenes });
+    }
+    if !problems.is_empty() {
+        return Err(SuiteError { problems });
+    }
+    Ok(Plan {
+        name: suite.name.clone(),
+        run: suite.run.clone(),
+        rules: suite.rules,
+        hints: suite.hints,
+        show_output: suite.show_output,
+        build: suite.build.clone(),
+        limits: suite.limits,
+        patience: suite.patience,
+        groups,
+    })
+}
+
+/// Reads, validates and looks up a suite in one go.
+///
+/// # Errors
+/// As [`config::read`] and [`resolve`].
+pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
+    resolve(&config::read(text)?, folder)
+}
+
+type Found = Vec<(String, Vec<u8>)>;
+
+fn embedded(pattern: &str) -> Result<Found, String> {
+    let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern asset:{pattern}: {error}"))?;
+    let found: Found = library::names()
+        .filter(|name| glob.matches(name))
+        .filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())))
+        .collect();
+    if found.is_empty() {
+        return Err(format!("no embedded scene matches asset:{pattern}; `fosssim-oracle suite scenes` lists them"));
+    }
+    Ok(found)
+}
+
+fn files(pattern: &str, folder: &Path) -> Result<Found, String> {
+    let path = folder.join(pattern);
+    let text = path.to_str().ok_or_else(|| format!("{}: the folder's name is not UTF-8", folder.display()))?;
+    let paths = glob::glob(text).map_err(|error| format!("pattern {pattern}: {error}"))?;
+    let mut found = Found::new();
+    for path in paths {
+        let path = path.map_err(|error| format!("{}: {}", error.path().display(), error.error()))?;
+        let relative = path.strip_prefix(folder).unwrap_or(&path);
+        let name = relative.with_extension("").to_string_lossy().into_owned();
+        let size = std::fs::metadata(&path).map(|data| data.len());
+        let size = size.map_err(|error| format!("{}: {error}", path.display()))?;
+        if size > scene::LARGEST_SCENE as u64 {
+            return Err(format!("{} is too large for a scene ({size} bytes)", path.display()));
+        }
+        let xml = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        found.push((name, xml));
+    }
+    if found.is_empty() {
+        return Err(format!("no scene file matches {pattern} (files are looked up beside the suite)"));
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_suite_finds_its_scenes() {
+        for name in built_in_names() {
+            let plan = load(built_in(name).expect("its text"), Path::new("nowhere")).expect(name);
+            assert!(plan.scenes().count() > 10, "{name}");
+            assert!(plan.max_points() > 0.0);
+        }
+        load(config::TEMPLATE, Path::new("nowhere")).expect("the template");
+    }
+
+    #[test]
+    fn missing_and_doubled_scenes_are_told_at_their_patterns() {
+        let text = "schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:NoSuchTests/*\",\n \"no/*.xml\"]\n\
+                    [[group]]\nname = \"b\"\nscenes = [\"asset:SimpleTests/*\", \"asset:SimpleTests/*\"]\n";
+        let error = load(text, Path::new("nowhere")).expect_err("wrong").to_string();
+        assert!(error.contains("5:11: no embedded scene matches asset:NoSuchTests/*"), "{error}");
+        assert!(error.contains("6:2: no scene file matches no/*.xml"), "{error}");
+        assert!(error.contains("9:34: scene SimpleTests/"), "{error}");
+        assert!(error.contains("is in group \"b\" already"), "{error}");
+    }
+}

@@ -1,0 +1,160 @@
+//! Recordings: the reference traces of scenes, with a manifest and digests per step that diff well.
+//!
+//! Knows no files: it takes scenes and gives bytes, and compares them with what was recorded before. Layout of the
+//! folder `references`: `<Group>/<name>.bin.zst` (the trace), `<Group>/<name>.steps` (a digest per step) and
+//! `manifest.txt` (name, steps, bytes, SHA-256).
+use fosssim_model::{
+    scene::{self, Problems, Scene},
+    sim::{RootSearch, Simulation, StepError},
+    trace::{Digests, Layout, Recorder},
+};
+use std::io::{self, Read};
+
+/// How hard zstd tries; recordings are made seldom and shipped often.
+const COMPRESSION: i32 = 19;
+
+/// The reference trace of one scene.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Recording {
+    /// The scene's name, `Group/name`.
+    pub name: String,
+    /// Steps of the scene.
+    pub steps: u32,
+    /// The trace.
+    pub trace: Vec<u8>,
+    /// The text of its `.steps` file: a digest per step, sizes and the SHA-256 of the whole.
+    pub digests: String,
+    sha256: String,
+}
+
+/// Why a scene can't be recorded.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The scene has errors.
+    #[error("the scene has errors:\n{0}")]
+    Scene(#[from] Problems),
+    /// A step has no result.
+    #[error("the simulation stops: {0}")]
+    Step(#[from] StepError),
+    /// The trace could not be gathered.
+    #[error("the trace could not be gathered: {0}")]
+    Io(#[from] io::Error),
+}
+
+impl Recording {
+    /// Simulates a scene given as XML.
+    ///
+    /// # Errors
+    /// When the scene has errors, or a step has no result.
+    pub fn of(name: &str, xml: &[u8]) -> Result<Self, RecordingError> {
+        let scene = scene::read(name, xml)?.scene;
+        let trace = trace(&scene)?;
+        let digests = Digests::of(&trace[..], Layout::of(&scene));
+        Ok(Self {
+            name: name.to_owned(),
+            steps: scene.steps(),
+            trace,
+            sha256: digests.sha256.to_string(),
+            digests: digests.to_string(),
+        })
+    }
+
+    /// The contents of its `.bin.zst` file.
+    ///
+    /// # Errors
+    /// When zstd fails.
+    pub fn packed(&self) -> io::Result<Vec<u8>> {
+        zstd::encode_all(&self.trace[..], COMPRESSION)
+    }
+
+    /// Its line of the manifest.
+    fn line(&self) -> String {
+        format!("{} {} steps {} bytes sha256 {}\n", self.name, self.steps, self.trace.len(), self.sha256)
+    }
+
+    /// What differs from the recorded files, as a text for people; `None` when everything is the same.
+    #[must_use]
+    pub fn difference(&self, packed: Option<&[u8]>, steps: Option<&[u8]>) -> Option<String> {
+        let Some(packed) = packed else { return Some(format!("{}: there is no recording\n", self.name)) };
+        let mut text = String::new();
+        match unpack(packed, self.trace.len()) {
+            Err(error) => text += &format!("{}: the recording can't be unpacked: {error}\n", self.name),
+            Ok(recorded) if recorded != self.trace => {
+                let at = recorded.iter().zip(&self.trace).take_while(|(old, new)| old == new).count();
+                text += &format!("{}: the traces part at byte {at}\n", self.name);
+            }
+            Ok(_) => {}
+        }
+        let steps = String::from_utf8_lossy(steps.unwrap_or_default());
+        text += &diff(&format!("{}.steps", self.name), &steps, &self.digests);
+        (!text.is_empty()).then_some(text)
+    }
+}
+
+/// The manifest of recordings in their order.
+#[must_use]
+pub fn manifest(recordings: &[Recording]) -> String {
+    recordings.iter().map(Recording::line).collect()
+}
+
+/// A unified diff from what was recorded to what is simulated now; empty when they are the same.
+#[must_use]
+pub fn diff(name: &str, recorded: &str, now: &str) -> String {
+    let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
+    fosssim_textdiff::unified((&old, recorded), (&new, now))
+}
+
+/// The trace of a scene.
+pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, RecordingError> {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut recorder)?;
+    }
+    Ok(recorder.finish()?.0)
+}
+
+/// The trace of a recording; more than the expected bytes are cut to one more, which is enough to differ.
+fn unpack(packed: &[u8], expected: usize) -> io::Result<Vec<u8>> {
+    let mut trace = Vec::with_capacity(expected);
+    zstd::stream::read::Decoder::new(packed)?.take(expected as u64 + 1).read_to_end(&mut trace)?;
+    Ok(trace)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &[u8] = br#"<scene><duration time="0.04"/><integrator type="explicit-euler" dt="0.01"/>
+        <particle m="1" px="0" py="0" vx="1" vy="0" fixed="0"/></scene>"#;
+
+    #[test]
+    fn a_recording_agrees_with_itself() {
+        let recording = Recording::of("Group/name", SCENE).unwrap();
+        assert_eq!((recording.steps, recording.trace.len()), (4, 5 * 32));
+        let packed = recording.packed().unwrap();
+        assert_eq!(recording.difference(Some(&packed), Some(recording.digests.as_bytes())), None);
+        assert!(manifest(&[recording]).starts_with("Group/name 4 steps 160 bytes sha256 "));
+    }
+
+    #[test]
+    fn a_changed_byte_is_shown_with_its_place_and_its_step() {
+        let recording = Recording::of("Group/name", SCENE).unwrap();
+        let mut other = recording.clone();
+        other.trace[32 * 3 + 1] ^= 1;
+        let layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 4 };
+        other.digests = Digests::of(&other.trace[..], layout).to_string();
+        let shown = recording.difference(Some(&other.packed().unwrap()), Some(other.digests.as_bytes())).unwrap();
+        assert!(shown.contains("part at byte 97\n"), "{shown}");
+        assert!(shown.contains("\n-3 ") && shown.contains("\n+3 ") && !shown.contains("\n-2 "), "{shown}");
+    }
+
+    #[test]
+    fn a_missing_or_damaged_recording_is_said() {
+        let recording = Recording::of("Group/name", SCENE).unwrap();
+        assert!(recording.difference(None, None).unwrap().contains("there is no recording"));
+        let packed = recording.packed().unwrap();
+        let shown = recording.difference(Some(&packed[..packed.len() - 3]), None).unwrap();
+        assert!(shown.contains("can't be unpacked"), "{shown}");
+    }
+}

@@ -1,0 +1,468 @@
+//! Brings a submission to where it can be run: a copy that nobody else reads or changes, digested while it is copied.
+//!
+//! Whatever is copied is opened once, beneath the submission's folder and without following links or waiting, and judged
+//! by the open file: who may write in that folder can exchange a name, not what was opened. What can't be copied for what
+//! it is, or for who may read it, is the submission's own fault and not the grader's.
+//! Sources are built in a copy of their folder, in the sandbox, so that a build changes nothing of the submission.
+use super::{config::BuildStep, execute::Cancellation, grade::Build, temporary::Temporary};
+use fosssim_sandbox::{
+    Backend, Ended, Identity, Job, Limits, Policy, SandboxError, StartProblem,
+    collect::{self, CollectError, Entry, Folder},
+    is_own,
+};
+use std::{
+    ffi::OsStr,
+    fs::{self, File, Permissions},
+    io::{self, Read, Seek, SeekFrom, Write},
+    os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt},
+    path::{Path, PathBuf},
+};
+
+/// A submission's folder may hold so many bytes and files, nested so deep; more is no homework.
+const LARGEST_FOLDER: u64 = 1 << 30;
+const MOST_FILES: u64 = 20_000;
+const DEEPEST: u32 = 64;
+/// What a report keeps of the compiler's output.
+const KEPT_OUTPUT: usize = 64 << 10;
+/// Bytes that are copied at one go.
+const AT_ONE_GO: usize = 1 << 16;
+
+/// A program to run, with its digest. The copy goes away with it.
+#[derive(Debug)]
+pub struct Staged {
+    /// Where it is.
+    pub program: PathBuf,
+    /// The digest of its bytes; of its path when there is nothing that can be run.
+    pub digest: blake3::Hash,
+    /// How it was built.
+    pub build: Option<Build>,
+    /// Why the submission itself can't be run: its own fault.
+    pub refused: Option<String>,
+    /// Which file the copy is.
+    pub(super) identity: Option<Identity>,
+    _folder: Option<Temporary>,
+}
+
+/// Why a submission can't be staged: our fault or the machine's.
+#[derive(Debug, thiserror::Error)]
+pub enum StagingError {
+    /// The operating system refuses.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// The build command can't be found.
+    #[error("build command {command} is not on this machine; install it, or change [build] in the suite")]
+    NoCommand {
+        /// Its name.
+        command: String,
+    },
+    /// The sandbox failed.
+    #[error(transparent)]
+    Sandbox(#[from] SandboxError),
+}
+
+fn at(path: &Path) -> impl FnOnce(io::Error) -> StagingError {
+    let path = path.to_owned();
+    move |source| StagingError::Io { path, source }
+}
+
+/// Why a submission's files are not copied.
+#[derive(Debug)]
+enum CopyError {
+    /// Its own doing, in words.
+    Submission(String),
+    /// Ours or the machine's.
+    Ours(StagingError),
+}
+
+impl From<StagingError> for CopyError {
+    fn from(error: StagingError) -> Self {
+        Self::Ours(error)
+    }
+}
+
+/// What a failure to open or read part of a submission means: closed or vanished files are the submission's doing.
+fn unreadable(name: &Path, error: io::Error) -> CopyError {
+    // A path may be as long as the submission likes, and a disk that fails is the machine's.
+    let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
+    match closed || error.kind() == io::ErrorKind::InvalidFilename {
+        true => CopyError::Submission(format!("{} can't be read: {error}", name.to_string_lossy().escape_debug())),
+        false => CopyError::Ours(at(name)(error)),
+    }
+}
+
+/// Copies a program, keeping whether it may be executed. What can't be run for what it is, is refused with the reason.
+///
+/// # Errors
+/// When the file can't be read for a fault of the machine, or the copy can't be written.
+pub fn program(path: &Path) -> Result<Staged, StagingError> {
+    let could_not_start = |problem: StartProblem| format!("the program {}", Ended::CouldNotStart(problem));
+    match collect::open_file(path, true) {
+        Ok((file, _)) => copied(file, path),
+        Err(CollectError::NotRegular { what: "a folder", .. }) => {
+            Ok(Staged::refused(path, could_not_start(StartProblem::IsFolder)))
+        }
+        Err(CollectError::NotRegular { .. }) => Ok(Staged::refused(path, could_not_start(StartProblem::NotAFile))),
+        Err(CollectError::Missing { .. }) => Ok(Staged::refused(path, could_not_start(StartProblem::NotFound))),
+        Err(CollectError::System { source, .. }) => match unreadable(path, source) {
+            CopyError::Submission(why) => Ok(Staged::refused(path, format!("the program can't be used: {why}"))),
+            CopyError::Ours(error) => Err(error),
+        },
+        Err(error) => Ok(Staged::refused(path, format!("the program can't be used: {error}"))),
+    }
+}
+
+/// As [`program`], for a program at `name` in a folder that somebody else filled: a link that leads elsewhere, to
+/// another's submission perhaps, is refused.
+///
+/// # Errors
+/// As for [`program`].
+pub fn program_in(folder: &Path, name: &str) -> Result<Staged, StagingError> {
+    let path = folder.join(name);
+    match collect::open_regular_file(folder, name, LARGEST_FOLDER) {
+        Ok((file, _)) => copied(file, &path),
+        Err(CollectError::Missing { .. }) => {
+            Ok(Staged::refused(&path, format!("the program {}", Ended::CouldNotStart(StartProblem::NotFound))))
+        }
+        Err(CollectError::System { source, .. })
+            if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
+        {
+            Err(at(&path)(source))
+        }
+        Err(error) => Ok(Staged::refused(&path, format!("the program can't be used: {error}"))),
+    }
+}
+
+/// The digest of a program as it lies there, without a copy; `None` for what [`program`] refuses, and for links.
+#[must_use]
+pub fn digest(path: &Path) -> Option<blake3::Hash> {
+    let (file, length) = collect::open_file(path, false).ok()?;
+    let mut hasher = blake3::Hasher::new();
+    (length <= LARGEST_FOLDER && hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok()).then(|| hasher.finalize())
+}
+
+impl Staged {
+    /// Nothing that could be run.
+    fn nothing(path: &Path) -> Self {
+        let digest = blake3::hash(path.as_os_str().as_encoded_bytes());
+        Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
+    }
+
+    fn refused(path: &Path, why: String) -> Self {
+        Self { refused: Some(why), ..Self::nothing(path) }
+    }
+}
+
+/// Copies an open program.
+fn copied(file: File, path: &Path) -> Result<Staged, StagingError> {
+    let folder = Temporary::make("program").map_err(at(&std::env::temp_dir()))?;
+    let copy = folder.path().join(path.file_name().unwrap_or_else(|| "program".as_ref()));
+    let metadata = file.metadata().map_err(at(path))?;
+    let mut room = LARGEST_FOLDER;
+    let digest = match copy_file(file, path, &copy, &mut room) {
+        Ok(digest) => digest,
+        Err(CopyError::Submission(why)) => {
+            return Ok(Staged::refused(path, format!("the program can't be used: {why}")));
+        }
+        Err(CopyError::Ours(error)) => return Err(error),
+    };
+    if is_own(LARGEST_FOLDER - room, &digest, (metadata.dev(), metadata.ino())) {
+        let why = Ended::CouldNotStart(StartProblem::GradersOwn);
+        return Ok(Staged::refused(path, format!("the program {why}")));
+    }
+    let identity = Identity::of(&copy);
+    Ok(Staged { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
+}
+
+/// Builds the sources in `folder`, in a copy, and stages the program that comes out of it. A build that fails is no
+/// error: [`Staged::build`] tells of it.
+///
+/// # Errors
+/// Faults of ours or of the machine.
+pub fn build(
+    sources: &Path,
+    step: &BuildStep,
+    backend: &Backend,
+    cancellation: &Cancellation,
+) -> Result<Staged, StagingError> {
+    let folder = Temporary::make("build").map_err(at(&std::env::temp_dir()))?;
+    let copy = folder.path().join("submission");
+    let failed = |end: String, output: String| {
+        let build = Some(Build { succeeded: false, end, output });
+        Staged { build, ..Staged::nothing(&sources.join(&step.program)) }
+    };
+    match copy_sources(sources, &copy) {
+        Err(CopyError::Submission(why)) => {
+            return Ok(failed(format!("the submission can't be built: {why}"), String::new()));
+        }
+        Err(CopyError::Ours(error)) => return Err(error),
+        Ok(()) => {}
+    }
+    let Some((command, arguments)) = step.command.split_first() else {
+        return Err(StagingError::NoCommand { command: String::new() });
+    };
+    let tool = match find_tool(command, &copy) {
+        Some(tool) => tool,
+        // A script of the submission's own that is missing is the submission's fault.
+        None if command.contains('/') => {
+            return Ok(failed(format!("the submission holds no {command}, which builds it"), String::new()));
+        }
+        None => return Err(StagingError::NoCommand { command: command.clone() }),
+    };
+    let limits = Limits {
+        cpu: step.wall,
+        wall: step.wall,
+        memory: step.memory,
+        output_bytes: 4 << 20,
+        folder_bytes: 4 << 30,
+        folder_files: 100_000,
+        processes: 128,
+        open_files: 1024,
+        ..Limits::default()
+    };
+    let job = Job::new(tool, &copy).arguments(arguments.iter().cloned()).policy(Policy::Tools).limits(limits);
+    let running = backend.start(&job)?;
+    let _registered = cancellation.register(running.canceller());
+    let outcome = running.wait()?;
+    let mut output = outcome.stdout.bytes.clone();
+    output.extend_from_slice(&outcome.stderr.bytes);
+    let cut = output.len() > KEPT_OUTPUT || outcome.stdout.truncated || outcome.stderr.truncated;
+    output.truncate(KEPT_OUTPUT);
+    let mut output = String::from_utf8_lossy(&output).into_owned();
+    if cut {
+        output.push_str("\n[cut short]");
+    }
+    if outcome.ended != Ended::Exited(0) {
+        return Ok(failed(format!("the build {}", outcome.ended), output));
+    }
+    // The build could have left a link to anything where the program should be.
+    match collect::open_regular_file(&copy, &step.program, LARGEST_FOLDER) {
+        Ok((file, _)) => {
+            let build = Some(Build { succeeded: true, end: "the build succeeded".to_owned(), output });
+            Ok(Staged { build, ..copied(file, &copy.join(&step.program))? })
+        }
+        Err(CollectError::Missing { .. }) => Ok(failed(format!("the build made no {}", step.program), output)),
+        Err(error) => Ok(failed(format!("what the build made can't be used: {error}"), output)),
+    }
+}
+
+/// Copies an open regular file, whether it may be executed, and digests it on the way. Holes stay holes. `room` is how
+/// many bytes it may have; it is made smaller by them.
+fn copy_file(mut source: File, from: &Path, to: &Path, room: &mut u64) -> Result<blake3::Hash, CopyError> {
+    const ANYBODY_EXECUTES: u32 = 0o111;
+    let mode = source.metadata().map_err(at(from))?.permissions().mode();
+    let mode = if mode & ANYBODY_EXECUTES == 0 { 0o644 } else { 0o755 };
+    let mut target = File::options().write(true).create_new(true).mode(mode).open(to).map_err(at(to))?;
+    let mut hasher = blake3::Hasher::new();
+    let mut buffer = vec![0; AT_ONE_GO];
+    let mut length = 0;
+    loop {
+        let read = match source.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(read) => &buffer[..read],
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(unreadable(from, error)),
+        };
+        // The file may have grown since anybody looked at its length.
+        *room = room.checked_sub(read.len() as u64).ok_or_else(too_large)?;
+        hasher.update(read);
+        length += read.len() as u64;
+        if read.iter().all(|byte| *byte == 0) {
+            target.seek(SeekFrom::Start(length)).map_err(at(to))?;
+        } else {
+            target.write_all(read).map_err(at(to))?;
+        }
+    }
+    target.set_len(length).map_err(at(to))?;
+    // The mask of new files may have taken bits away.
+    target.set_permissions(Permissions::from_mode(mode)).map_err(at(to))?;
+    Ok(hasher.finalize())
+}
+
+fn too_large() -> CopyError {
+    CopyError::Submission(format!(
+        "it holds more than {MOST_FILES} files or {LARGEST_FOLDER} bytes: that is no submission"
+    ))
+}
+
+/// What of a submission may still be copied.
+struct Budget {
+    bytes: u64,
+    files: u64,
+}
+
+/// Copies a submission's folder to a new one that only we may enter.
+fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
+    let mut budget = Budget { bytes: LARGEST_FOLDER, files: MOST_FILES };
+    let source = Folder::open(from).map_err(|error| unreadable(from, error))?;
+    fs::DirBuilder::new().mode(0o700).create(to).map_err(at(to))?;
+    let target = Folder::open(to).map_err(at(to))?;
+    copy_folder(&source, Path::new(""), &target, 1, &mut budget)
+}
+
+/// Copies files and folders; links and everything else stay behind. `name` is the folder's own, for messages.
+fn copy_folder(from: &Folder, name: &Path, to: &Folder, depth: u32, budget: &mut Budget) -> Result<(), CopyError> {
+    if depth > DEEPEST {
+        let top = name.components().next().map(|part| part.as_os_str().to_string_lossy().escape_debug().to_string());
+        return Err(CopyError::Submission(format!(
+            "its folders are nested more than {DEEPEST} deep, in {}",
+            top.unwrap_or_default()
+        )));
+    }
+    for entry in from.names().map_err(|error| unreadable(name, error))? {
+        budget.files = budget.files.checked_sub(1).ok_or_else(too_large)?;
+        let (inner, target) = (name.join(&entry), to.path().join(&entry));
+        match from.entry(OsStr::new(&entry)) {
+            Ok(Entry::File(file)) => {
+                let length = file.metadata().map_err(at(&inner))?.len();
+                if length > budget.bytes {
+                    return Err(too_large());
+                }
+                copy_file(file, &inner, &target, &mut budget.bytes)?;
+            }
+            Ok(Entry::Folder(folder)) => {
+                fs::create_dir(&target).map_err(at(&inner))?;
+                let target = Folder::open(&target).map_err(at(&inner))?;
+                copy_folder(&folder, &inner, &target, depth + 1, budget)?;
+            }
+            Ok(Entry::Other) => {}
+            Err(error) => return Err(unreadable(&inner, error)),
+        }
+    }
+    Ok(())
+}
+
+/// A command by its path, relative to the sources, or by its name in the system's folders.
+fn find_tool(command: &str, sources: &Path) -> Option<PathBuf> {
+    let candidates: Vec<PathBuf> = if command.contains('/') {
+        vec![sources.join(command)]
+    } else {
+        ["/usr/local/bin", "/usr/bin", "/bin"].map(|folder| Path::new(folder).join(command)).into()
+    };
+    candidates.into_iter().find(|path| path.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::fs::symlink;
+    use std::process::Command;
+
+    use super::*;
+
+    fn why(copied: Result<(), CopyError>) -> String {
+        match copied {
+            Err(CopyError::Submission(why)) => why,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn folders_that_are_nested_too_deep_are_the_submissions_own_fault() {
+        let folder = tempfile::tempdir().unwrap();
+        let sources = folder.path().join("sources");
+        std::fs::create_dir_all(sources.join("deep/".repeat(60))).unwrap();
+        copy_sources(&sources, &folder.path().join("copy")).unwrap();
+        assert!(folder.path().join("copy").join("deep/".repeat(60)).is_dir());
+        std::fs::create_dir_all(sources.join("deeper/".repeat(500))).unwrap();
+        let why = why(copy_sources(&sources, &folder.path().join("other")));
+        assert!(why.contains("nested more than 64 deep") && why.contains("deeper"), "{why}");
+        collect::remove_folder(&sources).unwrap();
+    }
+
+    #[test]
+    fn only_files_and_folders_are_copied_and_nothing_is_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let sources = folder.path().join("sources");
+        std::fs::create_dir(&sources).unwrap();
+        assert!(Command::new("mkfifo").arg(sources.join("pipe")).status().unwrap().success());
+        let _socket = std::os::unix::net::UnixListener::bind(sources.join("socket")).unwrap();
+        symlink("/etc/passwd", sources.join("link")).unwrap();
+        symlink("/etc", sources.join("way")).unwrap();
+        std::fs::write(sources.join("file"), "text").unwrap();
+        let copy = folder.path().join("copy");
+        copy_sources(&sources, &copy).unwrap();
+        let names: Vec<_> = std::fs::read_dir(&copy).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(names, ["file"]);
+        assert_eq!(copy.metadata().unwrap().permissions().mode() & 0o777, 0o700, "closed to others");
+        for name in ["pipe", "socket"] {
+            let staged = program(&sources.join(name)).unwrap();
+            assert!(staged.refused.is_some() && digest(&sources.join(name)).is_none(), "{name}");
+        }
+        assert!(program_in(&sources, "link").unwrap().refused.is_some_and(|why| why.contains("symbolic link")));
+    }
+
+    #[test]
+    fn whoever_exchanges_a_file_for_a_link_meanwhile_gains_nothing() {
+        const ROUNDS: u32 = 300;
+        let folder = tempfile::tempdir().unwrap();
+        let sources = folder.path().join("sources");
+        std::fs::create_dir(&sources).unwrap();
+        let (secret, file, link, honest) = (folder.path().join("secret"), "main.cpp", "spare", "int main() {}");
+        std::fs::write(&secret, "the secret").unwrap();
+        std::fs::write(sources.join("honest"), honest).unwrap();
+        std::fs::write(sources.join(file), honest).unwrap();
+        let done = std::sync::atomic::AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while !done.load(std::sync::atomic::Ordering::Relaxed) {
+                    symlink(&secret, sources.join(link)).unwrap();
+                    std::fs::rename(sources.join(link), sources.join(file)).unwrap();
+                    std::fs::copy(sources.join("honest"), sources.join(link)).unwrap();
+                    std::fs::rename(sources.join(link), sources.join(file)).unwrap();
+                }
+            });
+            for round in 0..ROUNDS {
+                let copy = folder.path().join(format!("copy{round}"));
+                // It may fail because an entry has gone; the rest of the folder is then the submission's own fault.
+                if !matches!(copy_sources(&sources, &copy), Err(CopyError::Ours(_))) {
+                    let text = std::fs::read_to_string(copy.join(file)).unwrap_or_default();
+                    assert!(!text.contains("secret"), "a link was followed");
+                }
+                std::fs::remove_dir_all(&copy).unwrap();
+            }
+            done.store(true, std::sync::atomic::Ordering::Relaxed);
+        });
+    }
+
+    #[test]
+    fn holes_are_digested_and_not_written_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let sparse = folder.path().join("sparse");
+        let file = File::create(&sparse).unwrap();
+        file.set_len(200 << 20).unwrap();
+        std::fs::set_permissions(&sparse, Permissions::from_mode(0o755)).unwrap();
+        let staged = program(&sparse).unwrap();
+        let copy = staged.program.metadata().unwrap();
+        assert_eq!(copy.len(), 200 << 20);
+        assert!(copy.blocks() * 512 < 1 << 20, "{} blocks", copy.blocks());
+        let mut hasher = blake3::Hasher::new();
+        hasher.update_reader(File::open(&sparse).unwrap()).unwrap();
+        assert_eq!(staged.digest, hasher.finalize());
+    }
+
+    #[test]
+    fn what_is_too_large_is_the_submissions_own_fault() {
+        let folder = tempfile::tempdir().unwrap();
+        let sources = folder.path().join("sources");
+        std::fs::create_dir(&sources).unwrap();
+        File::create(sources.join("huge")).unwrap().set_len(100 << 30).unwrap();
+        assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("no submission"));
+        let staged = program(&folder.path().join("none")).unwrap();
+        assert!(staged.refused.unwrap().contains("no such program"));
+        let staged = program(&sources).unwrap();
+        assert!(staged.refused.unwrap().contains("this is a folder"));
+    }
+
+    #[test]
+    fn this_very_program_is_no_submission_under_any_name() {
+        let own = std::env::current_exe().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let copy = folder.path().join("FOSSSim");
+        std::fs::copy(own, &copy).unwrap();
+        assert!(program(&copy).unwrap().refused.unwrap().contains("the grader's own program"));
+    }
+}

@@ -1,0 +1,200 @@
+//! The grader's temporary folders, which nobody else reads, and what is left of those of graders that were killed.
+//!
+//! All of a grader's folders lie in one, in which a locked file says that the grader lives. A lock is seen wherever the
+//! folder is: by graders in other containers, too, to whom our process number means nothing or somebody else.
+use fosssim_sandbox::collect;
+use std::{
+    fs::{self, File, Permissions, TryLockError},
+    io,
+    os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt},
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError, Weak},
+    time::Duration,
+};
+
+/// How the names of graders' folders begin.
+const PREFIX: &str = "fosssim-grader-";
+/// The file in it that its grader holds locked.
+const LOCK: &str = "lock";
+/// A folder without that file is being made, or was left when its grader was killed just then.
+const ABANDONED: Duration = Duration::from_secs(3600);
+
+/// A temporary folder of this grader's, closed to others. It is removed with all that programs left in it.
+#[derive(Debug)]
+pub(super) struct Temporary {
+    path: PathBuf,
+    // Removed after the folders in it.
+    _grader: Arc<Grader>,
+}
+
+impl Temporary {
+    /// Makes one; its name begins with its purpose.
+    pub(super) fn make(purpose: &str) -> io::Result<Self> {
+        let grader = Grader::this()?;
+        let made = closed(&format!("{purpose}-"), &grader.path)?;
+        let path = made.keep();
+        if purpose == "build" && is_root() {
+            // Build tools ask for files by their whole path, and run as another user. What lies here is closed by itself.
+            fs::set_permissions(&path, Permissions::from_mode(0o711))?;
+        }
+        Ok(Self { path, _grader: grader })
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // What can't be removed now is swept away another day.
+        drop(collect::remove_folder(&self.path));
+    }
+}
+
+/// The folder of all temporary folders of this process, for as long as there are any.
+#[derive(Debug)]
+struct Grader {
+    path: PathBuf,
+    _lock: File,
+}
+
+impl Grader {
+    /// The one that is there, or a new one.
+    fn this() -> io::Result<Arc<Self>> {
+        static THIS: Mutex<Weak<Grader>> = Mutex::new(Weak::new());
+        let mut this = THIS.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(grader) = this.upgrade().filter(|grader| grader.path.is_dir()) {
+            return Ok(grader);
+        }
+        let grader = Arc::new(Self::make(&std::env::temp_dir())?);
+        *this = Arc::downgrade(&grader);
+        Ok(grader)
+    }
+
+    fn make(place: &Path) -> io::Result<Self> {
+        const TRIES: u32 = 10;
+        let mut problem = io::Error::other("somebody removes every folder that is made there");
+        for _ in 0..TRIES {
+            let path = closed(PREFIX, place)?.keep();
+            let lock = path.join(LOCK);
+            let made = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
+                file.try_lock().map_err(io::Error::from)?;
+                // A sweeper that was faster may have removed it.
+                let (held, there) = (file.metadata()?, fs::metadata(&lock)?);
+                if (held.dev(), held.ino()) == (there.dev(), there.ino()) {
+                    Ok(file)
+                } else {
+                    Err(io::ErrorKind::NotFound.into())
+                }
+            });
+            match made {
+                Ok(lock) => {
+                    if is_root() {
+                        // Programs run as other users, who have to get to their own folders and may see no names here.
+                        fs::set_permissions(&path, Permissions::from_mode(0o711))?;
+                    }
+                    return Ok(Self { path, _lock: lock });
+                }
+                Err(error) => problem = error,
+            }
+            drop(fs::remove_dir_all(&path));
+        }
+        Err(problem)
+    }
+}
+
+impl Drop for Grader {
+    fn drop(&mut self) {
+        drop(collect::remove_folder(&self.path));
+    }
+}
+
+/// A new folder for its owner only.
+fn closed(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
+    tempfile::Builder::new().prefix(prefix).permissions(Permissions::from_mode(0o700)).tempdir_in(place)
+}
+
+fn is_root() -> bool {
+    fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0)
+}
+
+/// Removes the temporary folders of graders that were killed. Whoever lives holds its lock, wherever it is.
+pub fn sweep() {
+    sweep_in(&std::env::temp_dir());
+}
+
+fn sweep_in(place: &Path) {
+    for entry in fs::read_dir(place).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
+        if !ours || !entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            continue;
+        }
+        let old = || entry.metadata().and_then(|data| data.modified()).ok()?.elapsed().ok();
+        // Somebody else's is closed to us, and left to them.
+        let lock = match collect::open_file(&path.join(LOCK), false) {
+            Ok((lock, _)) => Some(lock),
+            Err(collect::CollectError::Missing { .. }) if old().is_some_and(|age| age > ABANDONED) => None,
+            Err(_) => continue,
+        };
+        if !matches!(lock.as_ref().map(File::try_lock), Some(Err(TryLockError::WouldBlock | TryLockError::Error(_)))) {
+            clear(&path);
+        }
+    }
+}
+
+/// Removes a grader's folder, its lock last: what is left over without a lock would count as being made. A supervisor that
+/// has only just noticed the end of its grader may still be at work in it for a moment.
+fn clear(path: &Path) {
+    const TRIES: u32 = 20;
+    const PAUSE: Duration = Duration::from_millis(50);
+    for _ in 0..TRIES {
+        let folders = fs::read_dir(path).into_iter().flatten().flatten().filter(|entry| entry.path().is_dir());
+        let removed = folders.map(|entry| collect::remove_folder(&entry.path())).filter(Result::is_err).count() == 0;
+        if removed && collect::remove_folder(path).is_ok() {
+            return;
+        }
+        std::thread::sleep(PAUSE);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_nobody_holds_is_swept_away() {
+        let place = tempfile::tempdir().unwrap();
+        let living = Grader::make(place.path()).unwrap();
+        let killed = Grader::make(place.path()).unwrap();
+        let left = killed.path.clone();
+        fs::create_dir_all(left.join("run-1").join("d/".repeat(1500))).unwrap();
+        fs::write(living.path.join("program"), "x").unwrap();
+        // As a kill does: the lock goes, the folder stays.
+        let Grader { path: _, _lock: ref lock } = killed;
+        lock.unlock().unwrap();
+        std::mem::forget(killed);
+        fs::create_dir(place.path().join("fosssim-grader-begun")).unwrap();
+        fs::create_dir(place.path().join("other")).unwrap();
+        sweep_in(place.path());
+        assert!(!left.exists(), "removed at any depth");
+        assert!(living.path.join("program").exists(), "in use");
+        assert!(place.path().join("fosssim-grader-begun").exists() && place.path().join("other").exists());
+    }
+
+    #[test]
+    fn folders_are_closed_to_others_and_go_away_with_their_last_user() {
+        let first = Temporary::make("program").unwrap();
+        let second = Temporary::make("run").unwrap();
+        let grader = first.path().parent().unwrap().to_path_buf();
+        assert_eq!(second.path().parent(), Some(&*grader));
+        for path in [first.path(), second.path()] {
+            assert_eq!(fs::metadata(path).unwrap().permissions().mode() & 0o077, 0);
+        }
+        assert_eq!(fs::metadata(&grader).unwrap().permissions().mode() & 0o066, 0, "no names are shown");
+        let path = first.path().to_path_buf();
+        drop(first);
+        assert!(!path.exists() && grader.exists());
+    }
+}

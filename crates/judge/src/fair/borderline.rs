@@ -1,0 +1,82 @@
+//! Which decisions of the reference's own run hang on round-off: what a scene asks of programs that nobody can promise.
+//!
+//! It simulates and certifies, no more; a trace is not needed. Collision handling `simple` decides without polynomials
+//! and is not looked at.
+use super::{contact, formulas::Motion, judgement::Borderline};
+use fosssim_model::{
+    scene::Scene,
+    sim::{Decision, Detection, Observer, Pass, RootSearch, Simulation, Stage, StepError},
+};
+
+/// All decisions of the reference that roundings of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS) units can flip, in
+/// their order; `collides` is what the reference decides. Decisions whose arithmetic is exact are never among them.
+///
+/// # Errors
+/// When a step has no result.
+pub fn borderline(scene: &Scene) -> Result<Vec<Borderline>, StepError> {
+    let mut watch = Watch { scene, step: 0, pass: Pass { stage: Stage::Simple, index: 0 }, found: Vec::new() };
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    for _ in 0..scene.steps() {
+        simulation.step(&mut watch)?;
+    }
+    Ok(watch.found)
+}
+
+struct Watch<'a> {
+    scene: &'a Scene,
+    step: u32,
+    pass: Pass,
+    found: Vec<Borderline>,
+}
+
+impl Observer for Watch<'_> {
+    fn begin_step(&mut self, step: u32) {
+        self.step = step;
+    }
+
+    fn begin_pass(&mut self, pass: Pass) {
+        self.pass = pass;
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        if detection.polynomials.is_empty() {
+            return;
+        }
+        let motion = Motion::of(self.scene, detection.pair, detection.q_start, detection.q_end);
+        if contact::is_borderline(&motion, &motion.polynomials()) {
+            let collides = matches!(detection.decision, Decision::Hit { .. });
+            let (step, pass, pair) = (self.step, self.pass, detection.pair);
+            self.found.push(Borderline { step, pass, pair, collides });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_model::scene;
+
+    fn found(ball: &str) -> Vec<Borderline> {
+        let text = format!(
+            r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.5"/>
+            <collision type="continuous-time" COR="1"/>{ball}<halfplane px="0" py="0" nx="0.3" ny="0.4"/></scene>"#
+        );
+        borderline(&scene::read("scene", text.as_bytes()).expect("a scene").scene).expect("a run")
+    }
+
+    #[test]
+    fn a_ball_that_ends_its_step_in_touch_is_borderline() {
+        // After the first step the ball's distance is 0.1, its radius, but for a rounding: half a step's way is 0.9.
+        let ball = r#"<particle m="1" px="0.6" py="0.8" vx="-1.08" vy="-1.44" fixed="0" radius="0.1"/>"#;
+        let found = found(ball);
+        assert!(found.iter().any(|decision| decision.step == 1), "{found:?}");
+    }
+
+    #[test]
+    fn a_ball_that_is_clearly_late_or_early_is_not() {
+        for speed in ["-0.3\" vy=\"-0.4", "-2.16\" vy=\"-2.88"] {
+            let ball = format!(r#"<particle m="1" px="0.6" py="0.8" vx="{speed}" fixed="0" radius="0.1"/>"#);
+            assert_eq!(found(&ball), []);
+        }
+    }
+}

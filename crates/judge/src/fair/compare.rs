@@ -1,0 +1,229 @@
+//! Whether a logged polynomial is the expected one up to a positive factor and round-off (numerics.md 2).
+use super::formulas::Coefficients;
+use fosssim_num::{
+    bounded::{Bounded, UNIT_ROUNDOFF},
+    polynomial::MAX_COEFFICIENTS,
+    tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
+};
+
+/// A polynomial that is right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Match {
+    /// The positive factor by which the logged one is larger; `None` where round-off is all there is.
+    pub scale: Option<f64>,
+    /// The largest share of the tolerance that a coefficient uses, 0 to 1.
+    pub share: f64,
+}
+
+/// A polynomial that is wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mismatch {
+    /// It has a coefficient too many, of this power, that is no round-off.
+    TooLong,
+    /// A coefficient is wrong.
+    Coefficient {
+        /// The power of t.
+        power: usize,
+        /// The right coefficient, scaled to the logged polynomial.
+        expected: f64,
+        /// The logged coefficient; 0 where it is missing.
+        actual: f64,
+        /// How far it may be off.
+        tolerance: f64,
+    },
+}
+
+/// Compares. `expected` is complete; `actual` is as logged, its small leading coefficients dropped by the course's
+/// library. `hints` are the factors of other polynomials, for those that hold too little to tell their own.
+pub fn compare(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
+    let degree = expected.len().max(actual.len()).max(1) - 1;
+    if actual.len() > MAX_COEFFICIENTS {
+        return Err(Mismatch::TooLong);
+    }
+    let mut right: Coefficients = [Bounded::default(); MAX_COEFFICIENTS];
+    let mut logged = [0.0; MAX_COEFFICIENTS];
+    right[MAX_COEFFICIENTS - expected.len()..].copy_from_slice(expected);
+    logged[MAX_COEFFICIENTS - actual.len()..].copy_from_slice(actual);
+    let whole = (degree + 1).min(MAX_COEFFICIENTS);
+    let (right, logged) = (&right[MAX_COEFFICIENTS - whole..], &logged[MAX_COEFFICIENTS - whole..]);
+    let missing = whole.saturating_sub(actual.len());
+    let matched = |scale: f64| judge(right, logged, missing, scale).map(|share| Match { scale: Some(scale), share });
+    let hinted = || {
+        let mut matches = hints.iter().map(|&hint| judge(right, logged, missing, hint));
+        matches.find_map(Result::ok).map(|share| Match { scale: None, share })
+    };
+    let Some(fitted) = fit(right, logged, missing) else {
+        let first = hints.first().copied().unwrap_or(1.0);
+        return hinted().ok_or(()).or_else(|()| matched(first));
+    };
+    let first = matched(fitted);
+    if first.is_ok() {
+        return first;
+    }
+    // What is left of a polynomial may tell the factor only roughly.
+    if let Some(found) = hinted() {
+        return Ok(found);
+    }
+    // One wrong coefficient spoils the fit; the factor on which most coefficients agree says which one it is.
+    let mut best = (wrong(right, logged, missing, fitted), first);
+    for (r, s) in right.iter().zip(logged).skip(missing) {
+        let scale = s / r.value;
+        if scale > 0.0 && scale.is_finite() && is_significant(r) {
+            let count = wrong(right, logged, missing, scale);
+            if count < best.0 {
+                best = (count, matched(scale));
+            }
+        }
+    }
+    // When at most one agrees, the factor says nothing.
+    if best.0 + 1 >= whole && whole > 1 { matched(1.0) } else { best.1 }
+}
+
+/// Whether a coefficient holds more than round-off.
+fn is_significant(r: &Bounded) -> bool {
+    r.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * r.bound
+}
+
+/// The factor that fits best, each coefficient weighted by its precision; `None` where all are round-off. Not positive,
+/// not finite: the polynomial is wrong.
+fn fit(right: &[Bounded], logged: &[f64], missing: usize) -> Option<f64> {
+    let (mut products, mut squares) = (0.0, 0.0);
+    for (r, s) in right.iter().zip(logged).skip(missing) {
+        if is_significant(r) {
+            let weight = r.value / r.bound.max(r.value.abs());
+            products += weight * (s / r.value) * weight;
+            squares += weight * weight;
+        }
+    }
+    (squares > 0.0).then(|| products / squares)
+}
+
+/// The used share of the tolerance, or the tolerance that is exceeded. A factor that is not positive fails always.
+fn check(r: &Bounded, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result<f64, f64> {
+    if !(scale > 0.0) {
+        return Err(f64::NAN);
+    }
+    // Both sides round. What is small beside the others may hold the rounding of all of them: some correct programs
+    // interpolate, and on [0, 1] no decision can tell.
+    let tolerance = UNIT_ROUNDOFF * scale * f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm);
+    let residual = (s - scale * r.value).abs();
+    if residual <= tolerance {
+        return Ok(if residual == 0.0 { 0.0 } else { residual / tolerance });
+    }
+    // The course's library drops leading coefficients that are small, whatever the scale.
+    if is_missing && scale > 0.0 && residual < LEADING_COEFFICIENT + tolerance {
+        return Ok(0.0);
+    }
+    Err(tolerance)
+}
+
+/// The sum of all bounds.
+fn norm(right: &[Bounded]) -> f64 {
+    right.iter().map(|c| c.bound).sum()
+}
+
+/// The factors with which a logged polynomial would be right although it does not tell its own: at least so large that
+/// what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it tells.
+pub fn possible_factors(expected: &[Bounded], actual: &[f64]) -> Option<[f64; 2]> {
+    let missing = expected.len().checked_sub(actual.len())?;
+    let unit = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
+    let (dropped, held) = expected.split_at(missing);
+    if held.iter().any(is_significant) {
+        return None;
+    }
+    let largest = dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - unit * r.bound));
+    let needed = held.iter().zip(actual).map(|(r, s)| s.abs() / (unit * r.bound));
+    let least = needed.fold(0.0, |most: f64, factor| if factor <= most { most } else { factor });
+    least.is_finite().then_some([least, LEADING_COEFFICIENT / largest])
+}
+
+/// How many coefficients are wrong with this factor.
+fn wrong(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> usize {
+    let norm = norm(right);
+    let all = right.iter().zip(logged).enumerate();
+    all.filter(|&(k, (r, &s))| check(r, s, norm, k < missing, scale).is_err()).count()
+}
+
+/// The largest used share with this factor, or the first wrong coefficient.
+fn judge(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Result<f64, Mismatch> {
+    let norm = norm(right);
+    let mut share = 0.0_f64;
+    for (k, (r, &s)) in right.iter().zip(logged).enumerate() {
+        match check(r, s, norm, k < missing, scale) {
+            Ok(used) => share = share.max(used),
+            Err(tolerance) => {
+                let power = right.len() - 1 - k;
+                return Err(Mismatch::Coefficient { power, expected: scale * r.value, actual: s, tolerance });
+            }
+        }
+    }
+    Ok(share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parabola() -> [Bounded; 3] {
+        [-0.37, 2.2, -0.71].map(|value: f64| Bounded { value, bound: 8.0 * value.abs() })
+    }
+
+    #[test]
+    fn every_positive_factor_is_right_and_no_other() {
+        let right = parabola();
+        for factor in [1.0, 3.0, 1e-6, 1e9, 0.1] {
+            let logged = right.map(|c| factor * c.value);
+            let found = compare(&right, &logged, &[1.0]).expect("right");
+            assert!((found.scale.expect("a factor") / factor - 1.0).abs() < 1e-15);
+        }
+        for factor in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
+            assert!(compare(&right, &right.map(|c| factor * c.value), &[1.0]).is_err(), "{factor}");
+        }
+    }
+
+    #[test]
+    fn the_wrong_coefficient_is_named_in_spite_of_a_factor() {
+        let right = parabola();
+        let mut logged = right.map(|c| 3.0 * c.value);
+        logged[1] *= 2.0;
+        let Err(Mismatch::Coefficient { power, expected, actual, .. }) = compare(&right, &logged, &[1.0]) else {
+            panic!("a wrong coefficient")
+        };
+        assert_eq!((power, actual), (1, logged[1]));
+        assert!((expected - 6.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_part_in_a_billion_is_wrong_and_a_few_roundings_are_not() {
+        let right = parabola();
+        let mut logged = right.map(|c| c.value);
+        logged[2] *= 1.0 + 1e-9;
+        assert!(compare(&right, &logged, &[1.0]).is_err());
+        logged[2] = right[2].value * (1.0 + 1e-15);
+        assert!(compare(&right, &logged, &[1.0]).expect("round-off").share > 0.0);
+    }
+
+    /// Small leading coefficients are dropped after scaling; others can't be missing.
+    #[test]
+    fn only_small_leading_coefficients_may_be_missing() {
+        let right = [1e-7, 2.2, -0.71].map(|value: f64| Bounded { value, bound: 8.0 * value.abs() });
+        assert!(compare(&right, &[2.2e-6, -0.71e-6], &[1.0]).is_ok(), "dropped at scale 1e-6: 1e-13");
+        assert!(compare(&right, &[2.2, -0.71], &[1.0]).is_err(), "not small at scale 1");
+    }
+
+    #[test]
+    fn nothing_but_round_off_goes_by_the_factor_of_others() {
+        let right = [1e-16, 0.0].map(|value: f64| Bounded { value, bound: 1.0 });
+        assert_eq!(compare(&right, &[], &[1.0]).expect("empty").scale, None);
+        assert!(compare(&right, &[1e-11], &[1.0]).is_err());
+        assert!(compare(&right, &[1e-11], &[1e6]).is_ok());
+    }
+
+    #[test]
+    fn garbage_of_constant_size_check() {
+        assert!(compare(&parabola(), &[1e-11; 3], &[1.0]).is_err());
+        assert!(compare(&parabola(), &[0.0; 3], &[1.0]).is_err());
+        assert!(compare(&parabola(), &[], &[1.0]).is_err());
+        assert!(compare(&parabola(), &[1.0; 9], &[1.0]).is_err());
+    }
+}

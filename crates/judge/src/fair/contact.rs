@@ -1,0 +1,235 @@
+//! Contacts and states: how far they may be off, and which decisions hang on round-off.
+use super::{
+    formulas::{Expected, Motion},
+    probe::Deviation,
+    step::{Context, Records, StepJudgement},
+};
+use crate::finding::{Detail, Finding};
+use fosssim_model::{
+    scene::Collision,
+    sim::{Decision, Impulse, State},
+    trace::LoggedImpulse,
+};
+use fosssim_num::{
+    bounded::{Bounded, UNIT_ROUNDOFF},
+    certificate::excludes_unit_interval,
+    decision::{Certainty, decide},
+    first_time::first_time,
+    polynomial::{MAX_COEFFICIENTS, Polynomial},
+    tolerances::{
+        FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_TIME, FAIR_UNITS, SEARCH_LARGEST_COEFFICIENT,
+        SEARCH_SMALLEST_COEFFICIENT,
+    },
+    vector::{Vec2, at, length},
+};
+
+/// A polynomial's value at time `t` and the tolerance of that value, both from bounded coefficients.
+fn value(polynomial: &[Bounded], t: f64) -> (f64, f64) {
+    let (mut value, mut bound) = (0.0, 0.0);
+    for c in polynomial {
+        value = value * t + c.value;
+        bound = bound * t.abs() + c.bound.max(c.value.abs());
+    }
+    (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
+}
+
+/// Whether a pair may be in contact at time `t` first: one polynomial is about to turn positive, none is negative, and
+/// they were not all positive between `t` and the reference's time.
+fn time_fits(expected: &Expected, own: f64, t: f64) -> bool {
+    if !(0.0..=1.0).contains(&t) {
+        return false;
+    }
+    if (own - t).abs() <= FAIR_TIME {
+        return true;
+    }
+    let all = || (0..expected.count()).map(|number| expected.polynomial(number));
+    let is_possible = all().all(|polynomial| {
+        let (value, tolerance) = value(polynomial, t);
+        value >= -tolerance
+    });
+    let turns = t == 0.0
+        || all().any(|polynomial| {
+            let (value, tolerance) = value(polynomial, t);
+            value.abs() <= tolerance
+        });
+    // Between the two times nothing may be decided: else one of them is not the first.
+    let undecided = [0.25, 0.5, 0.75].into_iter().all(|part| {
+        let between = own + part * (t - own);
+        all().any(|polynomial| {
+            let (value, tolerance) = value(polynomial, between);
+            value <= tolerance
+        })
+    });
+    is_possible && turns && undecided
+}
+
+/// Compares a logged contact with the reference's.
+pub(super) fn hit(
+    context: &Context<'_>,
+    records: &Records<'_>,
+    known: Option<(&Motion, &Expected)>,
+    own: Impulse,
+    actual: &LoggedImpulse,
+    judged: &mut StepJudgement,
+) -> Option<Detail> {
+    if actual.time != own.time {
+        let fits = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time));
+        if !fits {
+            return Some(Detail::ContactTime { expected: own, actual: *actual });
+        }
+    }
+    let (normal, bounds) = match known {
+        Some((motion, _)) => {
+            let normal = motion.normal(actual.time);
+            ([normal.x.value, normal.y.value], [normal.x.bound, normal.y.bound])
+        }
+        None => (own.normal.into(), [context.size(records.before); 2]),
+    };
+    for ((right, bound), logged) in normal.into_iter().zip(bounds).zip([actual.normal.x, actual.normal.y]) {
+        let (residual, tolerance) = ((logged - right).abs(), FAIR_UNITS * UNIT_ROUNDOFF * bound);
+        if !(residual <= tolerance) {
+            let expected = Impulse { normal: normal.into(), time: actual.time, ..own };
+            let residual = length(actual.normal - expected.normal);
+            return Some(Detail::WrongNormal { expected, actual: *actual, residual });
+        }
+        if residual > 0.0 {
+            judged.shares.normal = judged.shares.normal.max(residual / tolerance);
+        }
+    }
+    None
+}
+
+/// Compares a logged state with the reference's. A velocity is not charged where the position is wrong: they have the
+/// same cause.
+pub(super) fn states(
+    context: &Context<'_>,
+    judged: &mut StepJudgement,
+    frame: u64,
+    own: &State,
+    logged: &State,
+    sensitivity: Option<&Deviation>,
+) {
+    let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
+    let size = context.size(own);
+    let speed = own.velocities.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    // Where contacts are answered, velocities come from displacements over the time step.
+    let from_positions = match context.scene.collision {
+        Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
+        Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0.0,
+    };
+    let (position_floor, velocity_floor) = (roundings * size, roundings * (speed + from_positions));
+    for particle in 0..own.positions.len() / 2 {
+        let tolerance = |floor: f64, of: fn(&Deviation) -> &Vec<f64>| {
+            let known = sensitivity.map_or(0.0, |known| length(at(of(known), particle)));
+            floor + FAIR_SENSITIVITY * known
+        };
+        let position_tolerance = tolerance(position_floor, |known| &known.positions);
+        let (expected, actual) = (at(&own.positions, particle), at(&logged.positions, particle));
+        let residual = distance(expected, actual);
+        if !(residual <= position_tolerance) {
+            let detail = Detail::Position { particle, expected: expected.into(), actual: actual.into(), residual };
+            judged.charge(Finding { step: judged.step, frame, detail });
+            continue;
+        }
+        let velocity_tolerance = tolerance(velocity_floor, |known| &known.velocities);
+        let (expected, actual) = (at(&own.velocities, particle), at(&logged.velocities, particle));
+        let velocity_residual = distance(expected, actual);
+        if !(velocity_residual <= velocity_tolerance) {
+            let (expected, actual, residual) = (expected.into(), actual.into(), velocity_residual);
+            let detail = Detail::Velocity { particle, expected, actual, residual };
+            judged.charge(Finding { step: judged.step, frame, detail });
+            continue;
+        }
+        if residual > 0.0 {
+            judged.shares.position = judged.shares.position.max(residual / position_tolerance);
+        }
+        if velocity_residual > 0.0 {
+            judged.shares.velocity = judged.shares.velocity.max(velocity_residual / velocity_tolerance);
+        }
+    }
+}
+
+/// How far two vectors are apart. Where the reference itself has no number, or an infinite one, from the trace's own
+/// state, a trace that has the same is not to blame: such components are no distance. NaN against a number is NaN.
+fn distance(expected: Vec2, actual: Vec2) -> f64 {
+    let apart = |expected: f64, actual: f64| {
+        let same = expected == actual || expected.is_nan() && actual.is_nan();
+        if same { 0.0 } else { expected - actual }
+    };
+    length(Vec2::new(apart(expected.x, actual.x), apart(expected.y, actual.y)))
+}
+
+/// A logged collision as a decision, if a response can be computed from it.
+pub(super) fn followed(logged: LoggedImpulse) -> Option<Decision> {
+    let LoggedImpulse { normal, time, .. } = logged;
+    let is_usable = normal.x.is_finite() && normal.y.is_finite() && time.is_finite() && normal != normal * 0.0;
+    is_usable.then_some(Decision::Hit { time, normal })
+}
+
+/// Whether the root finder certainly ends with these coefficients.
+pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
+    coefficients.len() <= MAX_COEFFICIENTS
+        && coefficients
+            .iter()
+            .all(|c| *c == 0.0 || (SEARCH_SMALLEST_COEFFICIENT..=SEARCH_LARGEST_COEFFICIENT).contains(&c.abs()))
+}
+
+/// What these polynomials decide, as they are; `None` where the root finder does not end.
+pub(super) fn outcome(polynomials: &[Polynomial]) -> Option<bool> {
+    if excludes_unit_interval(polynomials) {
+        return Some(false);
+    }
+    first_time(polynomials).ok().map(|time| time <= 1.0)
+}
+
+/// What the polynomials decide, where round-off can't change it.
+///
+/// Where a parabola's inputs have so few digits that every way to evaluate the formulas is exact, there is no round-off
+/// to excuse anything: touching at the very end of the step is then as certain as anything else.
+pub fn decides(motion: &Motion, expected: &Expected) -> Option<bool> {
+    let mut polynomials: [&[Bounded]; 4] = [&[]; 4];
+    for (number, polynomial) in polynomials.iter_mut().enumerate() {
+        *polynomial = expected.polynomial(number);
+    }
+    let units = if motion.is_exact(EXACT_BITS) { 0.0 } else { FAIR_UNITS };
+    match decide(&polynomials[..expected.count()], units).certainty {
+        Certainty::Yes => Some(true),
+        Certainty::No => Some(false),
+        Certainty::Borderline => None,
+    }
+}
+
+/// Inputs of so many bits make a parabola's coefficients, of fourth degree in them, and its discriminant exact.
+const EXACT_BITS: u32 = 6;
+
+/// Whether round-off may flip the decision.
+pub(super) fn is_borderline(motion: &Motion, expected: &Expected) -> bool {
+    decides(motion, expected).is_none()
+}
+
+/// A time of impact for a pair that may collide or not.
+pub(super) fn possible_time(expected: &Expected) -> f64 {
+    let mut polynomials: [&[Bounded]; 4] = [&[]; 4];
+    for (number, polynomial) in polynomials.iter_mut().enumerate() {
+        *polynomial = expected.polynomial(number);
+    }
+    let earliest = decide(&polynomials[..expected.count()], FAIR_UNITS).time;
+    earliest.map_or(1.0, |[low, high]| low.midpoint(high).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bits aside, a program that ends with no number where the reference has none has done what the scene asks.
+    #[test]
+    fn what_is_no_number_for_the_reference_either_is_no_distance() {
+        let (nan, infinite) = (f64::NAN, f64::INFINITY);
+        assert_eq!(distance(Vec2::new(nan, infinite), Vec2::new(-nan, infinite)), 0.0);
+        assert_eq!(distance(Vec2::new(nan, 1.0), Vec2::new(nan, 4.0)), 3.0);
+        assert_eq!(distance(Vec2::new(infinite, 0.0), Vec2::new(-infinite, 0.0)), infinite);
+        for (expected, actual) in [(1.0, nan), (nan, 1.0), (infinite, nan)] {
+            assert!(distance(Vec2::new(0.0, expected), Vec2::new(0.0, actual)).is_nan(), "{expected} {actual}");
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! The detection polynomials with bounds of their rounding errors (collisions.md 2; numerics.md 1 and 2).
+//!
+//! What a polynomial should be, and how far a correct program may be off: every operation, and every input, adds its
+//! modulus to the bound of what it yields. Values here are for comparing, not for traces: the reference's own bits come
+//! from `sim`.
+use fosssim_model::{
+    scene::Scene,
+    sim::{Pair, PairKind},
+};
+use fosssim_num::{
+    bounded::{Bounded, Bounded2, UNIT_ROUNDOFF},
+    decision::all_exact,
+    polynomial::MAX_COEFFICIENTS,
+    tolerances::{FAIR_SENSITIVITY, FAIR_UNITS},
+    vector::{Vec2, at},
+};
+
+/// The way of one point in a step: where it starts, and its displacement.
+#[derive(Debug, Clone, Copy)]
+pub struct Way {
+    /// Position at the start of the step; exact, since it is taken from the trace.
+    pub start: Bounded2,
+    /// Displacement in the step. The end position is not logged: it may be off by a rounding.
+    pub shift: Bounded2,
+}
+
+impl Way {
+    /// The way of particle `index` between two arrays of positions.
+    pub fn of(q_start: &[f64], q_end: &[f64], index: usize) -> Self {
+        let (start, end) = (at(q_start, index), at(q_end, index));
+        Self { start: Bounded2::exact(start), shift: Bounded2::rounded(end) - Bounded2::exact(start) }
+    }
+
+    /// The way as seen from `other`.
+    fn from(self, other: Self) -> [Bounded2; 2] {
+        [self.start - other.start, self.shift - other.shift]
+    }
+}
+
+/// The objects of a pair and how they move.
+#[derive(Debug, Clone, Copy)]
+pub enum Motion {
+    /// Two discs; the sum of radii.
+    Particles([Way; 2], Bounded),
+    /// A disc and an edge's endpoints; the sum of radii.
+    Edge([Way; 3], Bounded),
+    /// A disc and a half-plane: the way, the radius, the point and the normal as written.
+    HalfPlane(Way, Bounded, Vec2, Vec2),
+}
+
+/// A polynomial, highest power first, nothing dropped.
+pub type Coefficients = [Bounded; MAX_COEFFICIENTS];
+
+/// The polynomials of a pair; each uses the last `sizes()` entries.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Expected {
+    polynomials: [Coefficients; 4],
+    sizes: [usize; 4],
+    /// Particle-edge: the approach polynomial without the slip of the course's formula (numerics.md 1.1).
+    right_approach: Option<Coefficients>,
+}
+
+impl Expected {
+    /// Polynomial `number` of the pair.
+    pub fn polynomial(&self, number: usize) -> &[Bounded] {
+        &self.polynomials[number][MAX_COEFFICIENTS - self.sizes[number]..]
+    }
+
+    /// The other accepted form of polynomial `number`: the mathematically right approach of a particle and an edge.
+    pub fn other_form(&self, number: usize) -> Option<&[Bounded]> {
+        if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }
+    }
+
+    /// Uses the right approach polynomial in place of the course's.
+    pub fn with_right_approach(mut self) -> Self {
+        if let Some(right) = self.right_approach {
+            self.polynomials[3] = right;
+        }
+        self
+    }
+
+    /// Number of polynomials.
+    pub fn count(&self) -> usize {
+        self.sizes.iter().filter(|&&size| size > 0).count()
+    }
+
+    fn set(&mut self, number: usize, coefficients: &[Bounded]) {
+        self.polynomials[number][MAX_COEFFICIENTS - coefficients.len()..].copy_from_slice(coefficients);
+        self.sizes[number] = coefficients.len();
+    }
+}
+
+impl Motion {
+    /// The pair's motion in a step.
+    pub fn of(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        let way = |particle| Way::of(q_start, q_end, particle);
+        let radius = |particle: usize| Bounded::exact(scene.particles[particle].radius);
+        match pair.kind {
+            PairKind::ParticleParticle => Self::Particles([way(first), way(second)], radius(first) + radius(second)),
+            PairKind::ParticleEdge => {
+                let edge = &scene.edges[second];
+                let ways = [way(first), way(edge.first), way(edge.second)];
+                Self::Edge(ways, radius(first) + Bounded::exact(edge.radius))
+            }
+            PairKind::ParticleHalfPlane => {
+                let half_plane = &scene.half_planes[second];
+                Self::HalfPlane(way(first), radius(first), half_plane.point, half_plane.normal)
+            }
+        }
+    }
+
+    /// The same motion, of particles whose end positions may be off by `deviations` (2N, scene unit) on top.
+    pub fn widened(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
+        let widen = |way: &mut Way, particle: Option<usize>| {
+            let Some(particle) = particle else { return };
+            // In units of the running error bound, whose tolerance is twice FAIR_UNITS of them.
+            let units = FAIR_SENSITIVITY / (2.0 * FAIR_UNITS * UNIT_ROUNDOFF);
+            way.shift.x.bound += units * deviations[2 * particle];
+            way.shift.y.bound += units * deviations[2 * particle + 1];
+        };
+        match &mut self {
+            Self::Particles([one, two], _) => {
+                widen(one, particles[0]);
+                widen(two, particles[1]);
+            }
+            Self::Edge(ways, _) => ways.iter_mut().zip(particles).for_each(|(way, particle)| widen(way, particle)),
+            Self::HalfPlane(way, ..) => widen(way, particles[0]),
+        }
+        self
+    }
+
+    /// Whether every way to evaluate the formulas of a parabola is exact: all inputs are multiples of one power of two,
+    /// by less than two to the `bits`. A particle and an edge have higher degrees, whose zeros are never exact.
+    pub fn is_exact(&self, bits: u32) -> bool {
+        let parts = |v: Bounded2| [v.x.value, v.y.value];
+        match self {
+            Self::Particles([one, two], radii) => {
+                let [a, b, c, d] = [one.start, one.shift, two.start, two.shift].map(parts);
+                all_exact(&[a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1], radii.value], bits)
+            }
+            Self::HalfPlane(way, radius, point, q) => {
+                let [a, b] = [way.start, way.shift].map(parts);
+                all_exact(&[a[0], a[1], b[0], b[1], point.x, point.y, q.x, q.y, radius.value], bits)
+            }
+            Self::Edge(..) => false,
+        }
+    }
+
+    /// The detection polynomials.
+    pub fn polynomials(&self) -> Expected {
+        let mut expected = Expected::default();
+        match *self {
+            Self::Particles([one, two], radii) => {
+                let [x, d] = two.from(one);
+                let (squared, mixed) = (d.dot(d), x.dot(d));
+                expected.set(0, &[-squared, -2.0 * mixed, radii * radii - x.dot(x)]);
+                expected.set(1, &[-squared, -mixed]);
+            }
+            Self::Edge(ways, radii) => edge(&mut expected, ways, radii),
+            Self::HalfPlane(way, radius, point, q) => {
+                let (q, w) = (Bounded2::exact(q), Bounded2::exact(point) - way.start);
+                let (s, w) = (way.shift.dot(q), w.dot(q));
+                expected.set(0, &[-(s * s), 2.0 * (w * s), radius * radius * q.dot(q) - w * w]);
+                expected.set(1, &[-(s * s), w * s]);
+            }
+        }
+        expected
+    }
+
+    /// The contact normal at time `t`, not normalised.
+    pub fn normal(&self, t: f64) -> Bounded2 {
+        let t = Bounded::exact(t);
+        let place = |way: &Way| way.start + t * way.shift;
+        match self {
+            Self::Particles([one, two], _) => place(two) - place(one),
+            Self::Edge([one, two, three], _) => {
+                let (x1, x2, x3) = (place(one), place(two), place(three));
+                let (a, b) = (x1 - x2, x3 - x2);
+                x2 + (a.dot(b) / b.dot(b)) * b - x1
+            }
+            Self::HalfPlane(way, _, point, q) => {
+                let q = Bounded2::exact(*q);
+                let w = Bounded2::exact(*point) - place(way);
+                (w.dot(q) / q.dot(q)) * q
+            }
+        }
+    }
+}
+
+/// The four polynomials of a particle and an edge, with the letters of collisions.md 2.
+#[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
+fn edge(expected: &mut Expected, [one, two, three]: [Way; 3], radii: Bounded) {
+    let s = radii * radii;
+    let [x12, d12] = one.from(two);
+    let [x32, d32] = three.from(two);
+    let [x13, d13] = one.from(three);
+    let (a, b, c) = (x12.dot(x32), x12.dot(d32) + d12.dot(x32), d12.dot(d32));
+    let (d, f) = (x12.dot(x12), d12.dot(d12));
+    // `e` of the specification is dot(d21, x21): both signs change, so it is dot(d12, x12).
+    let e = d12.dot(x12);
+    let (g, h, i) = (x32.dot(x32), d32.dot(x32), d32.dot(d32));
+    expected.set(
+        0,
+        &[
+            c * c - f * i,
+            2.0 * (b * c) - 2.0 * (e * i) - 2.0 * (f * h),
+            2.0 * (c * a) + b * b - d * i - f * g - 4.0 * (e * h) + s * i,
+            2.0 * (a * b) - 2.0 * (d * h) - 2.0 * (e * g) + 2.0 * (s * h),
+            a * a - d * g + s * g,
+        ],
+    );
+    expected.set(1, &[c, b, a]);
+    expected.set(2, &[-d13.dot(d32), -(d13.dot(x32) + x13.dot(d32)), -x13.dot(x32)]);
+    let (approach, right) = approach([g, h, i, f, e, a, b, c], -(d32.dot(x12) + d12.dot(x32)), -d32.dot(d12));
+    expected.set(3, &approach);
+    expected.right_approach = Some(right);
+}
+
+/// The course's approach polynomial and the right one, which differ in t^3; with the approach's own letters.
+#[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
+fn approach([a, b, c, d, e, f, g, h]: [Bounded; 8], i: Bounded, j: Bounded) -> (Coefficients, Coefficients) {
+    let k = a * f;
+    let l = a * g + 2.0 * (b * f);
+    let m = a * h + 2.0 * (b * g) + c * f;
+    let n = c * g + 2.0 * (b * h);
+    let o = c * h;
+    let (p, q) = (b, c);
+    let cubic = |slip: Bounded| {
+        -(2.0 * (g * h * p))
+            - 2.0 * (f * slip * q)
+            - g * g * q
+            - 2.0 * (a * c * d)
+            - 4.0 * (b * b * d)
+            - 4.0 * (b * c * e)
+            - n * i
+            - 2.0 * (m * j)
+    };
+    let course = [
+        -(h * h * q) - c * c * d - 2.0 * (o * j),
+        -(h * h * p) - 2.0 * (g * h * q) - 4.0 * (b * c * d) - c * c * e - o * i - 2.0 * (n * j),
+        cubic(g),
+        -(2.0 * (f * h * p))
+            - g * g * p
+            - 2.0 * (f * g * q)
+            - 4.0 * (a * b * d)
+            - 2.0 * (a * c * e)
+            - 4.0 * (b * b * e)
+            - m * i
+            - 2.0 * (l * j),
+        -(2.0 * (f * g * p)) - f * f * q - a * a * d - 4.0 * (a * b * e) - l * i - 2.0 * (k * j),
+        -(f * f * p) - a * a * e - k * i,
+    ];
+    let mut right = course;
+    right[2] = cubic(h);
+    (course, right)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_model::{scene::original, sim::Simulation};
+
+    const SCENE: &str = r#"<scene>
+        <duration time="1"/><integrator type="explicit-euler" dt="0.5"/>
+        <collision type="continuous-time" COR="1"/>
+        <particle m="1" px="0.1" py="1.3" vx="0.7" vy="-2.1" fixed="0" radius="0.11"/>
+        <particle m="1" px="-1.7" py="0.3" vx="0.3" vy="0.5" fixed="0" radius="0.13"/>
+        <particle m="1" px="1.9" py="-0.4" vx="-0.2" vy="0.9" fixed="0" radius="0.17"/>
+        <edge i="1" j="2" radius="0.07"/>
+        <halfplane px="0.2" py="-1.1" nx="0.3" ny="1.7"/>
+    </scene>"#;
+
+    /// The reference's own coefficients lie within one unit of these bounds, whatever the order of evaluation.
+    #[test]
+    fn the_reference_lies_within_the_bounds() {
+        struct Compare<'a>(&'a Scene, usize);
+        impl fosssim_model::sim::Observer for Compare<'_> {
+            fn detection(&mut self, detection: &fosssim_model::sim::Detection<'_>) {
+                let motion = Motion::of(self.0, detection.pair, detection.q_start, detection.q_end);
+                let expected = motion.polynomials();
+                for (number, polynomial) in detection.polynomials.iter().enumerate() {
+                    let own = expected.polynomial(number);
+                    assert_eq!(own.len(), polynomial.coefficients().len());
+                    for (own, theirs) in own.iter().zip(polynomial.coefficients()) {
+                        assert!((own.value - theirs).abs() <= UNIT_ROUNDOFF * own.bound, "{own:?} {theirs}");
+                        self.1 += 1;
+                    }
+                }
+            }
+        }
+        let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
+        let mut compare = Compare(&scene, 0);
+        let mut simulation = Simulation::new(&scene, fosssim_model::sim::RootSearch::WhereNeeded);
+        simulation.step(&mut compare).expect("a step");
+        assert_eq!(compare.1, 3 * 5 + (5 + 3 + 3 + 6) + 3 * 5);
+    }
+
+    /// The assignment's own slip: the definition gives another t^3 coefficient (numerics.md 1.1).
+    #[test]
+    fn the_right_approach_differs_in_its_cubic_coefficient_only() {
+        let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
+        let (q_start, q_end) = ([0.1, 1.3, -1.7, 0.3, 1.9, -0.4], [0.45, 0.25, -1.55, 0.55, 1.8, 0.05]);
+        let pair = Pair { kind: PairKind::ParticleEdge, first: 0, second: 0 };
+        let expected = Motion::of(&scene, pair, &q_start, &q_end).polynomials();
+        let (course, right) = (expected.polynomial(3), expected.other_form(3).expect("an edge"));
+        let differing: Vec<usize> = (0..6).filter(|&k| course[k].value != right[k].value).collect();
+        assert_eq!(differing, [2]);
+        // -q(2 q' g - q g')/2 with q = e x w, g = e.e (numerics.md 1.2), evaluated at a time by differences of points.
+        let at_time = |t: f64| {
+            let place = |p: usize| at(&q_start, p) + t * (at(&q_end, p) - at(&q_start, p));
+            let speed = |p: usize| at(&q_end, p) - at(&q_start, p);
+            let (w, e) = (place(0) - place(1), place(2) - place(1));
+            let (dw, de) = (speed(0) - speed(1), speed(2) - speed(1));
+            let q = e.x * w.y - e.y * w.x;
+            let dq = de.x * w.y + e.x * dw.y - de.y * w.x - e.y * dw.x;
+            -q * (2.0 * dq * e.dot(&e) - q * 2.0 * e.dot(&de)) / 2.0
+        };
+        for t in [0.0, 0.3, 0.7, 1.0] {
+            let value = right.iter().fold(0.0, |sum, c| sum * t + c.value);
+            assert!((value - at_time(t)).abs() < 1e-12 * value.abs().max(1.0), "at {t}: {value} and {}", at_time(t));
+        }
+    }
+}

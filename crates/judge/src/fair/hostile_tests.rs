@@ -1,0 +1,34 @@
+//! Traces whose numbers no simulation should hold: judging them has to come to an end, with a verdict.
+use crate::samples::{BOUNCE, ZONES, changed, judged, scene};
+use fosssim_model::trace::Frame;
+
+/// Numbers at which arithmetic overflows, underflows, or has left the numbers.
+const EXTREMES: [f64; 9] = [1e100, -1e100, 1e155, 1e-160, 5e-324, f64::MAX, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+/// All coordinates and velocities of some records become one number.
+fn blown_up(frames: &mut [Frame], from: usize, to: usize, value: f64) {
+    for frame in &mut frames[from..to] {
+        frame.state.positions.fill(value);
+        frame.state.velocities.fill(value);
+    }
+}
+
+/// A simulation that blows up within a step: its records are absurd, its polynomials still small.
+#[test]
+fn states_of_any_size_are_judged_without_a_panic() {
+    for text in [BOUNCE, ZONES] {
+        let scene = scene(text);
+        let records = changed(&scene, |_| {}).len();
+        assert!(records > 0);
+        for value in EXTREMES {
+            for from in 0..5 {
+                for to in from + 1..=5 {
+                    let trace = changed(&scene, |frames| blown_up(frames, from, to, value));
+                    let outcome = judged(&scene, &trace);
+                    let fair = outcome.fair.expect("the fair rules were asked");
+                    assert_eq!(fair.verdict, super::Verdict::Rejected, "{value} in {from}..{to}");
+                }
+            }
+        }
+    }
+}

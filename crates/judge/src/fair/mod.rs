@@ -1,0 +1,38 @@
+//! The fair rule book: scale-free and condition-aware, so that no correct program fails because of round-off, scale or
+//! the course's own slip, and no wrong one passes because of an absolute tolerance (numerics.md 2).
+//!
+//! What it does in one step:
+//!
+//! 1. It rebuilds what the submission should have logged from *its own* states, and follows the submission: its
+//!    polynomials are what is searched, its logged contacts are what is answered, its mid record is what the geometric
+//!    part starts from. So a mistake is charged once, at the stage where it is made.
+//! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running
+//!    error bound. A small leading coefficient may be missing, because the course's library drops it. NaN fails.
+//! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; where that is too little, by
+//!    [`FAIR_SENSITIVITY`] times what such roundings of the step's input do to its result.
+//! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged.
+//! 5. It looks at everything: the first record, mid records, times of impact, repeated contacts, and what follows the
+//!    last record.
+//!
+//! A step whose records are the reference's bit for bit needs none of this.
+//!
+//! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS
+//! [`FAIR_SENSITIVITY`]: fosssim_num::tolerances::FAIR_SENSITIVITY
+
+mod borderline;
+mod cause;
+pub mod compare;
+mod contact;
+mod follow;
+pub mod formulas;
+#[cfg(test)]
+mod hostile_tests;
+mod judgement;
+mod probe;
+mod step;
+
+pub use borderline::borderline;
+pub use cause::{Cause, cause};
+pub use contact::decides;
+pub use judgement::{Borderline, Form, Judgement, Refusal, Shares, Verdict};
+pub(super) use step::{Context, Records, StepJudgement, judge, judge_initial};

@@ -1,0 +1,214 @@
+//! How sensitive a step is: what roundings of its input do to its results and decisions.
+//!
+//! The step is repeated from perturbed states, each component off by a few roundings in a fixed random pattern. The
+//! deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994), so contacts that
+//! graze, stiff springs and zones of nearly no extent get the room that they need, and nothing else gets any.
+use super::{
+    follow::Followed,
+    formulas::Motion,
+    step::{Context, Records},
+};
+use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, Time};
+use fosssim_num::{
+    bounded::UNIT_ROUNDOFF,
+    polynomial::Polynomial,
+    tolerances::{FAIR_TIME, FAIR_UNITS},
+    vector::Vec2,
+};
+
+/// So many perturbed repetitions.
+const RUNS: u64 = 8;
+
+/// Largest deviations, component by component.
+#[derive(Debug, Clone)]
+pub(super) struct Deviation {
+    /// Of positions, 2N.
+    pub positions: Vec<f64>,
+    /// Of velocities, 2N.
+    pub velocities: Vec<f64>,
+}
+
+/// What is known of a step's sensitivity.
+#[derive(Debug, Clone)]
+pub(super) struct Sensitivity {
+    /// For each detection pass the deviation of the positions that it sees, 2N each.
+    pub passes: Vec<Vec<f64>>,
+    /// Deviation of the state at the synchronisation point.
+    pub mid: Deviation,
+    /// Deviation of the state at the end.
+    pub end: Deviation,
+    /// Calls whose decisions flip.
+    pub flipped: Vec<usize>,
+}
+
+/// Repeats a step whose decisions are known. Where the reference's own polynomials can't be solved from here (the trace's
+/// can, else nobody would ask), nothing is known, and nothing deviates: each value's own bounds are all that counts.
+pub(super) fn probe(
+    context: &Context<'_>,
+    simulation: &mut Simulation,
+    records: &Records<'_>,
+    decisions: &[Followed],
+) -> Sensitivity {
+    let still = Deviation::zeros(records.before.positions.len());
+    let mut sensitivity = Sensitivity { passes: Vec::new(), mid: still.clone(), end: still, flipped: Vec::new() };
+    let Some(base) = run(context, simulation, records, decisions, 0) else { return sensitivity };
+    sensitivity.passes = base.passes.iter().map(|q| vec![0.0; q.len()]).collect();
+    for seed in 1..=RUNS {
+        let Some(other) = run(context, simulation, records, decisions, seed) else { continue };
+        sensitivity.mid.widen(&base.mid, &other.mid);
+        sensitivity.end.widen(&base.end, &other.end);
+        for ((own, base), other) in sensitivity.passes.iter_mut().zip(&base.passes).zip(&other.passes) {
+            widen(own, base, other);
+        }
+        for (call, (base, other)) in base.hits.iter().zip(&other.hits).enumerate() {
+            if base != other && !sensitivity.flipped.contains(&call) {
+                sensitivity.flipped.push(call);
+            }
+        }
+    }
+    sensitivity
+}
+
+fn widen(own: &mut [f64], base: &[f64], other: &[f64]) {
+    for ((own, base), other) in own.iter_mut().zip(base).zip(other) {
+        let deviation = (base - other).abs();
+        if deviation > *own {
+            *own = deviation;
+        }
+    }
+}
+
+impl Deviation {
+    /// None, of so many coordinates.
+    fn zeros(coordinates: usize) -> Self {
+        Self { positions: vec![0.0; coordinates], velocities: vec![0.0; coordinates] }
+    }
+
+    fn widen(&mut self, base: &Self, other: &Self) {
+        widen(&mut self.positions, &base.positions, &other.positions);
+        widen(&mut self.velocities, &base.velocities, &other.velocities);
+    }
+}
+
+/// What one repetition yields.
+struct Run {
+    passes: Vec<Vec<f64>>,
+    mid: Deviation,
+    end: Deviation,
+    hits: Vec<bool>,
+}
+
+fn run(
+    context: &Context<'_>,
+    simulation: &mut Simulation,
+    records: &Records<'_>,
+    decisions: &[Followed],
+    seed: u64,
+) -> Option<Run> {
+    let mut start = records.before.clone();
+    perturb(&mut start, seed);
+    simulation.state_mut().clone_from(&start);
+    simulation.set_steps_done(records.step - 1);
+    let still = Deviation::zeros(start.positions.len());
+    let run = Run { passes: Vec::new(), mid: still.clone(), end: still, hits: Vec::new() };
+    let mut probe = Probe { records, decisions, seed, run, stale: true, pass: 0, motion: None, context };
+    simulation.step(&mut probe).ok()?;
+    let mut run = probe.run;
+    let end = simulation.state();
+    run.end = Deviation { positions: end.positions.clone(), velocities: end.velocities.clone() };
+    debug_assert_eq!(run.end.positions.len(), 2 * context.scene.particles.len());
+    Some(run)
+}
+
+/// Moves every component by up to [`FAIR_UNITS`] roundings, up or down; seed 0 moves nothing.
+fn perturb(state: &mut State, seed: u64) {
+    if seed == 0 {
+        return;
+    }
+    let mut bits = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    for value in state.positions.iter_mut().chain(&mut state.velocities) {
+        // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003): only the signs matter.
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        let sign = if bits & 0x100 == 0 { 1.0 } else { -1.0 };
+        *value += sign * FAIR_UNITS * UNIT_ROUNDOFF * *value;
+    }
+}
+
+impl Probe<'_> {
+    /// The same hit, a little later or earlier: no root finder is exact.
+    fn late(&self, time: f64) -> Option<Decision> {
+        let motion = self.motion.as_ref()?;
+        let time = match self.seed {
+            0 => return None,
+            seed if seed % 2 == 0 => time + FAIR_TIME,
+            _ => time - FAIR_TIME,
+        };
+        let normal = motion.normal(time);
+        Some(Decision::Hit { time, normal: Vec2::new(normal.x.value, normal.y.value) })
+    }
+}
+
+/// Takes the known decisions, and notes what would have been decided.
+struct Probe<'a> {
+    records: &'a Records<'a>,
+    decisions: &'a [Followed],
+    seed: u64,
+    run: Run,
+    /// Whether the positions that the pass sees must be noted anew.
+    stale: bool,
+    pass: usize,
+    /// The motion of the pair that is looked at.
+    motion: Option<Motion>,
+    context: &'a Context<'a>,
+}
+
+impl Observer for Probe<'_> {
+    fn begin_pass(&mut self, pass: Pass) {
+        self.pass = pass.index as usize;
+        self.stale = true;
+    }
+
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
+        self.motion = Some(Motion::of(self.context.scene, pair, q_start, q_end));
+    }
+
+    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        let call = self.run.hits.len();
+        let hits = matches!(decision, Decision::Hit { .. });
+        self.run.hits.push(hits);
+        let Some(known) = self.decisions.get(call).filter(|known| known.pair == pair) else { return decision };
+        match (known.decision, decision) {
+            (Decision::Hit { .. }, Decision::Hit { time, .. })
+                if matches!(known.pass.stage, Stage::Impulses { .. } | Stage::Geometric { .. }) =>
+            {
+                self.late(time).unwrap_or(decision)
+            }
+            (Decision::Hit { .. }, _) => known.decision,
+            (Decision::Miss { .. }, Decision::Hit { time, .. }) => Decision::Miss { time: Time::Found(time) },
+            (Decision::Miss { .. }, Decision::Miss { .. }) => decision,
+        }
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        if self.stale {
+            self.run.passes.resize(self.pass + 1, Vec::new());
+            self.run.passes[self.pass].clear();
+            self.run.passes[self.pass].extend_from_slice(detection.q_end);
+            self.stale = false;
+        }
+        self.stale |= matches!(detection.decision, Decision::Hit { .. });
+    }
+
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        self.run.mid = Deviation { positions: state.positions.clone(), velocities: state.velocities.clone() };
+        let Some(mid) = self.records.mid else { return Resume::Own };
+        if mid.state.positions.iter().chain(&mid.state.velocities).all(|value| value.is_finite()) {
+            state.positions.copy_from_slice(&mid.state.positions);
+            state.velocities.copy_from_slice(&mid.state.velocities);
+            perturb(state, self.seed);
+        }
+        Resume::Synchronised
+    }
+}

@@ -1,0 +1,272 @@
+//! Judges one step by the fair rules: follows it, looks at its sensitivity where something differs, and tries borderline
+//! decisions the other way where they can't be seen.
+use super::{
+    contact,
+    follow::Follower,
+    judgement::{Borderline, Scales, Shares},
+    probe::{Sensitivity, probe},
+};
+use crate::{
+    finding::{Detail, Finding, Kind, PolynomialPlace, RecordPart},
+    outcome::Counts,
+};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{Pair, PairKind, Pass, Simulation, State, StepError},
+    trace::LenientFrame,
+};
+use fosssim_num::polynomial::MAX_COEFFICIENTS;
+
+/// So many borderline decisions of a hybrid step are tried the other way, all combinations of them.
+const MOST_FLIPS: usize = 4;
+
+/// What all steps share.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Context<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Polynomials of one detection pass over all pairs (trace-format.md 2).
+    pub per_pass: usize,
+}
+
+impl<'a> Context<'a> {
+    /// The context of a scene.
+    pub fn new(scene: &'a Scene) -> Self {
+        let count = scene.particles.len();
+        let ends = |particle: usize| {
+            scene.edges.iter().filter(|edge| edge.first == particle || edge.second == particle).count()
+        };
+        let edges: usize = (0..count).map(|particle| scene.edges.len() - ends(particle)).sum();
+        let per_pass = count * count.saturating_sub(1) + 4 * edges + 2 * count * scene.half_planes.len();
+        Self { scene, per_pass }
+    }
+
+    /// The particles of a pair: one, two, or three with an edge.
+    pub(super) fn particles(&self, pair: Pair) -> [Option<usize>; 3] {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        match pair.kind {
+            PairKind::ParticleParticle => [Some(first), Some(second), None],
+            PairKind::ParticleEdge => {
+                let edge = &self.scene.edges[second];
+                [Some(first), Some(edge.first), Some(edge.second)]
+            }
+            PairKind::ParticleHalfPlane => [Some(first), None, None],
+        }
+    }
+
+    /// The largest coordinate: roundings of positions are of this size.
+    pub(super) fn size(&self, state: &State) -> f64 {
+        state.positions.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+    }
+}
+
+/// One step of the trace.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Records<'a> {
+    /// Its number, from 1.
+    pub step: u32,
+    /// The number of its end record, from 0.
+    pub frame: u64,
+    /// The state that it starts from, the trace's own.
+    pub before: &'a State,
+    /// The mid record, where the layout has one.
+    pub mid: Option<&'a LenientFrame>,
+    /// The end record.
+    pub end: &'a LenientFrame,
+}
+
+/// A polynomial that is right if the program's polynomials have a factor within bounds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pending {
+    /// What is wrong otherwise.
+    pub finding: Finding,
+    /// Row and number of the polynomial in [`Scales`].
+    pub place: (usize, usize),
+    /// The least and the largest factor.
+    pub factors: [f64; 2],
+}
+
+/// What judging one step yields.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct StepJudgement {
+    /// The step, from 1.
+    pub step: u32,
+    /// The number of its end record.
+    pub frame: u64,
+    /// The first finding of each kind, in the order in which they were made.
+    pub findings: Vec<Finding>,
+    /// How many more there are of each kind.
+    pub more: Counts,
+    /// Borderline decisions that were followed.
+    pub borderline: Vec<Borderline>,
+    /// Factors of polynomials.
+    pub scales: Scales,
+    /// Polynomials that lost other coefficients than the reference's.
+    pub lost: u64,
+    /// Used shares of tolerances.
+    pub shares: Shares,
+    /// A polynomial that is of the course's form and not of the right one.
+    pub course_form: Option<PolynomialPlace>,
+    /// A polynomial that is of the right form and not of the course's.
+    pub right_form: Option<PolynomialPlace>,
+    /// Polynomials that are right with some factors only: whether the program uses such a one, only the whole trace says.
+    pub pending: Vec<Pending>,
+    /// The trace's polynomials lead the step into a search without end.
+    pub endless: bool,
+}
+
+impl StepJudgement {
+    /// Adds a finding.
+    pub(super) fn charge(&mut self, finding: Finding) {
+        if self.findings.iter().any(|first| first.kind() == finding.kind()) {
+            self.more.add(finding.kind(), 1);
+        } else {
+            self.findings.push(finding);
+        }
+    }
+
+    /// Notes a borderline decision.
+    pub(super) fn borderline(&mut self, pass: Pass, pair: Pair, collides: bool) {
+        self.borderline.push(Borderline { step: self.step, pass, pair, collides });
+    }
+
+    /// Number of findings.
+    pub(super) fn total(&self) -> u64 {
+        self.findings.len() as u64 + self.more.total()
+    }
+
+    /// Whether it has findings that the step's sensitivity could excuse. Polynomials of known positions are none: their own
+    /// bounds are all that counts.
+    fn hangs_on_round_off(&self) -> bool {
+        self.findings.iter().any(|finding| {
+            !matches!(
+                finding.kind(),
+                Kind::Coefficient
+                    | Kind::PolynomialDegree
+                    | Kind::WrongNormal
+                    | Kind::ContactTime
+                    | Kind::RepeatedCollision
+                    | Kind::RecordsDiffer
+                    | Kind::ImpossibleLog
+            )
+        })
+    }
+
+    /// Whether it has findings that another decision could explain.
+    fn hangs_on_decisions(&self) -> bool {
+        self.findings.iter().any(|finding| {
+            matches!(
+                finding.kind(),
+                Kind::PolynomialCount | Kind::PassPositions | Kind::Position | Kind::Velocity | Kind::TrimmedDecision
+            )
+        })
+    }
+}
+
+/// Judges a step. `identical` says that states, impulses and polynomials of both records are the reference's bit for
+/// bit; then only what the records say besides is looked at.
+///
+/// # Errors
+/// When a step from the trace's state has no result.
+pub(crate) fn judge(
+    context: &Context<'_>,
+    simulation: &mut Simulation,
+    records: Records<'_>,
+    identical: bool,
+) -> Result<StepJudgement, StepError> {
+    let mut judged = if identical {
+        StepJudgement { step: records.step, frame: records.frame, ..StepJudgement::default() }
+    } else {
+        follow(context, simulation, records)?
+    };
+    compare_records(context, records, &mut judged);
+    Ok(judged)
+}
+
+/// Compares the first record with the scene.
+pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> StepJudgement {
+    let mut judged = StepJudgement::default();
+    let mut state = State::default();
+    for particle in &context.scene.particles {
+        state.positions.extend([particle.position.x, particle.position.y]);
+        state.velocities.extend([particle.velocity.x, particle.velocity.y]);
+    }
+    contact::states(context, &mut judged, 0, &state, &frame.state, None);
+    if !frame.impulses.is_empty() || !frame.polynomials.is_empty() {
+        let part = if frame.impulses.is_empty() { RecordPart::Polynomials } else { RecordPart::Impulses };
+        judged.charge(Finding { step: 0, frame: 0, detail: Detail::RecordsDiffer { part } });
+    }
+    judged
+}
+
+fn follow(
+    context: &Context<'_>,
+    simulation: &mut Simulation,
+    records: Records<'_>,
+) -> Result<StepJudgement, StepError> {
+    let attempt = |simulation: &mut Simulation, sensitivity: Option<&Sensitivity>, flips: &[usize]| {
+        simulation.state_mut().clone_from(records.before);
+        simulation.set_steps_done(records.step - 1);
+        let mut follower = Follower::new(context, records, sensitivity, flips);
+        simulation.step(&mut follower)?;
+        follower.finish(simulation.state());
+        Ok::<_, StepError>((follower.judged, follower.decisions, follower.borderline))
+    };
+    let (first, decisions, _) = attempt(simulation, None, &[])?;
+    if !first.hangs_on_round_off() {
+        return Ok(first);
+    }
+    let sensitivity = probe(context, simulation, &records, &decisions);
+    let (second, _, borderline) = attempt(simulation, Some(&sensitivity), &[])?;
+    if second.total() == 0 || !second.hangs_on_decisions() {
+        return Ok(second);
+    }
+    let borderline = &borderline[..borderline.len().min(MOST_FLIPS)];
+    for set in 1_usize..1 << borderline.len() {
+        let flips: Vec<usize> =
+            borderline.iter().enumerate().filter(|(bit, _)| set >> bit & 1 == 1).map(|(_, call)| *call).collect();
+        if let Ok((other, ..)) = attempt(simulation, Some(&sensitivity), &flips)
+            && other.total() == 0
+        {
+            return Ok(other);
+        }
+    }
+    Ok(second)
+}
+
+/// What both records of a step must agree in (trace-format.md 2), and what no program that uses the course's library
+/// can have written.
+fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
+    let Records { step, frame, mid, end, .. } = records;
+    let mut charge = |detail| judged.charge(Finding { step, frame, detail });
+    if is_impossible(end) || mid.is_some_and(is_impossible) {
+        charge(Detail::ImpossibleLog);
+    }
+    let Some(mid) = mid else { return };
+    if mid.impulses.len() != end.impulses.len() || !mid.impulses.iter().zip(&end.impulses).all(same_impulse) {
+        charge(Detail::RecordsDiffer { part: RecordPart::Impulses });
+    }
+    let count = mid.polynomials.len();
+    let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
+    let whole = if is_hybrid { count <= end.polynomials.len() } else { count == end.polynomials.len() };
+    let same = whole && (0..count).all(|index| same_bits(mid.polynomials.get(index), end.polynomials.get(index)));
+    if !same {
+        charge(Detail::RecordsDiffer { part: RecordPart::Polynomials });
+    }
+}
+
+/// Whether the record holds what the course's library does not write: small leading coefficients that were not dropped, or
+/// more coefficients than any detection has.
+fn is_impossible(frame: &LenientFrame) -> bool {
+    let log = &frame.polynomials;
+    frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)
+}
+
+fn same_impulse((a, b): (&fosssim_model::trace::LoggedImpulse, &fosssim_model::trace::LoggedImpulse)) -> bool {
+    (a.kind, a.first, a.second) == (b.kind, b.first, b.second)
+        && same_bits(&[a.normal.x, a.normal.y, a.time], &[b.normal.x, b.normal.y, b.time])
+}
+
+fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}

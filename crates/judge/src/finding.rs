@@ -1,0 +1,358 @@
+//! What can be wrong with a step, and where.
+use fosssim_model::{
+    sim::{Impulse, Pair, PairKind, Pass},
+    trace::LoggedImpulse,
+};
+use fosssim_num::polynomial::Polynomial;
+
+/// The kinds of findings, in the order in which reports list them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// A collision of the reference is not in the trace.
+    MissedCollision,
+    /// A collision of the trace is not in the reference.
+    SuperfluousCollision,
+    /// A collision is in both, with different contact normals.
+    WrongNormal,
+    /// The step logged another number of polynomials: detection ran more or less often.
+    PolynomialCount,
+    /// A polynomial has another number of coefficients.
+    PolynomialDegree,
+    /// The reference's coefficients are all tiny, the trace's are not.
+    VanishingPolynomial,
+    /// A coefficient differs after rescaling.
+    Coefficient,
+    /// A particle's position at the end of the step differs.
+    Position,
+    /// A particle's velocity at the end of the step differs.
+    Velocity,
+    /// Fair rules: the time of impact of a collision is wrong.
+    ContactTime,
+    /// Fair rules: a collision is logged more than once.
+    RepeatedCollision,
+    /// Fair rules: a later detection pass of the step looked at wrong positions.
+    PassPositions,
+    /// Fair rules: the two records of a step contradict each other.
+    RecordsDiffer,
+    /// Fair rules: the trace holds what the course's library can't have written.
+    ImpossibleLog,
+    /// Fair rules: coefficients that were lost as too small change a decision.
+    TrimmedDecision,
+    /// Fair rules: the two accepted forms of the approach polynomial are mixed.
+    MixedForms,
+}
+
+impl Kind {
+    /// All kinds, in order.
+    pub const ALL: [Self; 16] = [
+        Self::MissedCollision,
+        Self::SuperfluousCollision,
+        Self::WrongNormal,
+        Self::PolynomialCount,
+        Self::PolynomialDegree,
+        Self::VanishingPolynomial,
+        Self::Coefficient,
+        Self::Position,
+        Self::Velocity,
+        Self::ContactTime,
+        Self::RepeatedCollision,
+        Self::PassPositions,
+        Self::RecordsDiffer,
+        Self::ImpossibleLog,
+        Self::TrimmedDecision,
+        Self::MixedForms,
+    ];
+
+    /// The key under which JSON and other machine-readable reports know it.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::MissedCollision => "missed_collision",
+            Self::SuperfluousCollision => "superfluous_collision",
+            Self::WrongNormal => "wrong_normal",
+            Self::PolynomialCount => "polynomial_count",
+            Self::PolynomialDegree => "polynomial_degree",
+            Self::VanishingPolynomial => "vanishing_polynomial",
+            Self::Coefficient => "coefficient",
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::ContactTime => "contact_time",
+            Self::RepeatedCollision => "repeated_collision",
+            Self::PassPositions => "pass_positions",
+            Self::RecordsDiffer => "records_differ",
+            Self::ImpossibleLog => "impossible_log",
+            Self::TrimmedDecision => "trimmed_decision",
+            Self::MixedForms => "mixed_forms",
+        }
+    }
+
+    /// The original's message for it; positions and velocities have none, they only raise residuals, and what it does
+    /// not look at has none either.
+    #[must_use]
+    pub const fn original_message(self) -> Option<&'static str> {
+        match self {
+            Self::MissedCollision => Some("Missed collision"),
+            Self::SuperfluousCollision => Some("Superfluous collision"),
+            Self::WrongNormal => Some("Collision with wrong normal"),
+            Self::PolynomialCount => Some("Wrong number of polynomials!"),
+            Self::PolynomialDegree => Some("Wrong polynomial degree!"),
+            Self::VanishingPolynomial => Some("Polynomial coefficients are close to all zero!"),
+            Self::Coefficient => Some("Wrong polynomial coefficients!"),
+            Self::Position
+            | Self::Velocity
+            | Self::ContactTime
+            | Self::RepeatedCollision
+            | Self::PassPositions
+            | Self::RecordsDiffer
+            | Self::ImpossibleLog
+            | Self::TrimmedDecision
+            | Self::MixedForms => None,
+        }
+    }
+}
+
+/// One thing that is wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finding {
+    /// The step, from 1.
+    pub step: u32,
+    /// The frame of the trace that holds what was compared, from 0 (the initial record).
+    pub frame: u64,
+    /// What is wrong.
+    pub detail: Detail,
+}
+
+impl Finding {
+    /// Its kind.
+    #[must_use]
+    pub const fn kind(&self) -> Kind {
+        match self.detail {
+            Detail::MissedCollision { .. } => Kind::MissedCollision,
+            Detail::SuperfluousCollision { .. } => Kind::SuperfluousCollision,
+            Detail::WrongNormal { .. } => Kind::WrongNormal,
+            Detail::PolynomialCount { .. } | Detail::PassCount { .. } => Kind::PolynomialCount,
+            Detail::PolynomialDegree { .. } => Kind::PolynomialDegree,
+            Detail::VanishingPolynomial { .. } => Kind::VanishingPolynomial,
+            Detail::Coefficient { .. } => Kind::Coefficient,
+            Detail::Position { .. } => Kind::Position,
+            Detail::Velocity { .. } => Kind::Velocity,
+            Detail::ContactTime { .. } => Kind::ContactTime,
+            Detail::RepeatedCollision { .. } => Kind::RepeatedCollision,
+            Detail::PassPositions { .. } => Kind::PassPositions,
+            Detail::RecordsDiffer { .. } => Kind::RecordsDiffer,
+            Detail::ImpossibleLog => Kind::ImpossibleLog,
+            Detail::TrimmedDecision { .. } => Kind::TrimmedDecision,
+            Detail::MixedForms { .. } => Kind::MixedForms,
+        }
+    }
+}
+
+/// What is wrong, with expected (reference) and actual (trace) values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Detail {
+    /// The reference collides here, the trace does not.
+    MissedCollision {
+        /// The reference's collision.
+        expected: Impulse,
+    },
+    /// The trace collides here, the reference does not.
+    SuperfluousCollision {
+        /// The trace's collision.
+        actual: LoggedImpulse,
+    },
+    /// Both collide here, along different normals.
+    WrongNormal {
+        /// The reference's collision.
+        expected: Impulse,
+        /// The trace's first collision of the same pair.
+        actual: LoggedImpulse,
+        /// Euclidean distance of the normals.
+        residual: f64,
+    },
+    /// Another number of polynomials.
+    PolynomialCount {
+        /// Logged by the reference.
+        expected: usize,
+        /// Logged by the trace.
+        actual: usize,
+        /// Polynomials of one detection pass over all pairs, for telling how many passes are too many or too few.
+        per_pass: usize,
+    },
+    /// Another number of detection passes in one part of the step (fair rules).
+    PassCount {
+        /// The part.
+        part: Part,
+        /// Passes of the reference.
+        expected: usize,
+        /// Passes in the trace.
+        actual: usize,
+    },
+    /// Another number of coefficients.
+    PolynomialDegree {
+        /// Which polynomial.
+        place: PolynomialPlace,
+        /// The reference's polynomial.
+        expected: Polynomial,
+        /// The trace's number of coefficients.
+        actual_size: usize,
+        /// The trace's first coefficients (at most six).
+        actual: Polynomial,
+    },
+    /// The reference's polynomial vanishes, the trace's does not.
+    VanishingPolynomial {
+        /// Which polynomial.
+        place: PolynomialPlace,
+        /// The reference's polynomial.
+        expected: Polynomial,
+        /// The trace's polynomial.
+        actual: Polynomial,
+    },
+    /// A coefficient differs.
+    Coefficient {
+        /// Which polynomial.
+        place: PolynomialPlace,
+        /// The power of t whose coefficient differs.
+        power: usize,
+        /// The reference's coefficient, rescaled to the trace's magnitude.
+        expected: f64,
+        /// The trace's coefficient.
+        actual: f64,
+        /// Their distance.
+        residual: f64,
+        /// The reference's whole polynomial, not rescaled.
+        expected_polynomial: Polynomial,
+        /// The trace's whole polynomial.
+        actual_polynomial: Polynomial,
+    },
+    /// A position differs by more than the bound of the maximum residual.
+    Position {
+        /// The particle.
+        particle: usize,
+        /// The reference's position (x, y).
+        expected: [f64; 2],
+        /// The trace's position (x, y).
+        actual: [f64; 2],
+        /// Euclidean distance.
+        residual: f64,
+    },
+    /// A velocity differs by more than the bound of the maximum residual.
+    Velocity {
+        /// The particle.
+        particle: usize,
+        /// The reference's velocity (x, y).
+        expected: [f64; 2],
+        /// The trace's velocity (x, y).
+        actual: [f64; 2],
+        /// Euclidean distance.
+        residual: f64,
+    },
+    /// The time of impact is not where the polynomials turn positive (fair rules).
+    ContactTime {
+        /// The reference's collision.
+        expected: Impulse,
+        /// The trace's.
+        actual: LoggedImpulse,
+    },
+    /// A collision that the trace already has (fair rules).
+    RepeatedCollision {
+        /// The repetition.
+        actual: LoggedImpulse,
+    },
+    /// A polynomial of a pair that a response or the failsafe has moved fits neither (fair rules). It may be right: what
+    /// is wrong is where the particles are by then.
+    PassPositions {
+        /// The first such polynomial.
+        place: PolynomialPlace,
+    },
+    /// The mid record and the end record of the step contradict each other (fair rules).
+    RecordsDiffer {
+        /// In what.
+        part: RecordPart,
+    },
+    /// A polynomial with more coefficients than any detection has, or with small leading ones, which the course's library
+    /// drops (fair rules).
+    ImpossibleLog,
+    /// The trace's polynomials are right, but with their factor the course's library dropped coefficients, and this
+    /// decision hangs on them (fair rules).
+    TrimmedDecision {
+        /// The pair's first polynomial.
+        place: PolynomialPlace,
+        /// Whether the pair collides.
+        collides: bool,
+    },
+    /// The approach polynomial has the other of its two accepted forms than before (fair rules).
+    MixedForms {
+        /// The first such polynomial.
+        place: PolynomialPlace,
+    },
+}
+
+/// A part of a step's collision handling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// What comes before the mid record: the only pass, or the impulse rounds.
+    Impulses,
+    /// Impact zones and the rigid failsafe.
+    Geometric,
+}
+
+/// What two records of a step may contradict each other in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RecordPart {
+    /// Positions or velocities.
+    State,
+    /// The impulse lists.
+    Impulses,
+    /// The polynomial lists.
+    Polynomials,
+}
+
+/// Which polynomial of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PolynomialPlace {
+    /// The detection pass.
+    pub pass: Pass,
+    /// The pair.
+    pub pair: Pair,
+    /// What the polynomial says.
+    pub role: Role,
+    /// Its number in the frame's list, from 0.
+    pub index: usize,
+}
+
+/// What a detection polynomial says when it is positive (collisions.md 2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// The objects overlap (the distance is below the sum of radii).
+    Overlap,
+    /// The particle is beyond the edge's first endpoint (alpha > 0).
+    AlphaAboveZero,
+    /// The particle is before the edge's second endpoint (alpha < 1).
+    AlphaBelowOne,
+    /// The objects approach each other.
+    Approach,
+}
+
+impl Role {
+    /// The role of polynomial `number` (from 0) of a detection call.
+    #[must_use]
+    pub const fn of(kind: PairKind, number: usize) -> Self {
+        match (kind, number) {
+            (_, 0) => Self::Overlap,
+            (PairKind::ParticleEdge, 1) => Self::AlphaAboveZero,
+            (PairKind::ParticleEdge, 2) => Self::AlphaBelowOne,
+            _ => Self::Approach,
+        }
+    }
+
+    /// The key in machine-readable reports.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Overlap => "overlap",
+            Self::AlphaAboveZero => "alpha_above_zero",
+            Self::AlphaBelowOne => "alpha_below_one",
+            Self::Approach => "approach",
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! The verdict on one trace: the original's rules (`parity`), the fair ones (`fair`), findings, and where trace and reference first part.
+//!
+//! Knows nothing of processes and reports; it takes a scene and a reader, and yields typed findings. The rules are
+//! those of `oracle-behaviour.md`, sections 4 to 6.
+#![forbid(unsafe_code)]
+#![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
+
+pub mod fair;
+mod finding;
+mod outcome;
+pub mod parity;
+pub mod recorded;
+mod replay;
+mod rules;
+#[cfg(test)]
+mod samples;
+pub mod share;
+pub mod study;
+mod tally;
+mod words;
+
+pub use finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Role};
+pub use outcome::{Counts, Damage, Outcome, Overall, Residuals, Stop, Unreadable};
+pub use rules::{Account, Book, Rules, Ruling};
+pub use words::{PairWords, PassWords, Power, passes};

@@ -1,0 +1,180 @@
+//! Judging against a recording instead of the reference simulator: frame by frame, by the same tolerances.
+//!
+//! Unlike lock step, errors accumulate here: after the first divergence the two runs are two different runs, and what
+//! follows says little. But nothing is taken over from the submission, so wrong initial states, responses and
+//! integrators show, which the original's rules let pass (oracle-behaviour.md 8.1 to 8.3). Both frames of a step are
+//! compared, and the initial record.
+use super::{
+    finding::{PolynomialPlace, Role},
+    outcome::{Damage, Outcome, Stop, Unreadable},
+    parity::Progress,
+    tally::{self, Buffers, StepResult, Tally},
+};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{Impulse, Observer, Pair, PairKind, Pass, Stage},
+    trace::{Cause, Layout, Lenient, LenientFrame, record_memory},
+};
+use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+use std::io::Read;
+
+/// Why a trace can't be judged against a recording: always the recording's fault.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the recording can't be used: frame {frame}, byte {offset}: {message}; record it again")]
+pub struct RecordingError {
+    /// The frame, from 0.
+    pub frame: u64,
+    /// Byte offset.
+    pub offset: u64,
+    /// The damage in words.
+    pub message: String,
+}
+
+/// Judges a trace against the recording of the same scene. The original's messages do not apply, so remarks are empty.
+///
+/// # Errors
+/// When the recording is damaged or cut short.
+pub fn judge<T: Read, R: Read>(
+    scene: &Scene,
+    trace: T,
+    recording: R,
+    progress: &mut dyn Progress,
+) -> Result<Outcome, RecordingError> {
+    let layout = Layout::of(scene);
+    let places = Places::of(scene);
+    let (mut trace, mut recording) =
+        (Lenient::new(trace, layout).with_limit(record_memory(scene)), Lenient::new(recording, layout));
+    let (mut actual, mut expected) = (LenientFrame::default(), LenientFrame::default());
+    let (mut buffers, mut result) = (Buffers::default(), StepResult::default());
+    let mut outcome = Outcome::empty(layout.steps);
+    let mut wrong_step = None;
+    for frame in 0..layout.records() {
+        recording.next(&mut expected).map_err(|stop| RecordingError {
+            frame: stop.at.frame,
+            offset: stop.at.offset,
+            message: stop.at.what.to_string(),
+        })?;
+        let step = layout.step_of(frame);
+        let is_end = step > 0 && !layout.is_mid(frame);
+        if is_end {
+            progress.step_begins(step);
+        }
+        if let Err(stop) = trace.next(&mut actual) {
+            let cause = match stop.cause {
+                Cause::State => Unreadable::State,
+                Cause::Impulses => Unreadable::Impulses,
+                Cause::Memory => Unreadable::Memory,
+                Cause::Limit => Unreadable::Limit,
+                Cause::Io => Unreadable::Io,
+            };
+            let (offset, message) = (stop.at.offset, stop.at.what.to_string());
+            outcome.stop = Some(Stop::Trace { frame, step, cause, offset, message });
+            break;
+        }
+        if let (None, Some(note)) = (&outcome.damage, actual.note.take()) {
+            outcome.damage = Some(Damage { frame, step, offset: note.offset, message: note.what.to_string() });
+        }
+        let damaged = outcome.damage.is_some();
+        outcome.damaged_steps += u32::from(damaged && is_end);
+        let mut tally = Tally::new((step, frame), &actual, None, true, &mut buffers, &mut result);
+        for logged in &expected.impulses {
+            if let Some(impulse) = impulse(logged) {
+                tally.impulse(&impulse);
+            }
+        }
+        for index in 0..expected.polynomials.len() {
+            let polynomial = Polynomial::untrimmed(expected.polynomials.get(index));
+            tally.expect_polynomial(&polynomial, || places.at(index));
+        }
+        tally.finish(&expected.state, layout.impulses, layout.polynomials);
+        tally::accumulate(&mut outcome.residuals, &result.residuals);
+        outcome.counts += result.counts;
+        if !damaged {
+            result.firsts.iter().for_each(|first| outcome.keep_first(first));
+        }
+        // The initial record is no step.
+        if result.counts.total() > 0 && step > 0 && wrong_step != Some(step) && !damaged {
+            wrong_step = Some(step);
+            outcome.wrong_steps += 1;
+        }
+        if is_end {
+            outcome.steps_judged = step;
+            progress.step_judged(step, &[]);
+        } else if frame == 0 {
+            progress.begins();
+        }
+    }
+    outcome.trailing_bytes = outcome.stop.is_none() && trace.has_more();
+    outcome.conclude();
+    Ok(outcome)
+}
+
+/// An impulse of a sound recording.
+fn impulse(logged: &fosssim_model::trace::LoggedImpulse) -> Option<Impulse> {
+    let kind = match logged.kind {
+        0 => PairKind::ParticleParticle,
+        1 => PairKind::ParticleEdge,
+        2 => PairKind::ParticleHalfPlane,
+        _ => return None,
+    };
+    let (first, second) = (u32::try_from(logged.first).ok()?, u32::try_from(logged.second).ok()?);
+    let normal = Vec2::new(logged.normal.x, logged.normal.y);
+    Some(Impulse { pair: Pair { kind, first, second }, normal, time: logged.time })
+}
+
+/// Which polynomial of a step belongs to which pair (the order of collisions.md 1).
+struct Places<'a> {
+    scene: &'a Scene,
+    per_pass: usize,
+    continuous: bool,
+}
+
+impl<'a> Places<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        let continuous = matches!(scene.collision, Collision::ContinuousTime { .. });
+        let per_pass = (0..scene.particles.len()).map(|particle| of_particle(scene, particle)).sum();
+        Self { scene, per_pass, continuous }
+    }
+
+    /// The place of polynomial `index` of a frame. In `hybrid` the recording does not tell where the impulse rounds
+    /// end, so passes are counted as rounds.
+    fn at(&self, index: usize) -> PolynomialPlace {
+        let (number, mut rest) = (index / self.per_pass.max(1), index % self.per_pass.max(1));
+        let round = u32::try_from(number).unwrap_or(u32::MAX);
+        let stage = if self.continuous { Stage::ContinuousTime } else { Stage::Impulses { round } };
+        let pass = Pass { stage, index: round };
+        let mut particle = 0;
+        while particle + 1 < self.scene.particles.len() && rest >= of_particle(self.scene, particle) {
+            rest -= of_particle(self.scene, particle);
+            particle += 1;
+        }
+        let (kind, second, number) = self.within(particle, rest);
+        #[expect(clippy::cast_possible_truncation, reason = "a scene's indices fit 32 bits")]
+        let pair = Pair { kind, first: particle as u32, second: second as u32 };
+        PolynomialPlace { pass, pair, role: Role::of(kind, number), index }
+    }
+
+    /// Kind, second object and number of the `rest`-th polynomial of a particle's pairs.
+    fn within(&self, particle: usize, mut rest: usize) -> (PairKind, usize, usize) {
+        let later = self.scene.particles.len() - particle - 1;
+        if rest < 2 * later {
+            return (PairKind::ParticleParticle, particle + 1 + rest / 2, rest % 2);
+        }
+        rest -= 2 * later;
+        let free =
+            self.scene.edges.iter().enumerate().filter(|(_, edge)| edge.first != particle && edge.second != particle);
+        for (edge, _) in free {
+            if rest < 4 {
+                return (PairKind::ParticleEdge, edge, rest);
+            }
+            rest -= 4;
+        }
+        (PairKind::ParticleHalfPlane, rest / 2, rest % 2)
+    }
+}
+
+/// Polynomials of one pass in which this particle comes first.
+fn of_particle(scene: &Scene, particle: usize) -> usize {
+    let free = scene.edges.iter().filter(|edge| edge.first != particle && edge.second != particle).count();
+    2 * (scene.particles.len() - particle - 1) + 4 * free + 2 * scene.half_planes.len()
+}

@@ -1,0 +1,206 @@
+//! Which rule book is asked, which one is official, and what each says about one trace in the same words.
+//!
+//! The parity book is always computed, because everything else builds on its replay; the fair one only on demand.
+use super::{
+    fair,
+    finding::Finding,
+    outcome::{Counts, Outcome, Overall},
+};
+
+/// A rule book.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Book {
+    /// The original's rules (oracle-behaviour.md 4 to 6).
+    #[default]
+    Parity,
+    /// The rules that round-off, scale and the course's own slip can't change (numerics.md 2).
+    Fair,
+}
+
+impl Book {
+    /// Its name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Parity => "parity",
+            Self::Fair => "fair",
+        }
+    }
+}
+
+/// Which rule books are asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Rules {
+    /// The original's alone.
+    Parity,
+    /// The fair ones; theirs is the official verdict.
+    Fair,
+    /// Both; the original's is the official verdict, and a report says where the fair ones differ.
+    #[default]
+    Both,
+}
+
+impl Rules {
+    /// All choices.
+    pub const ALL: [Self; 3] = [Self::Parity, Self::Fair, Self::Both];
+
+    /// The name under which command line and suites know it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Parity => "parity",
+            Self::Fair => "fair",
+            Self::Both => "both",
+        }
+    }
+
+    /// The choice with this name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|rules| rules.name() == name)
+    }
+
+    /// The book whose verdict decides exit codes and points.
+    #[must_use]
+    pub const fn official(self) -> Book {
+        match self {
+            Self::Parity | Self::Both => Book::Parity,
+            Self::Fair => Book::Fair,
+        }
+    }
+
+    /// Whether the fair rules are asked at all.
+    #[must_use]
+    pub const fn ask_fair(self) -> bool {
+        !matches!(self, Self::Parity)
+    }
+}
+
+/// The verdict of one book, in words that both share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ruling {
+    /// Everything is right.
+    Accepted,
+    /// The trace is complete and wrong.
+    WrongAnswer,
+    /// The trace can't be followed to its end; by the fair rules also: it is damaged, or goes on after its end.
+    BadTrace,
+}
+
+impl Ruling {
+    /// The words: `accepted`, `wrong answer`, `bad trace`.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Accepted => "accepted",
+            Self::WrongAnswer => "wrong answer",
+            Self::BadTrace => "bad trace",
+        }
+    }
+}
+
+/// What one book has found.
+#[derive(Debug, Clone, Copy)]
+pub struct Account<'a> {
+    /// Counts per kind of finding.
+    pub counts: &'a Counts,
+    /// Steps with at least one finding.
+    pub wrong_steps: u64,
+    /// The first finding of each kind.
+    pub examples: &'a [Finding],
+    /// The very first finding.
+    pub first_divergence: Option<&'a Finding>,
+}
+
+impl Outcome {
+    /// The verdict by a book; by the fair one the original's, if the fair one was not asked.
+    #[must_use]
+    pub fn ruling(&self, book: Book) -> Ruling {
+        match (book, &self.fair) {
+            (Book::Fair, Some(fair)) => match (fair.verdict, fair.refusal) {
+                (fair::Verdict::Accepted, _) => Ruling::Accepted,
+                (fair::Verdict::Rejected, None) => Ruling::WrongAnswer,
+                (fair::Verdict::Rejected, Some(_)) | (fair::Verdict::None, _) => Ruling::BadTrace,
+            },
+            _ => match self.overall {
+                Overall::Passed => Ruling::Accepted,
+                Overall::Failed => Ruling::WrongAnswer,
+                Overall::None => Ruling::BadTrace,
+            },
+        }
+    }
+
+    /// How many steps are right by a book: all of them only where the trace is accepted. What is wrong in no step, such as
+    /// the first record or small errors that add up, counts as one; and what the original reads over in silence is right for it only where it accepts the whole.
+    #[must_use]
+    pub fn right_steps(&self, book: Book) -> u32 {
+        let wrong = u32::try_from(self.account(book).wrong_steps).unwrap_or(u32::MAX);
+        let right = self.steps_judged.saturating_sub(wrong);
+        if self.ruling(book) == Ruling::Accepted {
+            return right;
+        }
+        right.saturating_sub(self.damaged_steps).min(self.steps.saturating_sub(1))
+    }
+
+    /// What a book has found; by the fair one what the original has, if the fair one was not asked.
+    #[must_use]
+    pub fn account(&self, book: Book) -> Account<'_> {
+        match (book, &self.fair) {
+            (Book::Fair, Some(fair)) => Account {
+                counts: &fair.counts,
+                wrong_steps: fair.wrong_steps,
+                examples: &fair.examples,
+                first_divergence: fair.first_divergence.as_ref(),
+            },
+            _ => Account {
+                counts: &self.counts,
+                wrong_steps: self.wrong_steps,
+                examples: &self.examples,
+                first_divergence: self.first_divergence.as_ref(),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_lead_back_and_only_fair_makes_fair_official() {
+        for rules in Rules::ALL {
+            assert_eq!(Rules::from_name(rules.name()), Some(rules));
+            assert_eq!(rules.official() == Book::Fair, rules == Rules::Fair);
+        }
+        assert_eq!(Rules::from_name("kind"), None);
+        assert!(!Rules::Parity.ask_fair());
+    }
+
+    /// Points may follow from the steps: what is not accepted never has them all.
+    #[test]
+    fn a_wrong_answer_has_a_wrong_step() {
+        let mut outcome = Outcome::empty(3);
+        outcome.steps_judged = 3;
+        for (overall, right) in [(Overall::Failed, 2), (Overall::Passed, 3)] {
+            outcome.overall = overall;
+            assert_eq!(outcome.right_steps(Book::Parity), right);
+        }
+        outcome.wrong_steps = 5;
+        assert_eq!(outcome.right_steps(Book::Parity), 0);
+    }
+
+    #[test]
+    fn without_a_fair_judgement_parity_speaks_for_both() {
+        let mut outcome = Outcome::empty(3);
+        outcome.wrong_steps = 2;
+        outcome.overall = Overall::Failed;
+        assert_eq!(outcome.ruling(Book::Fair), Ruling::WrongAnswer);
+        assert_eq!(outcome.account(Book::Fair).wrong_steps, 2);
+        let mut judgement = fair::Judgement::default();
+        judgement.verdict = fair::Verdict::Accepted;
+        outcome.fair = Some(Box::new(judgement));
+        assert_eq!(outcome.ruling(Book::Fair), Ruling::Accepted);
+        assert_eq!(outcome.account(Book::Fair).wrong_steps, 0);
+        assert_eq!(outcome.ruling(Book::Parity), Ruling::WrongAnswer);
+    }
+}

@@ -1,0 +1,77 @@
+//! Scenes and traces for the tests of this crate.
+use super::{
+    outcome::Outcome,
+    parity::{self, Options},
+};
+use fosssim_model::{
+    scene::{Scene, original},
+    sim::{Observer, RootSearch, Simulation},
+    trace::{Frame, Layout, Reader, Recorder, Writer},
+};
+
+/// A ball that falls on a half-plane: `continuous-time`.
+pub(crate) const BOUNCE: &str = r#"<scene>
+  <duration time="1"/><integrator type="explicit-euler" dt="0.5"/><collision type="continuous-time" COR="1"/>
+  <particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/>
+  <halfplane px="0" py="0" nx="0" ny="1"/>
+</scene>"#;
+
+/// A ball falls through an edge to a half-plane: `hybrid`, whose impulse rounds do not suffice in the first step.
+pub(crate) const ZONES: &str = r#"<scene>
+  <duration time="0.3"/><integrator type="explicit-euler" dt="0.1"/>
+  <collision type="hybrid" COR="0.5" maxiters="1" k="1" thickness="0.01"/>
+  <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0" radius="0.1"/>
+  <particle m="1" px="1" py="0" vx="0" vy="0" fixed="0" radius="0.1"/>
+  <particle m="1" px="0.4" py="0.5" vx="0" vy="-4" fixed="0" radius="0.1"/>
+  <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-0.15" nx="0" ny="1"/>
+</scene>"#;
+
+/// A scene that is written as the original reads it.
+pub(crate) fn scene(text: &str) -> Scene {
+    original::read(text.as_bytes()).expect("a scene").scene
+}
+
+/// The frames of a run that `steer` may change as it goes.
+pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
+    let layout = Layout::of(scene);
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
+    for _ in 0..layout.steps {
+        simulation.step(&mut (&mut steer, &mut recorder)).expect("a step");
+    }
+    let trace = recorder.finish().expect("written").0;
+    let mut reader = Reader::of_slice(&trace, layout);
+    let (mut frames, mut frame) = (Vec::new(), Frame::default());
+    while reader.next(&mut frame).expect("sound") {
+        frames.push(frame.clone());
+    }
+    frames
+}
+
+/// The bytes of these frames.
+pub(crate) fn written(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
+    let mut writer = Writer::new(Vec::new(), Layout::of(scene));
+    frames.iter().for_each(|frame| writer.frame(frame));
+    writer.finish().expect("written").0
+}
+
+/// The reference trace with changed frames.
+pub(crate) fn changed(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
+    let mut frames = run(scene, ());
+    change(&mut frames);
+    written(scene, &frames)
+}
+
+/// What both books say.
+pub(crate) fn judged(scene: &Scene, trace: &[u8]) -> Outcome {
+    let options = Options { fair: true, threads: 1, ..Options::default() };
+    parity::judge(scene, trace, &options, &mut ())
+}
+
+/// Replaces a frame's polynomials.
+pub(crate) fn relog(frame: &mut Frame, mut change: impl FnMut(usize, &[f64]) -> Vec<f64>) {
+    let log = std::mem::take(&mut frame.polynomials);
+    for (index, coefficients) in log.iter().enumerate() {
+        frame.polynomials.push(&change(index, coefficients));
+    }
+}

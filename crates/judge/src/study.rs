@@ -1,0 +1,289 @@
+//! One detection call, looked at closely: polynomials, zeros, where each is positive, where all are, and what follows.
+//!
+//! Judges nothing. The numbers are those of the reference, bit for bit: its formulas, its root finder, its sets of times
+//! (collisions.md 2, root-finder.md 15 and 16). Beside the course's approach polynomial of a particle and an edge stands the
+//! mathematically right one (numerics.md 1), and beside the reference's decision whether round-off may flip it.
+use crate::{
+    fair::{decides, formulas},
+    finding::Role,
+};
+use fosssim_model::sim::{Decision, PairMotion, PointMotion, Time};
+use fosssim_num::{
+    bounded::{Bounded, Bounded2},
+    first_time::{first_time, positive_set},
+    interval::{Interval, Intervals},
+    polynomial::{MAX_COEFFICIENTS, Polynomial},
+    rpoly,
+    tolerances::IMAGINARY_PART,
+};
+
+/// One polynomial of a detection call, and where it is positive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// What it says when it is positive.
+    pub role: Role,
+    /// Its coefficients, highest power first, nothing dropped.
+    pub untrimmed: Polynomial,
+    /// As logged and searched: without small leading coefficients.
+    pub logged: Polynomial,
+    /// The zeros as the reference's root finder gives them, in its order: real and imaginary part.
+    pub zeros: Vec<(f64, f64)>,
+    /// Where it is positive, over all times; sorted and apart.
+    pub positive: Vec<Interval>,
+}
+
+impl Curve {
+    fn of(role: Role, untrimmed: Polynomial) -> Result<Self, NoAnswer> {
+        let endless = |_| NoAnswer { role, coefficients: untrimmed };
+        let logged = Polynomial::trimmed(untrimmed.coefficients());
+        let zeros = match logged.coefficients() {
+            [] | [_] => Vec::new(),
+            coefficients => rpoly::zeros(coefficients).map_err(endless)?.as_slice().to_vec(),
+        };
+        let positive = positive_set(logged.coefficients()).map_err(endless)?.as_slice().to_vec();
+        Ok(Self { role, untrimmed, logged, zeros, positive })
+    }
+
+    /// The zeros that count as real, ascending.
+    #[must_use]
+    pub fn real_zeros(&self) -> Vec<f64> {
+        let real = self.zeros.iter().filter(|(_, imaginary)| imaginary.abs() < IMAGINARY_PART);
+        let mut zeros: Vec<f64> = real.map(|&(real, _)| real).collect();
+        zeros.sort_by(f64::total_cmp);
+        zeros
+    }
+}
+
+/// The zeros of a polynomial can't be found: the search would never end, because a coefficient is not finite or among
+/// the very smallest numbers. The original hangs here.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("the root search of the {role} polynomial does not end")]
+pub struct NoAnswer {
+    /// Which polynomial.
+    pub role: Role,
+    /// Its coefficients, nothing dropped.
+    pub coefficients: Polynomial,
+}
+
+/// What a list of polynomials decides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Where all are positive, over all times; sorted and apart. A set may be a single time.
+    pub positive: Vec<Interval>,
+    /// The decision.
+    pub decision: Decision,
+}
+
+impl Answer {
+    fn of(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, NoAnswer> {
+        let polynomials: Vec<Polynomial> = curves.iter().map(|curve| curve.logged).collect();
+        // Every search has ended before, on its own.
+        let time = first_time(&polynomials).unwrap_or(f64::INFINITY);
+        let normal = if time <= 1.0 { motion.normal(time) } else { None };
+        let decision = match normal {
+            Some(normal) => Decision::Hit { time, normal },
+            None => Decision::Miss { time: Time::Found(time) },
+        };
+        let mut both = Intervals::<SETS>::new();
+        both.push(Interval::EVERYTHING);
+        for curve in curves {
+            let mut set = Intervals::<SETS>::new();
+            curve.positive.iter().for_each(|&interval| set.push(interval));
+            both = both.intersection(&set);
+        }
+        let positive = if curves.is_empty() { Vec::new() } else { both.as_slice().to_vec() };
+        Ok(Self { positive, decision })
+    }
+
+    /// Whether the pair collides within the step.
+    #[must_use]
+    pub const fn collides(&self) -> bool {
+        matches!(self.decision, Decision::Hit { .. })
+    }
+
+    /// The first time from which all polynomials are positive; infinite if there is none.
+    #[must_use]
+    pub const fn time(&self) -> f64 {
+        match self.decision {
+            Decision::Hit { time, .. } | Decision::Miss { time: Time::Found(time) } => time,
+            Decision::Miss { .. } => f64::INFINITY,
+        }
+    }
+}
+
+/// Room for the common times of four polynomials.
+const SETS: usize = 32;
+
+/// The mathematically right approach polynomial of a particle and an edge, and what it decides in the course's place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RightApproach {
+    /// The polynomial; it differs from the course's in t^3 only.
+    pub curve: Curve,
+    /// What follows from it and the other three.
+    pub answer: Answer,
+}
+
+/// A detection call, looked at closely.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// The pair and how it moves.
+    pub motion: PairMotion,
+    /// Its polynomials in the order of the trace.
+    pub curves: Vec<Curve>,
+    /// What the reference decides.
+    pub answer: Answer,
+    /// Whether the pair collides whatever rounding does to a correct program; `None` where round-off may flip it.
+    pub certain: Option<bool>,
+    /// The right approach polynomial, where it is another one than the course's.
+    pub right_approach: Option<RightApproach>,
+}
+
+impl Study {
+    /// Looks at a pair that moves like this.
+    ///
+    /// # Errors
+    /// [`NoAnswer`], where the original hangs.
+    pub fn of(motion: &PairMotion) -> Result<Self, NoAnswer> {
+        let kind = motion.kind();
+        let polynomials = motion.polynomials();
+        let curves: Vec<Curve> = polynomials
+            .iter()
+            .enumerate()
+            .map(|(number, &untrimmed)| Curve::of(Role::of(kind, number), untrimmed))
+            .collect::<Result<_, _>>()?;
+        let answer = Answer::of(motion, &curves.iter().collect::<Vec<_>>())?;
+        let bounded = formulas::Motion::from(motion);
+        let expected = bounded.polynomials();
+        let right_approach = match right_approach(&polynomials, &expected) {
+            None => None,
+            Some(right) => {
+                let curve = Curve::of(Role::Approach, right)?;
+                let others = curves.iter().take(3).chain([&curve]).collect::<Vec<_>>();
+                let answer = Answer::of(motion, &others)?;
+                Some(RightApproach { curve, answer })
+            }
+        };
+        let certain = decides(&bounded, &expected);
+        Ok(Self { motion: *motion, curves, answer, certain, right_approach })
+    }
+}
+
+/// The course's approach polynomial with the right t^3 coefficient, if that is another one.
+fn right_approach(polynomials: &[Polynomial], expected: &formulas::Expected) -> Option<Polynomial> {
+    let (course, right) = (expected.polynomial(3), expected.other_form(3)?);
+    // The power t^3 of a quintic.
+    let cubic = MAX_COEFFICIENTS - 4;
+    if course[cubic].value == right[cubic].value {
+        return None;
+    }
+    let mut coefficients = [0.0; MAX_COEFFICIENTS];
+    coefficients.copy_from_slice(polynomials[3].coefficients());
+    coefficients[cubic] = right[cubic].value;
+    Some(Polynomial::untrimmed(&coefficients))
+}
+
+/// The same motion with bounds: end positions may be off by a rounding.
+impl From<&PairMotion> for formulas::Motion {
+    fn from(motion: &PairMotion) -> Self {
+        let way = |point: PointMotion| {
+            let start = Bounded2::exact(point.start);
+            let mut shift = Bounded2::rounded(point.start + point.shift) - start;
+            (shift.x.value, shift.y.value) = (point.shift.x, point.shift.y);
+            formulas::Way { start, shift }
+        };
+        let sum = |radii: [f64; 2]| Bounded::exact(radii[0]) + Bounded::exact(radii[1]);
+        match *motion {
+            PairMotion::Particles { centres, radii } => Self::Particles(centres.map(way), sum(radii)),
+            PairMotion::Edge { centre, ends, radii } => Self::Edge([centre, ends[0], ends[1]].map(way), sum(radii)),
+            PairMotion::HalfPlane { centre, radius, point, normal } => {
+                Self::HalfPlane(way(centre), Bounded::exact(radius), point, normal)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_num::vector::Vec2;
+
+    fn point(x: f64, y: f64, dx: f64, dy: f64) -> PointMotion {
+        PointMotion { start: Vec2::new(x, y), shift: Vec2::new(dx, dy) }
+    }
+
+    /// The assignment's first worked example.
+    fn first_example() -> PairMotion {
+        PairMotion::Edge {
+            centre: point(3.0, 1.0, 4.0, 1.0),
+            ends: [point(5.0, 9.0, 2.0, 6.0), point(5.0, 3.0, 5.0, 8.0)],
+            radii: [1.0, 1.0],
+        }
+    }
+
+    #[test]
+    fn the_assignments_examples() {
+        let study = Study::of(&first_example()).unwrap();
+        assert_eq!(study.curves[0].logged.coefficients(), [-361.0, -304.0, -468.0, -288.0, 0.0]);
+        assert!(!study.answer.collides());
+        let second = PairMotion::Edge {
+            centre: point(1.0, 4.0, 1.0, 4.0),
+            ends: [point(2.0, 1.0, 3.0, 5.0), point(6.0, 2.0, 3.0, 7.0)],
+            radii: [1.0, 2.0],
+        };
+        let study = Study::of(&second).unwrap();
+        assert_eq!(study.curves[0].logged.coefficients(), [-16.0, 0.0, -68.0, 36.0, -16.0]);
+        assert_eq!(study.curves[0].positive, []);
+        assert_eq!((study.answer.collides(), study.certain), (false, Some(false)));
+    }
+
+    /// The sets on the way lead to the same time as the reference's own search.
+    #[test]
+    fn the_common_set_begins_at_the_time_of_impact() {
+        let motion = PairMotion::Edge {
+            centre: point(0.0, 1.0, 0.25, -2.0),
+            ends: [point(-1.0, 0.0, 0.0, 0.5), point(1.0, 0.0, 0.5, 0.125)],
+            radii: [0.125, 0.125],
+        };
+        let study = Study::of(&motion).unwrap();
+        let Decision::Hit { time, normal } = study.answer.decision else { panic!("{:?}", study.answer) };
+        assert_eq!(study.answer.positive[0].lo, time);
+        assert_eq!(motion.normal(time), Some(normal));
+        assert_eq!(study.certain, Some(true));
+        // The edge turns: the right polynomial is another one, in t^3 only, and the contact is the same.
+        let right = study.right_approach.unwrap();
+        let (course, right_one) = (study.curves[3].untrimmed, right.curve.untrimmed);
+        let differing: Vec<usize> =
+            (0..6).filter(|&k| course.coefficients()[k] != right_one.coefficients()[k]).collect();
+        assert_eq!(differing, [2]);
+        assert_eq!(right.answer.time(), time);
+    }
+
+    #[test]
+    fn an_edge_that_only_translates_has_no_other_approach() {
+        let motion = PairMotion::Edge {
+            centre: point(0.0, 1.0, 0.0, -0.5),
+            ends: [point(-1.0, 0.0, 0.0, 0.5), point(1.0, 0.0, 0.0, 0.5)],
+            radii: [0.125, 0.125],
+        };
+        assert_eq!(Study::of(&motion).unwrap().right_approach, None);
+    }
+
+    #[test]
+    fn touching_at_the_end_of_the_step_hangs_on_round_off_unless_the_numbers_are_short() {
+        let particles = |gap: f64, radius: f64| PairMotion::Particles {
+            centres: [point(0.0, 0.0, 0.0, 0.0), point(gap, 0.0, 2.0 * radius - gap, 0.0)],
+            radii: [radius; 2],
+        };
+        assert_eq!(Study::of(&particles(0.7, 0.1)).unwrap().certain, None);
+        assert_eq!(Study::of(&particles(0.75, 0.125)).unwrap().certain, Some(true));
+    }
+
+    #[test]
+    fn numbers_that_overflow_have_no_answer() {
+        let PairMotion::Edge { centre, ends, radii } = first_example() else { unreachable!() };
+        let huge = PointMotion { start: Vec2::new(1e200, 0.0), ..centre };
+        let refused = Study::of(&PairMotion::Edge { centre: huge, ends, radii }).unwrap_err();
+        assert_eq!(refused.role, Role::Overlap);
+        assert_eq!(refused.to_string(), "the root search of the overlap polynomial does not end");
+    }
+}

@@ -1,0 +1,408 @@
+//! Compares one step of the trace with the reference while the reference computes it.
+//!
+//! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list as soon
+//! as it is known, so nothing of the reference's log is stored. Only at the end of the step is it known whether the
+//! two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
+use super::{
+    finding::{Detail, Finding, Kind, PolynomialPlace, Role},
+    outcome::{Counts, Residuals},
+    parity::Remark,
+};
+use fosssim_model::{
+    sim::{Detection, Impulse, Observer, Pass, Resume, Stage, State},
+    trace::{LenientFrame, LoggedImpulse},
+};
+use fosssim_num::{
+    polynomial::{MAX_COEFFICIENTS, Polynomial},
+    tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL, PARITY_ZERO_POLYNOMIAL},
+    vector::{Vec2, at, length},
+};
+
+/// Below this sum of moduli, coefficients that are equal bit for bit always pass the original's comparison: `(O*s)/s`
+/// differs from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of
+/// [`PARITY_COEFFICIENT`]. Above it the original may reject even its own output (oracle-behaviour.md 8.10), so the
+/// comparison is made as it is written.
+const SAFE_SUM: f64 = 1e5;
+
+/// What judging one step yields; reused from step to step.
+#[derive(Debug, Default)]
+pub(super) struct StepResult {
+    /// The original's lines about this step, in its order.
+    pub(super) remarks: Vec<Remark>,
+    /// How many findings of each kind.
+    pub(super) counts: Counts,
+    /// The first finding of each kind, in the order in which they were found.
+    pub(super) firsts: Vec<Finding>,
+    /// Residuals of each particle: position, velocity. Summed up in step order by the caller.
+    pub(super) residuals: Vec<(f64, f64)>,
+    /// Whether the step's states, impulses and polynomials are the reference's, bit for bit (small leading coefficients
+    /// dropped).
+    pub(super) identical: bool,
+}
+
+impl StepResult {
+    fn clear(&mut self) {
+        self.remarks.clear();
+        self.firsts.clear();
+        self.residuals.clear();
+        self.counts = Counts::default();
+        self.identical = false;
+    }
+
+    fn record(&mut self, finding: Finding) {
+        let kind = finding.kind();
+        if self.counts.get(kind) == 0 {
+            self.firsts.push(finding);
+        }
+        self.counts.add(kind, 1);
+    }
+}
+
+/// The findings about polynomials, held back until the two lists are known to have the same length.
+#[derive(Debug, Default)]
+struct Pending {
+    runs: Vec<(Kind, u32)>,
+    firsts: Vec<Finding>,
+}
+
+impl Pending {
+    fn clear(&mut self) {
+        self.runs.clear();
+        self.firsts.clear();
+    }
+
+    fn record(&mut self, kind: Kind, finding: impl FnOnce() -> Finding) {
+        if !self.firsts.iter().any(|first| first.kind() == kind) {
+            self.firsts.push(finding());
+        }
+        match self.runs.last_mut() {
+            Some((last, count)) if *last == kind => *count = count.saturating_add(1),
+            _ => self.runs.push((kind, 1)),
+        }
+    }
+}
+
+/// Buffers of a tally, kept from step to step.
+#[derive(Debug, Default)]
+pub(super) struct Buffers {
+    impulses: Vec<Impulse>,
+    pending: Pending,
+}
+
+/// The observer that compares one step.
+pub(super) struct Tally<'a> {
+    step: u32,
+    frame_number: u64,
+    /// The end record of this step, small leading coefficients dropped.
+    frame: &'a LenientFrame,
+    /// The state of the mid record, when the layout has one.
+    mid: Option<&'a State>,
+    /// Whether the reference's impulses are logged; in `hybrid` they are not.
+    logs_impulses: bool,
+    buffers: &'a mut Buffers,
+    result: &'a mut StepResult,
+    pass: Pass,
+    passes: usize,
+    /// Polynomials of the reference so far.
+    polynomials: usize,
+    /// Whether all that was compared so far is equal bit for bit.
+    identical: bool,
+}
+
+impl<'a> Tally<'a> {
+    /// A tally of `step`, whose end record is `frame`. `result` is emptied first.
+    pub(super) fn new(
+        (step, frame_number): (u32, u64),
+        frame: &'a LenientFrame,
+        mid: Option<&'a State>,
+        logs_impulses: bool,
+        buffers: &'a mut Buffers,
+        result: &'a mut StepResult,
+    ) -> Self {
+        buffers.impulses.clear();
+        buffers.pending.clear();
+        result.clear();
+        Self {
+            step,
+            frame_number,
+            frame,
+            mid,
+            logs_impulses,
+            buffers,
+            result,
+            pass: Pass { stage: Stage::Simple, index: 0 },
+            passes: 0,
+            polynomials: 0,
+            identical: true,
+        }
+    }
+
+    /// The next polynomial of the reference; `place` says where it belongs, should that be needed.
+    #[inline]
+    pub(super) fn expect_polynomial(&mut self, expected: &Polynomial, place: impl FnOnce() -> PolynomialPlace) {
+        let index = self.polynomials;
+        self.polynomials += 1;
+        if index < self.frame.polynomials.len() {
+            let actual = self.frame.polynomials.get(index);
+            if !equal_and_safe(expected.coefficients(), actual) {
+                self.identical &= equal(expected.coefficients(), actual);
+                self.compare_closely(place(), expected, actual);
+            }
+        }
+    }
+
+    /// Whether the lists have the same length, and the trace's was not kept to its end.
+    pub(super) fn needs_more(&self) -> bool {
+        self.frame.is_cut() && self.frame.logged == self.polynomials
+    }
+
+    /// Ends the step: compares impulses, the number of polynomials, and the states, in the original's order.
+    pub(super) fn finish(mut self, reference: &State, has_impulses: bool, has_polynomials: bool) {
+        if has_impulses {
+            self.compare_impulses();
+        }
+        if has_polynomials {
+            self.identical &= self.frame.logged == self.polynomials;
+            self.settle_polynomials();
+        }
+        self.identical &= same_bits(reference, &self.frame.state);
+        self.result.identical = self.identical;
+        self.compare_states(reference);
+    }
+
+    fn finding(&self, detail: Detail) -> Finding {
+        Finding { step: self.step, frame: self.frame_number, detail }
+    }
+
+    /// Oracle-behaviour.md 6.1: missed, superfluous, wrong normals; printed in this order.
+    fn compare_impulses(&mut self) {
+        let own = std::mem::take(&mut self.buffers.impulses);
+        let theirs = &self.frame.impulses;
+        self.identical &=
+            own.len() == theirs.len() && own.iter().zip(theirs).all(|(own, logged)| same_impulse(own, logged));
+        for expected in own.iter().filter(|own| !theirs.iter().any(|logged| same_pair(own, logged))) {
+            self.result.remarks.push(Remark::Missed(*expected));
+            self.result.record(self.finding(Detail::MissedCollision { expected: *expected }));
+        }
+        for actual in theirs.iter().filter(|logged| !own.iter().any(|own| same_pair(own, logged))) {
+            self.result.remarks.push(Remark::Superfluous(*actual));
+            self.result.record(self.finding(Detail::SuperfluousCollision { actual: *actual }));
+        }
+        for expected in &own {
+            let Some(actual) = theirs.iter().find(|logged| same_pair(expected, logged)) else { continue };
+            let residual = length(actual.normal - expected.normal);
+            // Parity's exception: a NaN normal passes, because the original asks whether the distance is larger.
+            if residual > PARITY_NORMAL {
+                self.result.remarks.push(Remark::WrongNormal { actual: *actual, expected: *expected });
+                let detail = Detail::WrongNormal { expected: *expected, actual: *actual, residual };
+                self.result.record(self.finding(detail));
+            }
+        }
+        self.buffers.impulses = own;
+    }
+
+    /// Oracle-behaviour.md 6.2: another number of polynomials is the only finding about them.
+    fn settle_polynomials(&mut self) {
+        let actual = self.frame.logged;
+        if actual != self.polynomials {
+            let per_pass = self.polynomials.checked_div(self.passes).unwrap_or(0);
+            let detail = Detail::PolynomialCount { expected: self.polynomials, actual, per_pass };
+            self.result.remarks.push(Remark::Polynomials(Kind::PolynomialCount, 1));
+            self.result.record(self.finding(detail));
+            return;
+        }
+        for &(kind, count) in &self.buffers.pending.runs {
+            self.result.remarks.push(Remark::Polynomials(kind, count));
+            self.result.counts.add(kind, u64::from(count));
+        }
+        self.result.firsts.append(&mut self.buffers.pending.firsts);
+    }
+
+    /// Oracle-behaviour.md 6.3: Euclidean residuals per particle.
+    fn compare_states(&mut self, reference: &State) {
+        let (mut positions, mut velocities) = (0, 0);
+        for particle in 0..reference.positions.len() / 2 {
+            let theirs = &self.frame.state;
+            let (expected, actual) = (at(&reference.positions, particle), at(&theirs.positions, particle));
+            let position = length(expected - actual);
+            // Written so that NaN is a finding: it fails the accumulated residual.
+            if !(position < PARITY_MAXIMUM) {
+                let (expected, actual) = (expected.into(), actual.into());
+                let detail = Detail::Position { particle, expected, actual, residual: position };
+                self.result.record(self.finding(detail));
+                positions += 1;
+            }
+            let (expected, actual) = (at(&reference.velocities, particle), at(&theirs.velocities, particle));
+            let velocity = length(expected - actual);
+            if !(velocity < PARITY_MAXIMUM) {
+                let (expected, actual) = (expected.into(), actual.into());
+                let detail = Detail::Velocity { particle, expected, actual, residual: velocity };
+                self.result.record(self.finding(detail));
+                velocities += 1;
+            }
+            self.result.residuals.push((position, velocity));
+        }
+        debug_assert_eq!(self.result.counts.get(Kind::Position), positions);
+        debug_assert_eq!(self.result.counts.get(Kind::Velocity), velocities);
+    }
+
+    /// Oracle-behaviour.md 6.2 for one polynomial that is not equal to the reference's bit for bit, or is large.
+    #[cold]
+    fn compare_closely(&mut self, place: PolynomialPlace, expected: &Polynomial, actual: &[f64]) {
+        let (step, frame) = (self.step, self.frame_number);
+        let finding = |detail| Finding { step, frame, detail };
+        let own = expected.coefficients();
+        let shown = Polynomial::untrimmed(&actual[..actual.len().min(MAX_COEFFICIENTS)]);
+        if own.len() != actual.len() {
+            self.buffers.pending.record(Kind::PolynomialDegree, || {
+                let (expected, actual_size) = (*expected, actual.len());
+                finding(Detail::PolynomialDegree { place, expected, actual_size, actual: shown })
+            });
+            return;
+        }
+        let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
+        if sum_actual < PARITY_ZERO_POLYNOMIAL && sum_own < PARITY_ZERO_POLYNOMIAL {
+            return;
+        }
+        if sum_own < PARITY_ZERO_POLYNOMIAL {
+            let detail = Detail::VanishingPolynomial { place, expected: *expected, actual: shown };
+            self.buffers.pending.record(Kind::VanishingPolynomial, || finding(detail));
+            return;
+        }
+        for (number, (&own_coefficient, &coefficient)) in own.iter().zip(actual).enumerate() {
+            let rescaled = (own_coefficient * sum_actual) / sum_own;
+            let residual = (coefficient - rescaled).abs();
+            // Parity's exception: NaN passes, because the original asks whether the distance is larger.
+            if residual > PARITY_COEFFICIENT {
+                self.buffers.pending.record(Kind::Coefficient, || {
+                    finding(Detail::Coefficient {
+                        place,
+                        power: own.len() - 1 - number,
+                        expected: rescaled,
+                        actual: coefficient,
+                        residual,
+                        expected_polynomial: *expected,
+                        actual_polynomial: shown,
+                    })
+                });
+            }
+        }
+    }
+}
+
+impl Observer for Tally<'_> {
+    fn begin_pass(&mut self, pass: Pass) {
+        self.pass = pass;
+        self.passes += 1;
+    }
+
+    #[inline]
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let pass = self.pass;
+        for (number, expected) in detection.polynomials.iter().enumerate() {
+            let index = self.polynomials;
+            self.expect_polynomial(expected, || {
+                let role = Role::of(detection.pair.kind, number);
+                PolynomialPlace { pass, pair: detection.pair, role, index }
+            });
+        }
+    }
+
+    fn impulse(&mut self, impulse: &Impulse) {
+        if self.logs_impulses {
+            self.buffers.impulses.push(*impulse);
+        }
+    }
+
+    /// Takes over the mid record's state without comparing it (oracle-behaviour.md 4.2).
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        if let Some(mid) = self.mid {
+            self.identical &= same_bits(state, mid);
+            state.positions.copy_from_slice(&mid.positions);
+            state.velocities.copy_from_slice(&mid.velocities);
+        }
+        Resume::Own
+    }
+}
+
+/// Adds one step's residuals in the original's order: particle by particle (oracle-behaviour.md 6.3).
+pub(super) fn accumulate(total: &mut Residuals, step: &[(f64, f64)]) {
+    for &(position, velocity) in step {
+        total.accumulated_position += position;
+        total.accumulated_velocity += velocity;
+        if position > total.maximum_position {
+            total.maximum_position = position;
+        }
+        if velocity > total.maximum_velocity {
+            total.maximum_velocity = velocity;
+        }
+    }
+}
+
+/// Whether both name the same pair of objects; the time is never compared.
+fn same_pair(own: &Impulse, logged: &LoggedImpulse) -> bool {
+    own.pair.kind.code() == logged.kind
+        && i64::from(own.pair.first) == i64::from(logged.first)
+        && i64::from(own.pair.second) == i64::from(logged.second)
+}
+
+/// Whether both are the same impulse bit for bit, the time included.
+fn same_impulse(own: &Impulse, logged: &LoggedImpulse) -> bool {
+    let bits = |normal: Vec2, time: f64| [normal.x.to_bits(), normal.y.to_bits(), time.to_bits()];
+    same_pair(own, logged) && bits(own.normal, own.time) == bits(logged.normal, logged.time)
+}
+
+/// Whether two states are equal bit for bit.
+fn same_bits(own: &State, other: &State) -> bool {
+    equal(&own.positions, &other.positions) && equal(&own.velocities, &other.velocities)
+}
+
+/// Whether two lists are equal bit for bit.
+fn equal(own: &[f64], other: &[f64]) -> bool {
+    own.len() == other.len() && own.iter().zip(other).all(|(own, other)| own.to_bits() == other.to_bits())
+}
+
+/// The sum of moduli, left to right from zero.
+fn sum_of_moduli(coefficients: &[f64]) -> f64 {
+    coefficients.iter().fold(0.0, |sum, c| sum + c.abs())
+}
+
+/// Whether two lists are equal bit for bit and small enough that the original's comparison accepts them for certain.
+#[inline]
+fn equal_and_safe(own: &[f64], actual: &[f64]) -> bool {
+    if own.len() != actual.len() {
+        return false;
+    }
+    let mut sum = 0.0;
+    let mut difference = 0;
+    for (o, a) in own.iter().zip(actual) {
+        difference |= o.to_bits() ^ a.to_bits();
+        sum += o.abs();
+    }
+    difference == 0 && sum < SAFE_SUM
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_large_coefficients_are_compared_as_the_original_does() {
+        assert!(equal_and_safe(&[1.0, -2.0], &[1.0, -2.0]));
+        assert!(!equal_and_safe(&[1.0, -2.0], &[1.0, 2.0]));
+        assert!(!equal_and_safe(&[0.0], &[-0.0]));
+        assert!(!equal_and_safe(&[1e6, 1.0], &[1e6, 1.0]));
+        assert!(!equal_and_safe(&[f64::NAN], &[f64::NAN]));
+        assert!(!equal_and_safe(&[1.0], &[1.0, 2.0]));
+    }
+
+    #[test]
+    fn a_nan_residual_raises_no_maximum_but_poisons_the_sum() {
+        let mut total = Residuals::default();
+        accumulate(&mut total, &[(f64::NAN, 0.5), (0.25, 0.25)]);
+        assert!(total.accumulated_position.is_nan());
+        assert_eq!(total.maximum_position, 0.25);
+        assert_eq!(total.accumulated_velocity, 0.75);
+        assert_eq!(total.maximum_velocity, 0.5);
+    }
+}

@@ -1,0 +1,311 @@
+//! Findings in words: one sentence that says where, what was expected and what was there.
+//!
+//! Numbers are written so that reading them back gives the same value. Reports that lay values out side by side use
+//! the fields of [`Detail`] instead.
+use super::finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Role};
+use fosssim_model::{
+    sim::{Pair, PairKind, Pass, Stage},
+    trace::LoggedImpulse,
+};
+use std::fmt::{self, Display, Formatter};
+
+impl Display for Finding {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "step {}: {}", self.step, self.what())
+    }
+}
+
+/// A finding without its step.
+struct What<'a>(&'a Finding);
+
+impl Finding {
+    /// The finding in words, without its step: what stands in the first record starts, what stands in others ends there.
+    #[must_use]
+    pub fn what(&self) -> impl Display + '_ {
+        What(self)
+    }
+}
+
+impl Display for What<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Finding { step, detail, .. } = self.0;
+        match *detail {
+            Detail::Position { particle, expected: [ex, ey], actual: [ax, ay], residual } if *step == 0 => {
+                write!(f, "particle {particle} starts at ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}")
+            }
+            Detail::Velocity { particle, expected: [ex, ey], actual: [ax, ay], residual } if *step == 0 => write!(
+                f,
+                "particle {particle} starts with velocity ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}"
+            ),
+            Detail::RecordsDiffer { part: RecordPart::Impulses } if *step == 0 => {
+                f.write_str("the first record holds impulses, before anything has moved")
+            }
+            Detail::RecordsDiffer { part: RecordPart::Polynomials } if *step == 0 => {
+                f.write_str("the first record holds polynomials, before anything has moved")
+            }
+            _ => write!(f, "{detail}"),
+        }
+    }
+}
+
+impl Display for Detail {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MissedCollision { expected } => {
+                let [x, y] = [expected.normal.x, expected.normal.y];
+                write!(
+                    f,
+                    "{} collide at time {} with normal ({x}, {y}), the trace misses it",
+                    PairWords(expected.pair),
+                    expected.time
+                )
+            }
+            Self::SuperfluousCollision { actual } => {
+                let [x, y] = [actual.normal.x, actual.normal.y];
+                write!(
+                    f,
+                    "the trace has {} collide at time {} with normal ({x}, {y}), they do not",
+                    LoggedPair(actual),
+                    actual.time
+                )
+            }
+            Self::WrongNormal { expected, actual, residual } => write!(
+                f,
+                "{}: contact normal ({}, {}), expected ({}, {}), distance {residual}",
+                PairWords(expected.pair),
+                actual.normal.x,
+                actual.normal.y,
+                expected.normal.x,
+                expected.normal.y,
+            ),
+            Self::PolynomialCount { expected, actual, per_pass } => {
+                write!(f, "{actual} polynomials logged, expected {expected}")?;
+                match passes(*expected, *actual, *per_pass) {
+                    Some((passes, more)) => {
+                        let plural = if passes == 1 { "pass" } else { "passes" };
+                        write!(f, ": {passes} detection {plural} too {}", if more { "many" } else { "few" })
+                    }
+                    None => Ok(()),
+                }
+            }
+            Self::PassCount { part, expected, actual } => {
+                let part = match part {
+                    Part::Impulses => "before the mid record",
+                    Part::Geometric => "in the geometric part",
+                };
+                write!(f, "{actual} detection passes {part}, expected {expected}")
+            }
+            Self::PolynomialDegree { place, expected, actual_size, .. } => write!(
+                f,
+                "{place}: {actual_size} coefficients, expected {} (leading ones below 1e-12 dropped)",
+                expected.coefficients().len()
+            ),
+            Self::VanishingPolynomial { place, .. } => {
+                write!(f, "{place}: the reference's coefficients all vanish, the trace's do not")
+            }
+            Self::Coefficient { place, power, expected, actual, .. } => {
+                write!(f, "{place}, {}: {actual}, expected {expected}", Power(*power))
+            }
+            Self::Position { particle, expected, actual, residual } => {
+                let ([ax, ay], [ex, ey]) = (actual, expected);
+                write!(f, "particle {particle} ends at ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}")
+            }
+            Self::Velocity { particle, expected, actual, residual } => {
+                let ([ax, ay], [ex, ey]) = (actual, expected);
+                write!(
+                    f,
+                    "particle {particle} ends with velocity ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}"
+                )
+            }
+            Self::ContactTime { expected, actual } => write!(
+                f,
+                "{} collide at time {}, the trace says {}",
+                PairWords(expected.pair),
+                expected.time,
+                actual.time
+            ),
+            Self::RepeatedCollision { actual } => {
+                write!(f, "the collision of {} is logged more than once", LoggedPair(actual))
+            }
+            Self::PassPositions { place } => write!(
+                f,
+                "{place}: belongs to other positions than those that the response or the failsafe before it should lead to"
+            ),
+            Self::RecordsDiffer { part } => f.write_str(match part {
+                RecordPart::State => "the state changes between the step's two records",
+                RecordPart::Impulses => "the step's two records hold different impulses",
+                RecordPart::Polynomials => "the mid record's polynomials are not the first ones of the end record",
+            }),
+            Self::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
+            Self::TrimmedDecision { place, collides } => {
+                let outcome = if *collides { "collide" } else { "do not collide" };
+                let pair = PairWords(place.pair);
+                write!(
+                    f,
+                    "{pair} ({}) {outcome}; the trace's polynomials are right up to their factor, but the course's library dropped coefficients below 1e-12 of them, and decides otherwise",
+                    PassWords(place.pass)
+                )
+            }
+            Self::MixedForms { place } => {
+                write!(f, "{place}: the other one of the two accepted forms; a program uses one of them throughout")
+            }
+        }
+    }
+}
+
+/// By how many whole detection passes two counts differ, and whether the trace has more; `None` when it is no whole
+/// number of passes.
+#[must_use]
+pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize, bool)> {
+    let difference = actual.abs_diff(expected);
+    (per_pass > 0 && difference > 0 && difference.is_multiple_of(per_pass))
+        .then(|| (difference / per_pass, actual > expected))
+}
+
+impl Display for PolynomialPlace {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{} polynomial of {} ({})", self.role, PairWords(self.pair), PassWords(self.pass))
+    }
+}
+
+impl Display for Role {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Overlap => "overlap",
+            Self::AlphaAboveZero => "alpha > 0",
+            Self::AlphaBelowOne => "alpha < 1",
+            Self::Approach => "approach",
+        })
+    }
+}
+
+impl Display for Kind {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::MissedCollision => "missed collision",
+            Self::SuperfluousCollision => "superfluous collision",
+            Self::WrongNormal => "wrong contact normal",
+            Self::PolynomialCount => "wrong number of polynomials",
+            Self::PolynomialDegree => "wrong polynomial degree",
+            Self::VanishingPolynomial => "polynomial should vanish",
+            Self::Coefficient => "wrong coefficient",
+            Self::Position => "wrong position",
+            Self::Velocity => "wrong velocity",
+            Self::ContactTime => "wrong time of impact",
+            Self::RepeatedCollision => "repeated collision",
+            Self::PassPositions => "wrong positions within the step",
+            Self::RecordsDiffer => "contradicting records",
+            Self::ImpossibleLog => "impossible log",
+            Self::TrimmedDecision => "decision changed by lost coefficients",
+            Self::MixedForms => "mixed forms of the approach",
+        })
+    }
+}
+
+/// A pair in words: `particle 3 and edge 1`.
+#[derive(Debug, Clone, Copy)]
+pub struct PairWords(pub Pair);
+
+impl Display for PairWords {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Pair { kind, first, second } = self.0;
+        match kind {
+            PairKind::ParticleParticle => write!(f, "particles {first} and {second}"),
+            PairKind::ParticleEdge => write!(f, "particle {first} and edge {second}"),
+            PairKind::ParticleHalfPlane => write!(f, "particle {first} and half-plane {second}"),
+        }
+    }
+}
+
+/// A pair as a trace names it, which may be nonsense.
+struct LoggedPair<'a>(&'a LoggedImpulse);
+
+impl Display for LoggedPair<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let LoggedImpulse { kind, first, second, .. } = self.0;
+        match kind {
+            0 => write!(f, "particles {first} and {second}"),
+            1 => write!(f, "particle {first} and edge {second}"),
+            2 => write!(f, "particle {first} and half-plane {second}"),
+            kind => write!(f, "a pair of unknown kind {kind} ({first}, {second})"),
+        }
+    }
+}
+
+/// A detection pass in words: `impulse round 2`.
+#[derive(Debug, Clone, Copy)]
+pub struct PassWords(pub Pass);
+
+impl Display for PassWords {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0.stage {
+            Stage::Simple | Stage::ContinuousTime => f.write_str("the step's only detection pass"),
+            Stage::Impulses { round } => write!(f, "detection of impulse round {}", round + 1),
+            Stage::Geometric { round: 0 } => f.write_str("detection before the rigid failsafe"),
+            Stage::Geometric { round } => write!(f, "detection after failsafe round {round}"),
+        }
+    }
+}
+
+/// A power of t: `t^3`, `t`, `constant term`.
+#[derive(Debug, Clone, Copy)]
+pub struct Power(pub usize);
+
+impl Display for Power {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            0 => f.write_str("constant term"),
+            1 => f.write_str("coefficient of t"),
+            power => write!(f, "coefficient of t^{power}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_num::polynomial::Polynomial;
+
+    #[test]
+    fn a_finding_reads_as_a_sentence() {
+        let pair = Pair { kind: PairKind::ParticleEdge, first: 3, second: 1 };
+        let pass = Pass { stage: Stage::Impulses { round: 1 }, index: 1 };
+        let place = PolynomialPlace { pass, pair, role: Role::Overlap, index: 17 };
+        let polynomial = Polynomial::untrimmed(&[1.0, 2.0, 3.0]);
+        let detail = Detail::Coefficient {
+            place,
+            power: 2,
+            expected: 3.5,
+            actual: 4.0,
+            residual: 0.5,
+            expected_polynomial: polynomial,
+            actual_polynomial: polynomial,
+        };
+        assert_eq!(
+            Finding { step: 14, frame: 28, detail }.to_string(),
+            "step 14: overlap polynomial of particle 3 and edge 1 (detection of impulse round 2), coefficient of t^2: 4, expected 3.5"
+        );
+    }
+
+    #[test]
+    fn particles_start_in_the_first_record_and_end_in_the_others() {
+        let detail = Detail::Position { particle: 2, expected: [0.0, 1.0], actual: [0.0, 3.0], residual: 2.0 };
+        let words = |step| Finding { step, frame: 0, detail }.to_string();
+        assert_eq!(words(0), "step 0: particle 2 starts at (0, 3), expected (0, 1), distance 2");
+        assert_eq!(words(1), "step 1: particle 2 ends at (0, 3), expected (0, 1), distance 2");
+        let detail = Detail::RecordsDiffer { part: RecordPart::Impulses };
+        assert_eq!(
+            Finding { step: 0, frame: 0, detail }.to_string(),
+            "step 0: the first record holds impulses, before anything has moved"
+        );
+    }
+
+    #[test]
+    fn whole_passes_are_counted() {
+        let words = |expected, actual, per_pass| Detail::PolynomialCount { expected, actual, per_pass }.to_string();
+        assert_eq!(words(40, 60, 20), "60 polynomials logged, expected 40: 1 detection pass too many");
+        assert_eq!(words(60, 20, 20), "20 polynomials logged, expected 60: 2 detection passes too few");
+        assert_eq!(words(60, 61, 20), "61 polynomials logged, expected 60");
+        assert_eq!(words(0, 61, 0), "61 polynomials logged, expected 0");
+    }
+}

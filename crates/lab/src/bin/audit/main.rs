@@ -1,0 +1,482 @@
+//! Compares the certificate with the root finder on random detections, on all processors.
+//!
+//! `cargo run --release --example audit -- [detections] [seed]` draws that many detections (default: a million) of
+//! the three pair types from wide and nasty distributions. Wherever the certificate says that nothing happens within
+//! the step, the search has to say so, too: for the list, and for each polynomial by itself, where no other one hides
+//! a mistake. A fourth kind are products of linear factors whose zeros are as awkward as can be. It prints how many
+//! detections each level decided, how many the search alone could decide, and the first disagreement; there must be none.
+//! The draws depend on the seed only, not on the number of processors.
+//!
+//! A second table compares the certified decisions of `num::decision` (64 units of rounding, as the fair rules have it) with
+//! the root finder. Here disagreements are facts about the root finder, not mistakes: a decision says what is true. They are
+//! sorted by what the original does on purpose: `c t^m` counts as nowhere positive, small leading coefficients are dropped;
+//! whatever is left is its rounding. These do not change the exit code.
+use std::{
+    fmt::Write as _,
+    process::ExitCode,
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+use fosssim_oracle::num::{
+    bounded::{Bounded, Bounded2},
+    certificate::{Level, exclusion},
+    first_time::first_time,
+    polynomial::Polynomial,
+    vector::Vec2,
+};
+
+mod decisions;
+
+use decisions::Decisions;
+
+/// Detections that one thread draws in one go.
+const BLOCK: u64 = 10_000;
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
+    let (Ok(detections), Ok(seed)) = (arguments.next().unwrap_or(Ok(1_000_000)), arguments.next().unwrap_or(Ok(1)))
+    else {
+        eprintln!("usage: audit [detections] [seed]");
+        return ExitCode::from(2);
+    };
+    let blocks = detections.div_ceil(BLOCK);
+    let next = AtomicU64::new(0);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut total = Tally::default();
+    std::thread::scope(|scope| {
+        let run = || {
+            let mut tally = Tally::default();
+            loop {
+                let block = next.fetch_add(1, Ordering::Relaxed);
+                if block >= blocks {
+                    return tally;
+                }
+                let mut random = Random::new(seed, block);
+                for index in 0..BLOCK.min(detections - block * BLOCK) {
+                    tally.audit(block * BLOCK + index, &mut random);
+                }
+            }
+        };
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(run)).collect();
+        for worker in workers {
+            total.add(worker.join().expect("a worker does not panic"));
+        }
+    });
+    print!("{}", total.report());
+    ExitCode::from(u8::from(total.disagreements > 0))
+}
+
+/// The three pair types, in the order of collisions.md 1, and bare products.
+const PAIRS: [&str; 4] = ["particle-particle", "particle-edge", "particle-half-plane", "product"];
+
+/// Counts per pair type; the last entry of a row counts what no level decided.
+#[derive(Default)]
+struct Tally {
+    decided: [[u64; Level::ALL.len() + 1]; PAIRS.len()],
+    needless: [u64; PAIRS.len()],
+    endless: [u64; PAIRS.len()],
+    disagreements: u64,
+    first: Option<(u64, String)>,
+    decisions: [Decisions; PAIRS.len()],
+}
+
+impl Tally {
+    fn audit(&mut self, index: u64, random: &mut Random) {
+        let (pair, geometry, lists) = draw(random);
+        let values = |list: &Vec<Bounded>| list.iter().map(|coefficient| coefficient.value).collect::<Vec<f64>>();
+        let polynomials: Vec<Polynomial> = lists.iter().map(|list| Polynomial::trimmed(&values(list))).collect();
+        let level = exclusion(&polynomials);
+        let time = first_time(&polynomials);
+        let column = level.map_or(Level::ALL.len(), |level| level as usize);
+        self.decided[pair][column] += 1;
+        self.endless[pair] += u64::from(time.is_err());
+        let never = time.is_ok_and(|time| time > 1.0);
+        self.needless[pair] += u64::from(never && level.is_none());
+        let alone = |polynomial: &Polynomial| {
+            let alone = std::slice::from_ref(polynomial);
+            exclusion(alone).is_some() && !first_time(alone).is_ok_and(|time| time > 1.0)
+        };
+        if (level.is_some() && !never) || polynomials.iter().any(alone) {
+            self.disagreements += 1;
+            if self.first.as_ref().is_none_or(|&(first, _)| index < first) {
+                let lists: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
+                let what = format!("{} ({geometry}): {level:?} but {time:?}\n{lists:?}", PAIRS[pair]);
+                self.first = Some((index, what));
+            }
+        }
+        self.decisions[pair].compare(index, geometry, &lists, &polynomials, time.ok());
+    }
+
+    fn add(&mut self, other: Self) {
+        for pair in 0..PAIRS.len() {
+            for (sum, count) in self.decided[pair].iter_mut().zip(other.decided[pair]) {
+                *sum += count;
+            }
+            self.needless[pair] += other.needless[pair];
+            self.endless[pair] += other.endless[pair];
+        }
+        for (sum, decisions) in self.decisions.iter_mut().zip(other.decisions) {
+            sum.add(decisions);
+        }
+        self.disagreements += other.disagreements;
+        self.first = [self.first.take(), other.first].into_iter().flatten().min();
+    }
+
+    fn report(&self) -> String {
+        let mut text = String::new();
+        for (pair, name) in PAIRS.iter().enumerate() {
+            let row = &self.decided[pair];
+            let sum: u64 = row.iter().sum();
+            let share = |count: u64| 100.0 * count as f64 / sum.max(1) as f64;
+            let _ = writeln!(text, "{name}: {sum} detections");
+            for level in Level::ALL {
+                let count = row[level as usize];
+                let _ = writeln!(text, "  {:<12} {count:>12} {:>6.2} %", format!("{level:?}"), share(count));
+            }
+            let undecided = row[Level::ALL.len()];
+            let _ = writeln!(text, "  undecided    {undecided:>12} {:>6.2} %", share(undecided));
+            let _ = writeln!(
+                text,
+                "  of these the search excludes {} and never ends in {}",
+                self.needless[pair], self.endless[pair]
+            );
+        }
+        let _ = writeln!(text, "disagreements: {}", self.disagreements);
+        if let Some((index, what)) = &self.first {
+            let _ = writeln!(text, "first: detection {index}, {what}");
+        }
+        for (decisions, name) in self.decisions.iter().zip(PAIRS) {
+            decisions.report(name, &mut text);
+        }
+        text
+    }
+}
+
+/// A reproducible generator (splitmix64 seeding xorshift64*).
+struct Random(u64);
+
+impl Random {
+    fn new(seed: u64, block: u64) -> Self {
+        let mut z = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(block.wrapping_mul(0xD1B5_4A32_D192_ED03));
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        Self((z ^ (z >> 31)) | 1)
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
+    }
+
+    fn below(&mut self, bound: u64) -> u64 {
+        (self.bits() >> 11) % bound
+    }
+
+    fn uniform(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+
+    /// Ten to a uniform power.
+    fn log(&mut self, lo: f64, hi: f64) -> f64 {
+        10.0_f64.powf(self.uniform(lo, hi))
+    }
+
+    fn direction(&mut self) -> V {
+        let angle = self.uniform(0.0, std::f64::consts::TAU);
+        V(angle.cos(), angle.sin())
+    }
+
+    fn point(&mut self, scale: f64) -> V {
+        V(self.uniform(-scale, scale), self.uniform(-scale, scale))
+    }
+
+    fn grid(&mut self, reach: u64, unit: f64) -> V {
+        let mut coordinate = || (self.below(2 * reach + 1) as f64 - reach as f64) * unit;
+        V(coordinate(), coordinate())
+    }
+
+    fn chance(&mut self, one_in: u64) -> bool {
+        self.below(one_in) == 0
+    }
+}
+
+/// A vector.
+#[derive(Clone, Copy)]
+struct V(f64, f64);
+
+impl V {
+    fn turned(self) -> Self {
+        Self(-self.1, self.0)
+    }
+}
+
+impl std::ops::Add for V {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1)
+    }
+}
+
+impl std::ops::Sub for V {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0, self.1 - other.1)
+    }
+}
+
+impl std::ops::Mul<f64> for V {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0 * factor, self.1 * factor)
+    }
+}
+
+fn dot(a: V, b: V) -> f64 {
+    a.0 * b.0 + a.1 * b.1
+}
+
+/// Three points with their displacements: a particle, and another one, an edge's ends, or a half-plane's point and
+/// normal (whose displacement is ignored).
+struct Motion {
+    x: [V; 3],
+    d: [V; 3],
+    radius: f64,
+}
+
+/// A distribution of motions.
+type Make = fn(&mut Random) -> Motion;
+
+/// Draws a detection: pair type, name of the distribution, polynomials.
+fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
+    let pair = [0, 1, 1, 2, 3][random.below(5) as usize];
+    if pair == 3 {
+        return (pair, "zeros on a grid", vec![product(random)]);
+    }
+    let kinds: [(&str, Make); 8] = [
+        ("wide", wide),
+        ("grid", grid),
+        ("near-rigid", near_rigid),
+        ("resting", resting),
+        ("grazing", grazing),
+        ("far", far),
+        ("turning", turning),
+        ("bulk", bulk),
+    ];
+    let (name, make) = kinds[random.below(kinds.len() as u64) as usize];
+    let mut motion = make(random);
+    // Round every displacement through end positions, as a simulation does.
+    for (x, d) in motion.x.iter().zip(&mut motion.d) {
+        *d = (*x + *d) - *x;
+    }
+    let lists = match pair {
+        0 => particle_particle(&motion),
+        1 => particle_edge(&motion),
+        _ => particle_half_plane(&motion),
+    };
+    (pair, name, lists)
+}
+
+/// A polynomial of degree three to five with zeros on a coarse grid, some of them multiple or nearly so, that is
+/// often negative within the step.
+fn product(random: &mut Random) -> Vec<Bounded> {
+    let unit = [1.0, 0.5, 0.25, 0.1][random.below(4) as usize];
+    let degree = 3 + random.below(3) as usize;
+    let noise = if random.chance(2) { 0.0 } else { random.log(-16.0, -3.0) };
+    let mut coefficients = [0.0; 6];
+    coefficients[0] = random.uniform(-1.0, 1.0).signum() * random.log(-6.0, 3.0);
+    let mut count = 0;
+    while count < degree {
+        // The step itself is left out most of the time.
+        let place = (random.below(33) as f64 - 16.0) * unit;
+        if (0.0..=1.0).contains(&place) && !random.chance(16) {
+            continue;
+        }
+        let repeat = if random.chance(2) { 2.min(degree - count) } else { 1 };
+        for _ in 0..repeat {
+            let zero = place + noise * random.uniform(-1.0, 1.0);
+            count += 1;
+            for i in (1..=count).rev() {
+                coefficients[i] -= zero * coefficients[i - 1];
+            }
+        }
+    }
+    coefficients[..=degree].iter().map(|&coefficient| Bounded::rounded(coefficient)).collect()
+}
+
+/// Every object has its own scale and speed.
+fn wide(random: &mut Random) -> Motion {
+    let scale = random.log(-3.0, 4.0);
+    let mut object = |spread: f64| {
+        let size = scale * if random.chance(3) { random.log(-3.0, 3.0) } else { spread };
+        let moves = if random.chance(4) { 0.0 } else { size * random.log(-12.0, 1.0) };
+        (random.point(size), random.direction() * moves)
+    };
+    let [a, b, c] = [object(1.0), object(1.0), object(1.0)];
+    Motion { x: [a.0, b.0, c.0], d: [a.1, b.1, c.1], radius: scale * random.log(-3.0, 0.3) }
+}
+
+/// Integers or simple fractions, where coincidences are frequent.
+fn grid(random: &mut Random) -> Motion {
+    let unit = [1.0, 0.5, 0.25, 0.1, 1e-3][random.below(5) as usize];
+    let (reach, speed) = (1 + random.below(12), random.below(5));
+    let radius = unit * [0.5, 1.0, 1.5, 2.0, 3.0][random.below(5) as usize];
+    let [a, b, c] = [(); 3].map(|()| random.grid(reach, unit));
+    let [e, f, g] = [(); 3].map(|()| random.grid(speed, unit));
+    Motion { x: [a, b, c], d: [e, f, g], radius }
+}
+
+/// The second and third object move almost alike.
+fn near_rigid(random: &mut Random) -> Motion {
+    let mut motion = wide(random);
+    let relative = random.log(-17.0, -1.0);
+    motion.d[2] =
+        motion.d[1] + random.direction() * (relative * (dot(motion.d[1], motion.d[1]).sqrt() + random.log(-9.0, 0.0)));
+    motion
+}
+
+/// The particle touches, or nearly, and moves along or hardly at all.
+fn resting(random: &mut Random) -> Motion {
+    let mut motion = bulk(random);
+    let along = motion.x[2] - motion.x[1];
+    let length = dot(along, along).sqrt();
+    let normal = along.turned() * (1.0 / length);
+    let gap = motion.radius * (1.0 + random.uniform(-1.0, 3.0) * random.log(-17.0, -1.0));
+    motion.x[0] = motion.x[1] + along * random.uniform(-0.2, 1.2) + normal * gap;
+    let slide = along * (random.uniform(-1.0, 1.0) * random.log(-9.0, 0.0));
+    let press = normal * (motion.radius * random.uniform(-1.0, 1.0) * random.log(-14.0, 0.0));
+    motion.d[0] = if random.chance(8) { motion.d[1] } else { motion.d[1] + slide + press };
+    motion
+}
+
+/// The particle passes at about the sum of the radii at some time before, within or after the step.
+fn grazing(random: &mut Random) -> Motion {
+    let mut motion = if random.chance(2) { wide(random) } else { turning(random) };
+    let time = random.uniform(-2.0, 4.0);
+    let target = motion.x[1] + motion.d[1] * time;
+    let other = motion.x[2] + motion.d[2] * time;
+    let along = other - target;
+    let length = dot(along, along).sqrt();
+    let normal = along.turned() * (1.0 / length);
+    let gap = motion.radius * (1.0 + random.uniform(-1.0, 1.0) * random.log(-16.0, 0.0));
+    let meeting = target + along * random.uniform(-0.1, 1.1) + normal * gap;
+    let speed = motion.radius * random.log(-6.0, 2.0);
+    let cross = normal * (speed * if random.chance(2) { 0.0 } else { random.log(-12.0, 0.0) });
+    motion.d[0] = along * (speed / length) + cross + motion.d[1];
+    motion.x[0] = meeting - motion.d[0] * time;
+    motion
+}
+
+/// Far apart compared with radii and motion.
+fn far(random: &mut Random) -> Motion {
+    let mut motion = wide(random);
+    let distance = motion.radius * random.log(0.0, 7.0);
+    motion.x[0] = motion.x[1] + random.direction() * distance;
+    for i in 0..3 {
+        let moves = if random.chance(3) { 0.0 } else { motion.radius * random.log(-13.0, 1.0) };
+        motion.d[i] = if random.chance(3) { V(moves, 0.0) } else { random.direction() * moves };
+    }
+    motion
+}
+
+/// An edge that turns by up to half a turn and stretches a little.
+fn turning(random: &mut Random) -> Motion {
+    let scale = random.log(-2.0, 3.0);
+    let (centre, half) = (random.point(scale), random.direction() * (scale * random.uniform(0.1, 1.0)));
+    let angle = random.uniform(-1.0, 1.0) * random.log(-6.0, 0.5);
+    let stretch = 1.0 + random.uniform(-0.5, 0.5) * random.log(-6.0, 0.0);
+    let turned = (half * angle.cos() + half.turned() * angle.sin()) * stretch;
+    let shift = random.direction() * (scale * random.log(-6.0, 0.5));
+    let particle = random.direction() * (scale * random.log(-6.0, 0.5));
+    Motion {
+        x: [random.point(2.0 * scale), centre + half, centre - half],
+        d: [particle, shift + turned - half, shift - turned + half],
+        radius: scale * random.log(-3.0, 0.0),
+    }
+}
+
+/// Everything moves together, with small differences; this is what most pairs of a scene look like.
+fn bulk(random: &mut Random) -> Motion {
+    let scale = random.log(-3.0, 4.0);
+    let together = random.direction() * (scale * random.log(-8.0, 0.5));
+    let spread = scale * random.log(-12.0, -0.5);
+    let x = [(); 3].map(|()| random.point(scale));
+    let d = [(); 3].map(|()| together + random.point(spread));
+    Motion { x, d, radius: scale * random.log(-3.0, -0.3) }
+}
+
+/// A vector that may be off by a rounding.
+fn rounded(v: V) -> Bounded2 {
+    Bounded2::rounded(Vec2::new(v.0, v.1))
+}
+
+/// The polynomials of collisions.md 2, with the terms in any order: they need not be those of a trace.
+fn particle_particle(motion: &Motion) -> Vec<Vec<Bounded>> {
+    let [x1, x2, _] = motion.x.map(rounded);
+    let [d1, d2, _] = motion.d.map(rounded);
+    let (x, d, reach) = (x2 - x1, d2 - d1, Bounded::rounded(motion.radius));
+    vec![vec![-d.dot(d), -2.0 * x.dot(d), reach * reach - x.dot(x)], vec![-d.dot(d), -d.dot(x)]]
+}
+
+fn particle_half_plane(motion: &Motion) -> Vec<Vec<Bounded>> {
+    let [x, point, normal] = motion.x.map(rounded);
+    let (s, w) = (rounded(motion.d[0]).dot(normal), (point - x).dot(normal));
+    let radius = Bounded::rounded(motion.radius);
+    vec![vec![-s * s, 2.0 * w * s, -w * w + radius * radius * normal.dot(normal)], vec![-s * s, w * s]]
+}
+
+#[expect(clippy::many_single_char_names, reason = "the letters of collisions.md 2")]
+fn particle_edge(motion: &Motion) -> Vec<Vec<Bounded>> {
+    let [x1, x2, x3] = motion.x.map(rounded);
+    let [d1, d2, d3] = motion.d.map(rounded);
+    let (x12, x32, x21, x13, x23) = (x1 - x2, x3 - x2, x2 - x1, x1 - x3, x2 - x3);
+    let (d12, d32, d21, d13, d23) = (d1 - d2, d3 - d2, d2 - d1, d1 - d3, d2 - d3);
+    let square = Bounded::rounded(motion.radius) * Bounded::rounded(motion.radius);
+    let (a, b, c) = (x12.dot(x32), x12.dot(d32) + d12.dot(x32), d12.dot(d32));
+    let (d, e, f) = (x21.dot(x21), d21.dot(x21), d21.dot(d21));
+    let (g, h, i) = (x32.dot(x32), d32.dot(x32), d32.dot(d32));
+    let distance = vec![
+        c * c - f * i,
+        2.0 * b * c - 2.0 * e * i - 2.0 * f * h,
+        2.0 * c * a + b * b - d * i - f * g - 4.0 * e * h + square * i,
+        2.0 * a * b - 2.0 * d * h - 2.0 * e * g + 2.0 * square * h,
+        a * a - d * g + square * g,
+    ];
+    let after_first = vec![c, b, a];
+    let before_second = vec![d13.dot(d23), d13.dot(x23) + x13.dot(d23), x13.dot(x23)];
+    vec![distance, after_first, before_second, approach([x12, x32, x21], [d12, d32, d21])]
+}
+
+/// The quintic, with the original's mistake in its third-power coefficient.
+#[expect(clippy::many_single_char_names, reason = "the letters of collisions.md 2")]
+fn approach([x12, x32, x21]: [Bounded2; 3], [d12, d32, d21]: [Bounded2; 3]) -> Vec<Bounded> {
+    let (a, b, c) = (x32.dot(x32), x32.dot(d32), d32.dot(d32));
+    let (d, e) = (d21.dot(d21), d21.dot(x21));
+    let (f, g, h) = (x12.dot(x32), x12.dot(d32) + d12.dot(x32), d12.dot(d32));
+    let (i, j) = (d32.dot(x21) + d21.dot(x32), d32.dot(d21));
+    let (k, l, m) = (a * f, a * g + 2.0 * b * f, a * h + 2.0 * b * g + c * f);
+    let (n, o, p, q) = (c * g + 2.0 * b * h, c * h, b, c);
+    vec![
+        -h * h * q - c * c * d - 2.0 * o * j,
+        -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,
+        -2.0 * g * h * p
+            - 2.0 * f * g * q
+            - g * g * q
+            - 2.0 * a * c * d
+            - 4.0 * b * b * d
+            - 4.0 * b * c * e
+            - n * i
+            - 2.0 * m * j,
+        -2.0 * f * h * p
+            - g * g * p
+            - 2.0 * f * g * q
+            - 4.0 * a * b * d
+            - 2.0 * a * c * e
+            - 4.0 * b * b * e
+            - m * i
+            - 2.0 * l * j,
+        -2.0 * f * g * p - f * f * q - a * a * d - 4.0 * a * b * e - l * i - 2.0 * k * j,
+        -f * f * p - a * a * e - k * i,
+    ]
+}

@@ -1,0 +1,75 @@
+//! What an explanation says.
+
+/// A likely mistake, with the evidence for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Explanation {
+    /// A stable key for machines: the id of a known mistake (`pe-square-no-eh`) or of a general finding (`reversed`).
+    pub key: String,
+    /// What is wrong, in one sentence to the student, without the remedy's formula.
+    pub what: String,
+    /// The exact form, one line each: "t^2: R^2 (e1.e1) has weight 2, expected 1". May give the right formula away.
+    pub details: Vec<String>,
+    /// Of the samples that were looked at, how many it reproduces to round-off.
+    pub reproduced: u64,
+    /// Samples that were looked at: polynomials, or steps.
+    pub samples: u64,
+    /// One small example.
+    pub example: Option<Example>,
+    /// Keys of other known mistakes that reproduce the same samples: this trace can't tell them apart.
+    pub same_as: Vec<String>,
+}
+
+impl Explanation {
+    /// The key of the question whether a trace is of its scene, which is no explanation: nothing else is said then.
+    pub const OTHER_SCENE: &'static str = "other-scene";
+
+    /// The question whether a trace is of its scene; `has_length` says that at least the number of records is right.
+    pub(super) fn of_other_scene(has_length: bool) -> Self {
+        let length = if has_length { "" } else { ", and neither is its length" };
+        Self {
+            key: Self::OTHER_SCENE.to_owned(),
+            what: format!("Is this trace of this scene? Its first record is not the scene's{length}."),
+            details: Vec::new(),
+            reproduced: 0,
+            samples: 0,
+            example: None,
+            same_as: Vec::new(),
+        }
+    }
+
+    /// Whether this is the question whether the trace is of its scene.
+    #[must_use]
+    pub fn is_other_scene(&self) -> bool {
+        self.key == Self::OTHER_SCENE
+    }
+
+    /// Whether it reproduces everything that was looked at.
+    #[must_use]
+    pub const fn is_complete(&self) -> bool {
+        self.reproduced == self.samples && self.samples > 0
+    }
+}
+
+/// A small instance of the mistake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Example {
+    /// Step, from 1.
+    pub step: u32,
+    /// Where, in words: "particle 3 and edge 1, pass 0".
+    pub place: String,
+    /// What went in, by name and in the assignment's notation.
+    pub given: Vec<ExampleValue>,
+    /// What should have come out.
+    pub expected: Vec<f64>,
+    /// What did.
+    pub actual: Vec<f64>,
+}
+
+/// A named input of an example.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExampleValue {
+    /// Its name, such as `x1` or `R`.
+    pub name: String,
+    /// Its components.
+    pub value: Vec<f64>,
+}

@@ -1,0 +1,67 @@
+//! Records that are missing throughout: then every later record stands for another one, and no step looks right.
+use super::{
+    candidates::resimulate,
+    compare::{Logged, ROUND_OFF, StepRecords, first_difference},
+    explain,
+    scan::Scan,
+};
+use crate::{
+    diagnose::Explanation,
+    student::{Mistake, Row, StepLog, Student, World, find},
+};
+use fosssim_model::{scene::Scene, sim::State, trace::Layout};
+
+/// The record that this program leaves out, if the trace's beginning is right once that is taken into account.
+pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
+    let layout = Layout::of(scene);
+    ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
+        let expected = records_without(layout, row);
+        if scan.records.is_some_and(|records| records > expected) {
+            return None;
+        }
+        let steps = aligned_steps(scene, layout, &scan.opening, row)?;
+        // What never moves is right however it is read; then only the number of records tells.
+        let tells = !scan.wrong.is_empty() || scan.records == Some(expected);
+        tells.then(|| explain(row, (steps, steps)))
+    })
+}
+
+/// How many records such a trace has.
+fn records_without(layout: Layout, row: &Row) -> u64 {
+    match row.mistake {
+        Mistake::LogNoInitial => layout.records() - 1,
+        _ => 1 + u64::from(layout.steps),
+    }
+}
+
+/// How many steps the opening holds when the records are read without the missing one; `None` when one of them is wrong.
+fn aligned_steps(scene: &Scene, layout: Layout, opening: &[Logged], row: &Row) -> Option<u64> {
+    let world = World::new(scene.clone(), Student::default());
+    let initial = world.initial_state();
+    let mut before = State { positions: initial.x, velocities: initial.v };
+    let no_mid = row.mistake == Mistake::LogNoMid;
+    let mut frames = opening.iter();
+    if no_mid {
+        if !layout.polynomials {
+            return None;
+        }
+        before = frames.next()?.state.clone();
+    }
+    let per_step = if layout.polynomials && !no_mid { 2 } else { 1 };
+    let mut steps = 0;
+    while frames.len() >= per_step && steps < u64::from(layout.steps) {
+        let mid = if per_step == 2 { frames.next().cloned() } else { None };
+        let end = frames.next()?.clone();
+        let guard = |index: usize, _: &[f64]| index < end.polynomials.len();
+        let mut expected = resimulate(&world, &before, StepLog { guard: Some(&guard), ..StepLog::default() })?;
+        if no_mid {
+            expected.mid = None;
+        }
+        before = end.state.clone();
+        if first_difference(&expected, &StepRecords { mid, end }, &ROUND_OFF).is_some() {
+            return None;
+        }
+        steps += 1;
+    }
+    (steps > 0).then_some(steps)
+}

@@ -1,0 +1,190 @@
+//! Tries the rows of the catalogue on the kept steps.
+use super::{
+    compare::{Logged, ROUND_OFF, StepRecords, first_difference, same_polynomial},
+    scan::{Sample, Scan},
+};
+use crate::student::{Area, CATALOGUE, Kind, Mistake, Record, Row, State, StepLog, Student, World, step};
+use fosssim_model::scene::Scene;
+use std::{cell::Cell, collections::BTreeSet};
+
+/// Wrong steps that are tried first, one of each sort.
+const PROBES: usize = 8;
+/// Steps on which all rows are tried when none reproduces everything.
+const PARTIAL: usize = 16;
+/// Polynomials that may be computed in all; about a microsecond each.
+const WORK: u64 = 1_500_000;
+/// What a step costs besides its polynomials, in polynomials.
+const STEP_WORK: u64 = 10;
+
+/// What a submission does right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Correct {
+    /// It uses the particle-edge approach that the course supplies.
+    Supplied,
+    /// It has put that right.
+    RightApproach,
+}
+
+impl Correct {
+    /// Such a program with a mistake.
+    pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
+        let student = Student::new(mistake);
+        match self {
+            Self::Supplied => student,
+            Self::RightApproach => student.with_right_approach(),
+        }
+    }
+}
+
+/// A row, and how many of the wrong steps it reproduces.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Score {
+    pub(super) row: &'static Row,
+    pub(super) reproduced: u64,
+    pub(super) samples: u64,
+}
+
+/// A program with one mistake.
+struct Candidate {
+    row: &'static Row,
+    world: World,
+}
+
+/// All programs, and the steps in the order in which they are tried.
+pub(super) struct Candidates<'a> {
+    candidates: Vec<Candidate>,
+    /// Wrong steps: first one of each sort, the cheapest first, then the others.
+    wrong: Vec<&'a Sample>,
+    probes: usize,
+    right: Vec<&'a Sample>,
+    work: Cell<u64>,
+}
+
+impl<'a> Candidates<'a> {
+    /// Sets the programs up.
+    ///
+    /// `correct` is the program that the mistakes are added to.
+    pub(super) fn new(scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
+        let candidates = CATALOGUE
+            .iter()
+            .filter(|row| row.kind != Kind::Hostile)
+            .filter(|row| !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid))
+            .map(|row| Candidate { row, world: World::new(scene.clone(), correct.with(Some(row.mistake))) })
+            .collect();
+        let mut signatures = BTreeSet::new();
+        let (mut probes, mut others) = (Vec::new(), Vec::new());
+        for sample in &scan.wrong {
+            if probes.len() < PROBES && signatures.insert(sample.signature) {
+                probes.push(sample);
+            } else {
+                others.push(sample);
+            }
+        }
+        probes.sort_by_key(|sample| sample.records.end.polynomials.len());
+        let number = probes.len();
+        probes.append(&mut others);
+        Self { candidates, wrong: probes, probes: number, right: scan.right.iter().collect(), work: Cell::new(0) }
+    }
+
+    /// The rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue. Empty when
+    /// that is less than half.
+    pub(super) fn best(&self) -> Vec<Score> {
+        let complete = self.complete();
+        if complete.is_empty() { self.partial() } else { complete }
+    }
+
+    /// The rows that reproduce every step.
+    fn complete(&self) -> Vec<Score> {
+        let mut left: Vec<&Candidate> = self.candidates.iter().collect();
+        let mut samples = 0;
+        let steps = self.wrong[..self.probes].iter().chain(&self.right).chain(&self.wrong[self.probes..]);
+        for sample in steps {
+            if self.exhausted() && samples > 0 {
+                break;
+            }
+            left.retain(|candidate| self.reproduces(candidate, sample));
+            if left.is_empty() {
+                break;
+            }
+            samples += u64::from(sample.difference.is_some());
+        }
+        left.iter().map(|candidate| Score { row: candidate.row, reproduced: samples, samples }).collect()
+    }
+
+    /// The rows that reproduce the most wrong steps, half of them at least, and all right ones.
+    fn partial(&self) -> Vec<Score> {
+        self.work.set(0);
+        let stride = self.wrong.len().div_ceil(PARTIAL).max(1);
+        let spread: Vec<&Sample> = self.wrong.iter().step_by(stride).copied().collect();
+        let rest = self.wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
+        let rest: Vec<&Sample> = rest.map(|(_, sample)| *sample).collect();
+        let mut left: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
+        let mut tried = 0;
+        for (number, sample) in spread.iter().chain(&rest).enumerate() {
+            if self.exhausted() {
+                break;
+            }
+            tried = number + 1;
+            // Who has failed in half of the spread steps is out.
+            let allowed = spread.len().max(tried) / 2;
+            left.retain_mut(|(candidate, reproduced)| {
+                *reproduced += usize::from(self.reproduces(candidate, sample));
+                tried - *reproduced <= allowed
+            });
+        }
+        left.retain(|(candidate, reproduced)| {
+            2 * reproduced >= tried && self.right.iter().all(|sample| self.reproduces(candidate, sample))
+        });
+        let most = left.iter().map(|(_, reproduced)| *reproduced).max().unwrap_or(0);
+        left.retain(|(_, reproduced)| *reproduced == most && most > 0);
+        let score = |(candidate, reproduced): (&Candidate, usize)| Score {
+            row: candidate.row,
+            reproduced: reproduced as u64,
+            samples: tried as u64,
+        };
+        left.into_iter().map(score).collect()
+    }
+
+    fn exhausted(&self) -> bool {
+        self.work.get() > WORK
+    }
+
+    /// Whether this program logs in this step what the submission did.
+    fn reproduces(&self, candidate: &Candidate, sample: &Sample) -> bool {
+        match candidate.row.mistake {
+            Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.polynomials_kept,
+            Mistake::LogImpulsesKept if sample.difference.is_some() => return sample.context.impulses_kept,
+            Mistake::LogSinglePrecision if sample.difference.is_some() => return sample.context.single_precision,
+            _ => {}
+        }
+        let logged = &sample.records.end.polynomials;
+        // A program that logs wrongly asks the root finder something else than it says.
+        let logs_wrongly = candidate.row.area == Area::Trace;
+        let asked = Cell::new(STEP_WORK);
+        let guard = |index: usize, coefficients: &[f64]| {
+            asked.set(asked.get() + 1);
+            index < logged.len() && (logs_wrongly || same_polynomial(coefficients, logged.get(index), &ROUND_OFF))
+        };
+        let records =
+            resimulate(&candidate.world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
+        self.work.set(self.work.get() + asked.get());
+        records.is_some_and(|records| first_difference(&records, &sample.records, &ROUND_OFF).is_none())
+    }
+}
+
+/// The records that a program writes in a step from this state; `None` when it fails or writes another number of them.
+pub(super) fn resimulate(
+    world: &World,
+    before: &fosssim_model::sim::State,
+    mut log: StepLog<'_>,
+) -> Option<StepRecords> {
+    let mut state = State { x: before.positions.clone(), v: before.velocities.clone() };
+    let mut records: Vec<Logged> = Vec::new();
+    step(world, &mut state, &mut log, &mut |state, log| {
+        records.push(Record::new(world.student, &world.scene.collision, state, log).into());
+    })
+    .ok()?;
+    let end = records.pop()?;
+    let mid = records.pop();
+    records.is_empty().then_some(StepRecords { mid, end })
+}

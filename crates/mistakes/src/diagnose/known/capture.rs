@@ -1,0 +1,136 @@
+//! What the reference computes in one step, kept in the form in which a trace holds it.
+use super::compare::{Logged, StepRecords};
+use fosssim_model::{
+    scene::Collision,
+    sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone},
+    trace::PolynomialLog,
+};
+
+/// The observer that keeps a step.
+#[derive(Debug, Default)]
+pub(super) struct Capture {
+    /// Whether the reference's impulses are logged; in `hybrid` they are not.
+    logs_impulses: bool,
+    has_mid: bool,
+    pass: Option<Pass>,
+    /// What the step logs; valid after it.
+    pub(super) records: StepRecords,
+    /// The pairs in the order of detection, with the pass and the index of their first polynomial.
+    pub(super) detections: Vec<(Pair, Pass, usize)>,
+    /// What happened, as bits (see [`Capture::events`]).
+    events: u32,
+}
+
+impl Capture {
+    /// For scenes of this collision type.
+    pub(super) fn new(collision: &Collision) -> Self {
+        let has_mid = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
+        let logs_impulses = !matches!(collision, Collision::Hybrid { .. });
+        Self { logs_impulses, has_mid, ..Self::default() }
+    }
+
+    /// Where a polynomial belongs: pair, pass, number within the pair; `None` when the reference has no such one.
+    pub(super) fn place(&self, index: usize) -> Option<(Pair, Pass, usize)> {
+        let after = self.detections.partition_point(|&(_, _, first)| first <= index);
+        let &(pair, pass, first) = self.detections.get(after.checked_sub(1)?)?;
+        (index < self.records.end.polynomials.len()).then_some((pair, pass, index - first))
+    }
+
+    /// What happened in the step: one bit per kind of pair that collided and stage in which it did, per number of
+    /// rounds, per kind of zone. Zero when nothing collided.
+    pub(super) fn events(&self) -> u32 {
+        self.events
+    }
+
+    fn event(&mut self, bit: u32) {
+        self.events |= 1 << bit;
+    }
+}
+
+impl Observer for Capture {
+    fn begin_step(&mut self, _step: u32) {
+        let StepRecords { mid, end } = &mut self.records;
+        if self.has_mid {
+            let mid = mid.get_or_insert_default();
+            mid.impulses.clear();
+            mid.polynomials.clear();
+        }
+        end.impulses.clear();
+        end.polynomials.clear();
+        self.detections.clear();
+        self.events = 0;
+    }
+
+    fn begin_pass(&mut self, pass: Pass) {
+        self.pass = Some(pass);
+        match pass.stage {
+            Stage::Simple | Stage::ContinuousTime => {}
+            Stage::Impulses { round } => {
+                if round > 0 {
+                    self.event(9 + round.min(3));
+                }
+            }
+            Stage::Geometric { round } => self.event(13 + round.min(3)),
+        }
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        if let Some(pass) = self.pass {
+            let log: &mut PolynomialLog = &mut self.records.end.polynomials;
+            self.detections.push((detection.pair, pass, log.len()));
+            detection.polynomials.iter().for_each(|polynomial| log.push(polynomial.coefficients()));
+            if matches!(detection.decision, Decision::Hit { .. }) {
+                let stage = match pass.stage {
+                    Stage::Simple | Stage::ContinuousTime => 0,
+                    Stage::Impulses { .. } => 3,
+                    Stage::Geometric { .. } => 6,
+                };
+                self.event(stage + kind_number(detection.pair.kind));
+            }
+        }
+    }
+
+    fn impulse(&mut self, impulse: &Impulse) {
+        if self.logs_impulses {
+            self.records.end.impulses.push((*impulse).into());
+        }
+    }
+
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        let StepRecords { mid: Some(mid), end } = &mut self.records else { return Resume::Own };
+        copy_state(&mut mid.state, state);
+        mid.impulses.clone_from(&end.impulses);
+        mid.polynomials.coefficients.clone_from(&end.polynomials.coefficients);
+        mid.polynomials.ends.clone_from(&end.polynomials.ends);
+        Resume::Own
+    }
+
+    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
+        self.event(17 + 2 * u32::from(zone.half_plane) + u32::from(zone.particles.len() > 2));
+    }
+
+    fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
+        if zones.len() > 1 {
+            self.event(21);
+        }
+    }
+
+    fn end_step(&mut self, _step: u32, state: &State) {
+        let end: &mut Logged = &mut self.records.end;
+        copy_state(&mut end.state, state);
+    }
+}
+
+/// 0, 1, 2: particle, edge, half-plane.
+pub(super) fn kind_number(kind: PairKind) -> u32 {
+    match kind {
+        PairKind::ParticleParticle => 0,
+        PairKind::ParticleEdge => 1,
+        PairKind::ParticleHalfPlane => 2,
+    }
+}
+
+fn copy_state(target: &mut State, source: &State) {
+    target.positions.clone_from(&source.positions);
+    target.velocities.clone_from(&source.velocities);
+}

@@ -1,0 +1,267 @@
+//! What one step logged, and when two such logs are the same but for round-off.
+//!
+//! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
+//! vectors relative to the size of the numbers around them. NaN equals NaN: a mistake may well produce it.
+use crate::student::{Object, Record};
+use fosssim_model::{
+    sim::State,
+    trace::{LenientFrame, LoggedImpulse, PolynomialLog},
+};
+use fosssim_num::{
+    polynomial::trim,
+    tolerances::{KNOWN_COEFFICIENT, KNOWN_COEFFICIENT_FLOOR, KNOWN_DROPPED, KNOWN_NORMAL, KNOWN_STATE, KNOWN_TIME},
+    vector::Vec2,
+};
+
+/// How far numbers may be apart.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tolerance {
+    /// Of a coefficient, relative to itself.
+    pub(super) coefficient: f64,
+    /// Of a coefficient, relative to the largest one of its polynomial: where the terms of a coefficient cancel, its
+    /// round-off is that of the terms.
+    pub(super) floor: f64,
+    /// Of a coordinate or a velocity, relative to the largest one of its kind plus 1.
+    pub(super) state: f64,
+    /// Of a contact vector, relative to its length plus 1.
+    pub(super) normal: f64,
+    /// Of a time of impact (fraction of the step). A double zero is known to about the root of the unit roundoff.
+    pub(super) time: f64,
+}
+
+/// Round-off.
+pub(super) const ROUND_OFF: Tolerance = Tolerance {
+    coefficient: KNOWN_COEFFICIENT,
+    floor: KNOWN_COEFFICIENT_FLOOR,
+    state: KNOWN_STATE,
+    normal: KNOWN_NORMAL,
+    time: KNOWN_TIME,
+};
+
+/// What is left of a step when its states were rounded to single precision before and after.
+pub(super) const SINGLE_PRECISION: Tolerance =
+    Tolerance { coefficient: 1e-4, floor: 1e-4, state: 1e-5, normal: 1e-2, time: 1e-1 };
+
+/// The numbers of one record.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Logged {
+    /// Positions and velocities.
+    pub(super) state: State,
+    /// The impulse list.
+    pub(super) impulses: Vec<LoggedImpulse>,
+    /// The polynomial list, small leading coefficients dropped.
+    pub(super) polynomials: PolynomialLog,
+}
+
+/// The records of one step.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct StepRecords {
+    /// The mid record, where scenes have one.
+    pub(super) mid: Option<Logged>,
+    /// The end record.
+    pub(super) end: Logged,
+}
+
+/// Where the records of a step part first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Difference {
+    /// This polynomial of the end record.
+    Polynomial(usize),
+    /// The number of polynomials.
+    PolynomialCount,
+    /// The state in the middle; the particle.
+    MidState(usize),
+    /// The impulse list of the end record.
+    Impulses,
+    /// The state at the end; the particle.
+    EndState(usize),
+    /// The lists of the mid record.
+    MidLists,
+}
+
+impl From<&LenientFrame> for Logged {
+    fn from(frame: &LenientFrame) -> Self {
+        Self { state: frame.state.clone(), impulses: frame.impulses.clone(), polynomials: frame.polynomials.clone() }
+    }
+}
+
+impl From<Record> for Logged {
+    fn from(record: Record) -> Self {
+        let mut polynomials = PolynomialLog::default();
+        record.polynomials.iter().flatten().for_each(|coefficients| polynomials.push(trim(coefficients)));
+        #[expect(clippy::cast_possible_wrap, clippy::cast_possible_truncation, reason = "an index of the format")]
+        let impulse = |contact: &crate::student::Contact| {
+            let (kind, second) = match contact.pair.object {
+                Object::Particle(index) => (0, index as i32),
+                Object::Edge(index) => (1, index as i32),
+                Object::HalfPlane(index) => (2, index as i32),
+            };
+            let first = contact.pair.particle as i32;
+            LoggedImpulse { kind, first, second, normal: contact.n, time: contact.time }
+        };
+        let impulses = record.impulses.iter().flatten().map(impulse).collect();
+        Self { state: State { positions: record.x, velocities: record.v }, impulses, polynomials }
+    }
+}
+
+impl Logged {
+    /// Memory that it takes, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        16 * self.state.positions.len()
+            + size_of::<LoggedImpulse>() * self.impulses.len()
+            + 8 * (self.polynomials.coefficients.len() + self.polynomials.ends.len())
+    }
+}
+
+/// The first difference in the order in which a step computes; `None` when all is the same but for round-off.
+pub(super) fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<Difference> {
+    let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
+    let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, by));
+    if let Some(index) = wrong {
+        return Some(Difference::Polynomial(index));
+    }
+    if ours.len() != theirs.len() {
+        return Some(Difference::PolynomialCount);
+    }
+    if let (Some(ours), Some(theirs)) = (&expected.mid, &actual.mid)
+        && let Some(particle) = state_difference(&ours.state, &theirs.state, by)
+    {
+        return Some(Difference::MidState(particle));
+    }
+    if !same_impulses(&expected.end.impulses, &actual.end.impulses, by) {
+        return Some(Difference::Impulses);
+    }
+    if let Some(particle) = state_difference(&expected.end.state, &actual.end.state, by) {
+        return Some(Difference::EndState(particle));
+    }
+    let same_mid = match (&expected.mid, &actual.mid) {
+        (Some(ours), Some(theirs)) => {
+            same_impulses(&ours.impulses, &theirs.impulses, by)
+                && same_polynomials(&ours.polynomials, &theirs.polynomials, by)
+        }
+        (ours, theirs) => ours.is_none() == theirs.is_none(),
+    };
+    (!same_mid).then_some(Difference::MidLists)
+}
+
+/// Whether two lists hold the same polynomials in the same order.
+pub(super) fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Tolerance) -> bool {
+    ours.len() == theirs.len() && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| same_polynomial(ours, theirs, by))
+}
+
+/// Whether one polynomial is a positive multiple of the other (highest power first, small leading coefficients dropped).
+pub(super) fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
+    if multiple(expected, actual, 1.0, by) {
+        return true;
+    }
+    let length = expected.len().max(actual.len());
+    let dot = |a: &[f64], b: &[f64]| -> f64 { (0..length).map(|power| power_of(a, power) * power_of(b, power)).sum() };
+    let factor = dot(actual, expected) / dot(expected, expected);
+    factor > 0.0 && factor.is_finite() && multiple(expected, actual, factor, by)
+}
+
+/// Whether `actual` is `factor * expected`.
+fn multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) -> bool {
+    let largest = expected.iter().fold(0.0_f64, |largest, c| largest.max((factor * c).abs()));
+    let length = expected.len().max(actual.len());
+    (0..length).all(|power| {
+        let (e, a) = (factor * power_of(expected, power), power_of(actual, power));
+        // A coefficient that was dropped on one side only is as small as the bound of dropping.
+        let dropped = if power < expected.len().min(actual.len()) { 0.0 } else { KNOWN_DROPPED * factor.max(1.0) };
+        same_number(e, a, by.coefficient * e.abs() + by.floor * largest + dropped)
+    })
+}
+
+/// The coefficient of `t^power`; zero where the list ends before it.
+fn power_of(coefficients: &[f64], power: usize) -> f64 {
+    coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
+}
+
+/// Whether two lists hold the same contacts in some order.
+fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Tolerance) -> bool {
+    if ours.len() != theirs.len() {
+        return false;
+    }
+    let same = |(ours, theirs): (&LoggedImpulse, &LoggedImpulse)| same_impulse(ours, theirs, by);
+    if ours.iter().zip(theirs).all(same) {
+        return true;
+    }
+    let sorted = |list: &[LoggedImpulse]| {
+        let mut list = list.to_vec();
+        list.sort_by_key(|impulse| (impulse.kind, impulse.first, impulse.second));
+        list
+    };
+    sorted(ours).iter().zip(&sorted(theirs)).all(same)
+}
+
+fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
+    let within = by.normal * (1.0 + largest(ours.normal));
+    (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)
+        && same_number(ours.normal.x, theirs.normal.x, within)
+        && same_number(ours.normal.y, theirs.normal.y, within)
+        && same_number(ours.time, theirs.time, by.time)
+}
+
+fn largest(v: Vec2) -> f64 {
+    v.x.abs().max(v.y.abs())
+}
+
+/// The first particle whose position or velocity differs.
+fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
+    let different = |ours: &[f64], theirs: &[f64]| {
+        let largest = ours.iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, v| largest.max(v.abs()));
+        let within = by.state * (1.0 + largest);
+        let index = ours.iter().zip(theirs).position(|(&ours, &theirs)| !same_number(ours, theirs, within));
+        index.map(|index| index / 2)
+    };
+    let (position, velocity) =
+        (different(&ours.positions, &theirs.positions), different(&ours.velocities, &theirs.velocities));
+    position.into_iter().chain(velocity).min()
+}
+
+fn same_number(ours: f64, theirs: f64, within: f64) -> bool {
+    let distance = (ours - theirs).abs();
+    // The bound of an infinite number is infinite; nothing but itself is near it.
+    ours.to_bits() == theirs.to_bits()
+        || (ours.is_nan() && theirs.is_nan())
+        || (distance <= within && distance.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn same(expected: &[f64], actual: &[f64]) -> bool {
+        same_polynomial(expected, actual, &ROUND_OFF)
+    }
+
+    #[test]
+    fn a_positive_factor_and_round_off_change_nothing() {
+        let p = [3.0, -2.0, 1e-3];
+        assert!(same(&p, &p) && same(&p, &[6.0, -4.0, 2e-3]) && same(&p, &[3.0 + 1e-14, -2.0, 1e-3]));
+        assert!(!same(&p, &[-3.0, 2.0, -1e-3]), "a negative factor turns the inequality round");
+        assert!(!same(&p, &[3.0, -2.0, 1e-3 * (1.0 + 1e-8)]), "a small coefficient may be wrong, too");
+    }
+
+    #[test]
+    fn a_coefficient_on_the_brink_of_dropping_may_be_missing() {
+        assert!(same(&[1.1e-12, 2.0, 1.0], &[2.0, 1.0]));
+        assert!(!same(&[1e-6, 2.0, 1.0], &[2.0, 1.0]));
+        assert!(same(&[], &[]) && !same(&[1.0], &[]) && !same(&[], &[1.0]));
+    }
+
+    #[test]
+    fn nan_equals_nan_only() {
+        assert!(same(&[f64::NAN, 1.0], &[f64::NAN, 1.0]));
+        assert!(!same(&[f64::NAN, 1.0], &[1.0, 1.0]) && !same(&[f64::INFINITY, 1.0], &[1.0, 1.0]));
+    }
+
+    #[test]
+    fn contacts_may_come_in_any_order() {
+        let contact = |first, time| LoggedImpulse { kind: 0, first, second: 9, normal: Vec2::new(1.0, 0.0), time };
+        let list = [contact(0, 0.5), contact(1, 0.25)];
+        assert!(same_impulses(&list, &[list[1], list[0]], &ROUND_OFF));
+        assert!(!same_impulses(&list, &list[..1], &ROUND_OFF));
+        assert!(!same_impulses(&list, &[list[0], contact(1, 0.26)], &ROUND_OFF));
+    }
+}

@@ -1,0 +1,87 @@
+//! The first place at which a wrong step differs from the reference.
+use super::{
+    candidates::{Correct, resimulate},
+    capture::Capture,
+    compare::Difference,
+    scan::Sample,
+};
+use crate::{
+    diagnose::Example,
+    student::{StepLog, World},
+};
+use fosssim_judge::Role;
+use fosssim_model::{
+    scene::Scene,
+    sim::{Pair, PairKind, RootSearch, Simulation, State},
+};
+use fosssim_num::vector::at;
+
+/// The example of a wrong step: where it differs first, what was expected there and what the submission logged.
+pub(super) fn example(scene: &Scene, correct: Correct, sample: &Sample) -> Example {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut capture = Capture::new(&scene.collision);
+    simulation.state_mut().clone_from(&sample.before);
+    simulation.set_steps_done(sample.step - 1);
+    // The step was simulated before, so it does not fail; if it did, the lists below would be empty.
+    let _outcome = simulation.step(&mut capture);
+    if correct == Correct::RightApproach {
+        let world = World::new(scene.clone(), correct.with(None));
+        capture.records = resimulate(&world, &sample.before, StepLog::default()).unwrap_or_default();
+    }
+    let (ours, theirs) = (&capture.records, &sample.records);
+    let (place, expected, actual) = match sample.difference {
+        Some(Difference::Polynomial(index)) => {
+            let list = |log: &fosssim_model::trace::PolynomialLog| {
+                if index < log.len() { log.get(index).to_vec() } else { Vec::new() }
+            };
+            let place = capture.place(index).map_or_else(
+                || format!("polynomial {index}"),
+                |(pair, pass, number)| {
+                    let role = Role::of(pair.kind, number);
+                    format!("{}, pass {}, {role} polynomial", describe(pair), pass.index)
+                },
+            );
+            (place, list(&ours.end.polynomials), list(&theirs.end.polynomials))
+        }
+        Some(Difference::PolynomialCount) => {
+            let (ours, theirs) = (ours.end.polynomials.len(), theirs.end.polynomials.len());
+            ("number of polynomials".to_owned(), count(ours), count(theirs))
+        }
+        Some(Difference::Impulses) => {
+            let (ours, theirs) = (ours.end.impulses.len(), theirs.end.impulses.len());
+            let same_number = if ours == theirs { "contacts in the impulse list" } else { "number of impulses" };
+            (same_number.to_owned(), count(ours), count(theirs))
+        }
+        Some(Difference::MidState(particle)) => match (&ours.mid, &theirs.mid) {
+            (Some(ours), Some(theirs)) => state(particle, "mid record", &ours.state, &theirs.state),
+            _ => (format!("particle {particle}, mid record"), Vec::new(), Vec::new()),
+        },
+        Some(Difference::EndState(particle)) => state(particle, "end record", &ours.end.state, &theirs.end.state),
+        Some(Difference::MidLists) | None => ("lists of the mid record".to_owned(), Vec::new(), Vec::new()),
+    };
+    Example { step: sample.step, place, given: Vec::new(), expected, actual }
+}
+
+/// Position and velocity of a particle: four numbers.
+fn state(particle: usize, when: &str, ours: &State, theirs: &State) -> (String, Vec<f64>, Vec<f64>) {
+    let values = |state: &State| {
+        let (x, v) = (at(&state.positions, particle), at(&state.velocities, particle));
+        vec![x.x, x.y, v.x, v.y]
+    };
+    (format!("position and velocity of particle {particle}, {when}"), values(ours), values(theirs))
+}
+
+fn count(number: usize) -> Vec<f64> {
+    #[expect(clippy::cast_precision_loss, reason = "a count of things in memory")]
+    let number = number as f64;
+    vec![number]
+}
+
+fn describe(pair: Pair) -> String {
+    let other = match pair.kind {
+        PairKind::ParticleParticle => "particle",
+        PairKind::ParticleEdge => "edge",
+        PairKind::ParticleHalfPlane => "half-plane",
+    };
+    format!("particle {} and {other} {}", pair.first, pair.second)
+}

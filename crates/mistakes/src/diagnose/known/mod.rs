@@ -1,0 +1,135 @@
+//! Which known mistake reproduces a submission: steps are simulated again with each mistake of the catalogue.
+//!
+//! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For some of
+//! them, chosen to be diverse, and for some right ones in which something happens, the second simulator
+//! ([`crate::student`]) starts from the submission's own state and makes one mistake. The mistake explains the submission when
+//! everything that the step logged comes out the same: polynomials up to a positive factor, contacts, the states in the
+//! middle and at the end. It never judges: a step that no mistake reproduces stays wrong all the same. Correct variants of
+//! the catalogue are tried, too, and where one of them reproduces the steps no mistake is named.
+//!
+//! The mathematics is that of the two simulators; the only tolerances are those of [`compare`].
+mod alignment;
+mod candidates;
+mod capture;
+mod compare;
+mod example;
+mod remedy;
+mod scan;
+
+use super::{Explanation, notation};
+use crate::student::{Kind, Mistake, Row, find};
+use candidates::{Candidates, Correct, Score};
+use fosssim_model::{scene::Scene, trace::Layout};
+use scan::Scan;
+use std::io::Read;
+
+/// Searches the catalogue for the mistake that explains this trace.
+///
+/// The result is empty when all steps are right, when no mistake reproduces at least half of the wrong steps, or when a
+/// correct variant reproduces them as well. Else it holds one explanation; further mistakes that reproduce the same steps
+/// are in [`Explanation::same_as`]. Of those, the first one is a stage that was left empty, if there is one, else the earliest of the
+/// assignment's order: polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
+///
+/// `samples` and `reproduced` count wrong steps; right ones that the mistake would make wrong exclude it. Traces of any
+/// content are accepted; what can't be read, what a damaged record holds, and what follows the first 64 MiB, is passed
+/// over. A trace whose first record is another scene's yields nothing but the question whether it is of this scene
+/// ([`Explanation::OTHER_SCENE`]).
+#[must_use]
+pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
+    let scan = scan::scan(scene, trace);
+    if let Some(missing) = alignment::missing_record(scene, &scan) {
+        return vec![missing];
+    }
+    if scan.foreign {
+        let layout = Layout::of(scene);
+        let has_length = !scan.longer && scan.records.is_none_or(|records| records == layout.records());
+        return vec![Explanation::of_other_scene(has_length)];
+    }
+    let padded = scan.padded;
+    let found = of_wrong_steps(scene, scan);
+    if found.is_some() || padded == 0 {
+        return found.into_iter().collect();
+    }
+    // Reading drops what the course's library would have dropped, so such steps look right.
+    find("log-padded").map(|row| explain(row, (padded, padded))).into_iter().collect()
+}
+
+fn of_wrong_steps(scene: &Scene, scan: Scan) -> Option<Explanation> {
+    if scan.wrong.is_empty() {
+        return None;
+    }
+    let supplied = best(scene, &scan, Correct::Supplied);
+    if supplied.complete {
+        return supplied.explanation;
+    }
+    // The fair rules accept the right approach as well as the supplied one; behind it may be a mistake of another kind.
+    let right =
+        scan.with_right_approach(scene).map(|scan| best(scene, &scan, Correct::RightApproach)).unwrap_or_default();
+    if right.complete { right.explanation } else { supplied.explanation.or(right.explanation) }
+}
+
+/// What the catalogue says about a trace.
+#[derive(Debug, Default)]
+struct Found {
+    /// The mistake; `None` when no row reproduces the steps, or a correct variant does.
+    explanation: Option<Explanation>,
+    /// Whether a row reproduces all steps.
+    complete: bool,
+}
+
+/// Tries the catalogue on the kept steps.
+fn best(scene: &Scene, scan: &Scan, correct: Correct) -> Found {
+    let mut scores = Candidates::new(scene, scan, correct).best();
+    scores.sort_by_key(|score| plausibility(score.row));
+    let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return Found::default() };
+    let complete = best.reproduced == best.samples;
+    if scores.iter().any(|score| score.row.kind == Kind::Variant) {
+        return Found { explanation: None, complete };
+    }
+    let mut explanation = explain(best.row, (best.reproduced, best.samples));
+    explanation.example = Some(example::example(scene, correct, first));
+    explanation.same_as = scores[1..].iter().map(|score: &Score| score.row.id.to_owned()).collect();
+    Found { explanation: Some(explanation), complete }
+}
+
+/// Smaller is likelier, among mistakes that a trace can't tell apart: work that was not done at all comes first, and
+/// mistakes that need a special scene to show come last. Rows of the same number keep the catalogue's order.
+fn plausibility(row: &Row) -> u8 {
+    match row.mistake {
+        Mistake::ParticleParticleEmpty
+        | Mistake::ParticleEdgeEmpty
+        | Mistake::HalfPlaneEmpty
+        | Mistake::ImpulsesEmpty
+        | Mistake::GeometricEmpty
+        | Mistake::FailsafeEmpty => 0,
+        Mistake::ImpulsesPassWhenZero
+        | Mistake::ImpulsesTestWhenZero
+        | Mistake::ImpulsesSuccessWhenZero
+        | Mistake::ImpulsesOnceWhenZero => 2,
+        _ => 1,
+    }
+}
+
+/// The explanation that names a row, without an example.
+fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
+    Explanation {
+        key: row.id.to_owned(),
+        what: row.sentence(),
+        details: details(row),
+        reproduced,
+        samples,
+        example: None,
+        same_as: Vec::new(),
+    }
+}
+
+/// The exact form of a row's mistake, with its letters explained, and where to look.
+fn details(row: &Row) -> Vec<String> {
+    let mut lines = vec![row.term.to_owned()];
+    lines.extend(notation::of(&lines));
+    lines.push(remedy::remedy(row.area).to_owned());
+    lines
+}
+
+#[cfg(test)]
+mod tests;

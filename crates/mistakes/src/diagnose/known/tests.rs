@@ -1,0 +1,132 @@
+//! Traces with mistakes, made in memory, and what is said of them.
+use super::known;
+use crate::{
+    diagnose::explain,
+    student::{self, Student, find},
+};
+use fosssim_model::scene::{Scene, original};
+
+/// Two balls that meet, an edge that swings about its fixed end, and a half-plane.
+const SCENE: &str = "<scene><duration time=\"1\"/><integrator type=\"symplectic-euler\" dt=\"0.05\"/>\
+    <collision type=\"continuous-time\" COR=\"0.8\"/><simplegravity fx=\"0\" fy=\"-1\"/>\
+    <particle m=\"1\" px=\"-1\" py=\"0.1\" vx=\"2\" vy=\"0\" fixed=\"0\" radius=\"0.3\"/>\
+    <particle m=\"2\" px=\"1\" py=\"0\" vx=\"-1.5\" vy=\"0.25\" fixed=\"0\" radius=\"0.25\"/>\
+    <particle m=\"1\" px=\"-3\" py=\"-1.2\" vx=\"0\" vy=\"0\" fixed=\"1\" radius=\"0.1\"/>\
+    <particle m=\"4\" px=\"3\" py=\"-1\" vx=\"0.25\" vy=\"1\" fixed=\"0\" radius=\"0.1\"/>\
+    <edge i=\"2\" j=\"3\" radius=\"0.15\"/>\
+    <halfplane px=\"0\" py=\"-5\" nx=\"0\" ny=\"1\"/></scene>";
+
+fn scene() -> Scene {
+    original::read(SCENE.as_bytes()).expect("a scene").scene
+}
+
+fn first(id: &str) -> Option<(String, Vec<String>)> {
+    let row = find(id).expect("a row");
+    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+    known(&scene(), &trace[..]).into_iter().next().map(|first| (first.key, first.same_as))
+}
+
+#[test]
+fn a_right_trace_needs_no_explanation() {
+    let trace = student::trace(&scene(), Student::default()).expect("a trace");
+    assert_eq!(known(&scene(), &trace[..]), []);
+}
+
+#[test]
+fn mistakes_of_all_stages_are_named() {
+    for id in [
+        "pp-no-two",
+        "pe-square-no-eh",
+        "ph-no-radius",
+        "handover-negated",
+        "pp-contact-reversed",
+        "decision-never",
+        "response-sign",
+        "ct-two-passes",
+        "log-lowest-first",
+        "log-polynomials-kept",
+        "log-impulses-kept",
+        "log-single-precision",
+        "log-no-mid",
+        "log-no-initial",
+    ] {
+        let Some((key, same_as)) = first(id) else { panic!("{id} is not explained") };
+        assert!(key == id || same_as.iter().any(|other| other == id), "{id} is explained as {key} or {same_as:?}");
+    }
+}
+
+#[test]
+fn correct_variants_are_never_accused() {
+    for row in student::CATALOGUE.iter().filter(|row| row.kind == student::Kind::Variant) {
+        assert_eq!(first(row.id), None, "{}", row.id);
+    }
+}
+
+/// A crashed, killed or timed-out program that is right as far as it came is right.
+#[test]
+fn a_right_trace_that_breaks_off_is_not_explained() {
+    let trace = student::trace(&scene(), Student::default()).expect("a trace");
+    for length in (0..trace.len()).step_by(97) {
+        assert_eq!(explain(&scene(), &trace[..length]), [], "cut at {length}");
+    }
+}
+
+#[test]
+fn another_scenes_trace_is_asked_about_only() {
+    let mut other = scene();
+    other.particles[1].position.y = 0.125;
+    let right = student::trace(&other, Student::default()).expect("a trace");
+    let longer = [right.as_slice(), &[0; 64]].concat();
+    for (trace, question) in [(right, "first record is not the scene's."), (longer, "and neither is its length.")] {
+        let explanations = explain(&scene(), &trace);
+        let [explanation] = &explanations[..] else { panic!("one question, not {explanations:?}") };
+        assert!(explanation.is_other_scene() && explanation.what.ends_with(question), "{explanation:?}");
+    }
+}
+
+/// The right approach is accepted; the mistake behind it is found all the same.
+#[test]
+fn a_right_approach_hides_no_mistake() {
+    for id in ["decision-never", "pe-square-no-eh", "response-sign", "pp-no-two"] {
+        let student = Student::new(find(id).map(|row| row.mistake)).with_right_approach();
+        let trace = student::trace(&scene(), student).expect("a trace");
+        let explanations = known(&scene(), &trace[..]);
+        let [explanation] = &explanations[..] else { panic!("{id} is not explained") };
+        assert!(explanation.key == id || explanation.same_as.iter().any(|other| other == id), "{id}: {explanation:?}");
+        let example = explanation.example.as_ref().expect("an example");
+        assert!(!example.place.ends_with("approach polynomial"), "the approach is right: {example:?}");
+    }
+    let trace = student::trace(&scene(), Student::default().with_right_approach()).expect("a trace");
+    assert_eq!(known(&scene(), &trace[..]), []);
+}
+
+#[test]
+fn an_example_names_the_first_wrong_step() {
+    let row = find("pp-no-two").expect("a row");
+    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
+    let explanations = known(&scene(), &trace[..]);
+    let [explanation] = &explanations[..] else { panic!("one explanation") };
+    assert_eq!((&*explanation.key, &explanation.what), (row.id, &row.sentence()));
+    assert_eq!(explanation.reproduced, explanation.samples);
+    let example = explanation.example.as_ref().expect("an example");
+    assert_eq!((example.step, example.place.as_str()), (1, "particle 0 and particle 1, pass 0, overlap polynomial"));
+    assert_eq!(example.expected.len(), 3);
+    assert!((example.expected[1] - 2.0 * example.actual[1]).abs() < 1e-9, "{example:?}");
+}
+
+#[test]
+fn damaged_traces_are_read_as_far_as_they_go() {
+    let row = find("pp-no-two").expect("a row");
+    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
+    for length in [0, 1, 127, 200, trace.len() / 2, trace.len() - 1] {
+        let keys: Vec<String> = known(&scene(), &trace[..length]).into_iter().map(|first| first.key).collect();
+        assert!(keys.iter().all(|key| key == "pp-no-two"), "cut at {length}: {keys:?}");
+        assert!(length < 1000 || keys.len() == 1, "cut at {length}");
+    }
+    // Nonsense in every place: whatever is said, it is said in the end.
+    for place in (0..trace.len()).step_by(trace.len() / 23) {
+        let mut damaged = trace.clone();
+        damaged[place] ^= 0xff;
+        let _explanations = known(&scene(), &damaged[..]);
+    }
+}

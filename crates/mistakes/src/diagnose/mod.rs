@@ -1,0 +1,20 @@
+//! From findings to the likely mistake.
+//!
+//! Knows nothing of processes and reports. It looks at the steps of a trace that the fair rules find wrong, asks which
+//! mistake reproduces them, and yields [`Explanation`]s, the likeliest first.
+#![forbid(unsafe_code)]
+#![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
+
+mod explain;
+mod explanation;
+mod known;
+mod notation;
+pub mod polynomial;
+mod probe;
+mod samples;
+
+pub use crate::plain::formula_in;
+pub use explain::{common, explain};
+pub use explanation::{Example, ExampleValue, Explanation};
+pub use known::known;
+pub use probe::probe_scenes;

@@ -1,0 +1,106 @@
+//! Whether a logged polynomial is a given one, up to a positive scale and round-off.
+//!
+//! What is right is decided by [`fosssim_judge::fair`]; this asks the same of wrong formulas, within the same bounds.
+//! Coefficients are aligned at the constant one. What the log lacks was dropped by the course's library for being small.
+use fosssim_judge::fair::compare::compare;
+use fosssim_num::{
+    bounded::{Bounded, UNIT_ROUNDOFF},
+    tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
+};
+
+/// How much of its bound a coefficient may be off; both sides round.
+const TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
+
+/// The logged coefficient of a power, `None` if it was dropped.
+pub(super) fn logged_at(logged: &[f64], power: usize) -> Option<f64> {
+    logged.len().checked_sub(power + 1).map(|index| logged[index])
+}
+
+/// The expected coefficient of a power, 0 beyond the degree.
+pub(super) fn expected_at(expected: &[Bounded], power: usize) -> Bounded {
+    expected.len().checked_sub(power + 1).map_or(Bounded::default(), |index| expected[index])
+}
+
+/// Whether one logged coefficient is `scale` times the expected one. NaN never is.
+pub(super) fn coefficient_matches(expected: Bounded, logged: Option<f64>, scale: f64) -> bool {
+    let room = TOLERANCE * scale.abs() * expected.bound;
+    match logged {
+        Some(value) => (value - scale * expected.value).abs() <= room,
+        None => (scale * expected.value).abs() <= LEADING_COEFFICIENT + room,
+    }
+}
+
+/// Whether the logged polynomial is `scale` times the expected one. A program may also get its coefficients from values
+/// of the polynomial, which spreads the rounding of the largest over all.
+pub(super) fn matches(expected: &[Bounded], logged: &[f64], scale: f64) -> bool {
+    let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
+    let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / TOLERANCE * norm;
+    (0..expected.len().max(logged.len())).all(|power| {
+        let Bounded { value, bound } = expected_at(expected, power);
+        coefficient_matches(Bounded { value, bound: bound.max(least) }, logged_at(logged, power), scale)
+    })
+}
+
+/// The scale that brings the expected polynomial closest to the logged one, each coefficient weighing as much as it is
+/// sure; `None` if nothing sure is left, or if the scale is not positive.
+pub(super) fn fitted_scale(expected: &[Bounded], logged: &[f64]) -> Option<f64> {
+    scale_fitted_to(expected, logged, |_| true)
+}
+
+/// As [`fitted_scale`], from the coefficients of some powers.
+pub(super) fn scale_fitted_to(expected: &[Bounded], logged: &[f64], power: impl Fn(usize) -> bool) -> Option<f64> {
+    let (mut above, mut below) = (0.0, 0.0);
+    for power in (0..expected.len()).filter(|&index| power(index)) {
+        let (coefficient, Some(value)) = (expected_at(expected, power), logged_at(logged, power)) else { continue };
+        if is_sure(coefficient) {
+            let share = coefficient.value / coefficient.bound.max(coefficient.value.abs());
+            above += value / coefficient.value * share * share;
+            below += share * share;
+        }
+    }
+    let scale = above / below;
+    (scale > 0.0 && scale.is_finite()).then_some(scale)
+}
+
+/// Whether a coefficient is more than rounding.
+pub(super) fn is_sure(coefficient: Bounded) -> bool {
+    coefficient.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * coefficient.bound
+}
+
+/// Whether the logged polynomial is right: the expected one times some positive scale.
+pub(super) fn is_right(expected: &[Bounded], logged: &[f64]) -> bool {
+    compare(expected, logged, &[1.0]).is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn exact(values: &[f64]) -> Vec<Bounded> {
+        values.iter().map(|&value| Bounded::rounded(value)).collect()
+    }
+
+    #[test]
+    fn a_positive_scale_is_right_and_a_negative_one_is_not() {
+        let expected = exact(&[-3.0, 0.1, 7.0]);
+        assert!(is_right(&expected, &[-3.0, 0.1, 7.0]));
+        assert!(is_right(&expected, &[-3.0 * 0.7, 0.1 * 0.7, 7.0 * 0.7]));
+        assert!(!is_right(&expected, &[3.0, -0.1, -7.0]));
+        assert!(!is_right(&expected, &[-3.0, 0.1, 7.000_001]));
+        assert!(!is_right(&expected, &[f64::NAN, 0.1, 7.0]));
+        assert!(!is_right(&expected, &[]));
+    }
+
+    #[test]
+    fn dropped_small_coefficients_are_right_and_dropped_large_ones_are_not() {
+        assert!(is_right(&exact(&[5e-13, 2.0, 1.0]), &[2.0, 1.0]));
+        assert!(!is_right(&exact(&[5e-11, 2.0, 1.0]), &[2.0, 1.0]));
+        assert!(is_right(&exact(&[0.0, 0.0]), &[]));
+    }
+
+    #[test]
+    fn a_longer_polynomial_is_right_only_with_leading_zeros() {
+        assert!(is_right(&exact(&[2.0, 1.0]), &[0.0, 2.0, 1.0]));
+        assert!(!is_right(&exact(&[2.0, 1.0]), &[2.0, 1.0, 0.0]));
+    }
+}

@@ -1,0 +1,307 @@
+//! The formulas of collisions.md 2 as data: each coefficient a sum of weighted products of letters.
+//!
+//! What is right is said by the fair rules' formulas (`judge::fair::formulas`), and a test holds these tables to them. As
+//! data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of the
+//! quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
+use super::sample::{Inputs, Subject};
+use fosssim_num::bounded::{Bounded, Bounded2};
+
+/// A quantity of a formula.
+pub(super) struct Letter {
+    /// How a message calls it.
+    pub name: &'static str,
+    /// What it is, in the assignment's notation; empty where the name says it.
+    pub meaning: &'static str,
+    /// Of which degree it is in the displacements.
+    pub order: u8,
+    /// Its value.
+    pub value: fn(&Inputs) -> Bounded,
+}
+
+/// `weight` times the product of `letters` (indices into the formula's) in the coefficient of `t^power`.
+pub(super) struct Term {
+    /// The power of t.
+    pub power: usize,
+    /// The factor in front.
+    pub weight: f64,
+    /// Indices of the letters, ascending.
+    pub letters: &'static [usize],
+}
+
+/// One way to write a polynomial down.
+pub(super) struct Formula {
+    /// The quantities in it.
+    pub letters: &'static [Letter],
+    /// Its terms.
+    pub terms: &'static [Term],
+    /// The degree in t.
+    pub degree: usize,
+}
+
+impl Formula {
+    /// The values of the letters.
+    pub fn values(&self, inputs: &Inputs) -> Vec<Bounded> {
+        self.letters.iter().map(|letter| (letter.value)(inputs)).collect()
+    }
+
+    /// The coefficients, highest power first, untrimmed, from the values of the letters.
+    pub fn evaluate(&self, values: &[Bounded]) -> Vec<Bounded> {
+        let mut coefficients = vec![Bounded::default(); self.degree + 1];
+        for term in self.terms {
+            let slot = &mut coefficients[self.degree - term.power];
+            *slot = *slot + term.weight * product(values, term.letters);
+        }
+        coefficients
+    }
+
+    /// The coefficients from the inputs.
+    pub fn polynomial(&self, inputs: &Inputs) -> Vec<Bounded> {
+        self.evaluate(&self.values(inputs))
+    }
+}
+
+/// The product of the letters with these indices.
+pub(super) fn product(values: &[Bounded], letters: &[usize]) -> Bounded {
+    match letters {
+        [] => Bounded::exact(1.0),
+        [first, rest @ ..] => rest.iter().fold(values[*first], |product, &letter| product * values[letter]),
+    }
+}
+
+/// The ways to write one polynomial down, all of them right, the assignment's first.
+pub(super) fn readings(subject: Subject) -> &'static [Formula] {
+    match subject {
+        Subject::ParticleOverlap => PARTICLE_OVERLAP,
+        Subject::ParticleApproach => PARTICLE_APPROACH,
+        Subject::EdgeOverlap => QUARTIC,
+        Subject::AlphaLow => ALPHA_LOW,
+        Subject::AlphaHigh => ALPHA_HIGH,
+        Subject::EdgeApproach => &QUINTICS,
+        Subject::HalfPlaneOverlap => HALF_PLANE_OVERLAP,
+        Subject::HalfPlaneApproach => HALF_PLANE_APPROACH,
+    }
+}
+
+/// Differences that the formulas are made of. `12` is "1 minus 2"; 1 is the particle, 2 and 3 the edge's endpoints.
+impl Inputs {
+    pub fn x12(&self) -> Bounded2 {
+        self.x[0] - self.x[1]
+    }
+    pub fn x21(&self) -> Bounded2 {
+        self.x[1] - self.x[0]
+    }
+    pub fn x32(&self) -> Bounded2 {
+        self.x[2] - self.x[1]
+    }
+    pub fn x13(&self) -> Bounded2 {
+        self.x[0] - self.x[2]
+    }
+    pub fn x23(&self) -> Bounded2 {
+        self.x[1] - self.x[2]
+    }
+    pub fn d12(&self) -> Bounded2 {
+        self.d[0] - self.d[1]
+    }
+    pub fn d21(&self) -> Bounded2 {
+        self.d[1] - self.d[0]
+    }
+    pub fn d32(&self) -> Bounded2 {
+        self.d[2] - self.d[1]
+    }
+    pub fn d13(&self) -> Bounded2 {
+        self.d[0] - self.d[2]
+    }
+    pub fn d23(&self) -> Bounded2 {
+        self.d[1] - self.d[2]
+    }
+    /// The normal of the half-plane.
+    pub fn normal(&self) -> Bounded2 {
+        self.x[2]
+    }
+}
+
+const fn letter(name: &'static str, meaning: &'static str, order: u8, value: fn(&Inputs) -> Bounded) -> Letter {
+    Letter { name, meaning, order, value }
+}
+
+const fn term(power: usize, weight: f64, letters: &'static [usize]) -> Term {
+    Term { power, weight, letters }
+}
+
+const PARTICLES: [Letter; 4] = [
+    letter("d21.d21", "", 2, |inputs| inputs.d21().dot(inputs.d21())),
+    letter("x21.d21", "", 1, |inputs| inputs.x21().dot(inputs.d21())),
+    letter("x21.x21", "", 0, |inputs| inputs.x21().dot(inputs.x21())),
+    letter("R^2", "", 0, |inputs| inputs.square),
+];
+
+const PARTICLE_OVERLAP: &[Formula] = &[Formula {
+    letters: &PARTICLES,
+    terms: &[term(2, -1.0, &[0]), term(1, -2.0, &[1]), term(0, 1.0, &[3]), term(0, -1.0, &[2])],
+    degree: 2,
+}];
+
+const PARTICLE_APPROACH: &[Formula] =
+    &[Formula { letters: &PARTICLES, terms: &[term(1, -1.0, &[0]), term(0, -1.0, &[1])], degree: 1 }];
+
+const HALF_PLANE: [Letter; 4] = [
+    letter("(dx.n)", "", 1, |inputs| inputs.d[0].dot(inputs.normal())),
+    letter("((p-x).n)", "", 0, |inputs| inputs.x21().dot(inputs.normal())),
+    letter("(n.n)", "", 0, |inputs| inputs.normal_square),
+    letter("r^2", "", 0, |inputs| inputs.square),
+];
+
+const HALF_PLANE_OVERLAP: &[Formula] = &[Formula {
+    letters: &HALF_PLANE,
+    terms: &[term(2, -1.0, &[0, 0]), term(1, 2.0, &[0, 1]), term(0, -1.0, &[1, 1]), term(0, 1.0, &[2, 3])],
+    degree: 2,
+}];
+
+const HALF_PLANE_APPROACH: &[Formula] =
+    &[Formula { letters: &HALF_PLANE, terms: &[term(1, -1.0, &[0, 0]), term(0, 1.0, &[0, 1])], degree: 1 }];
+
+/// `a..i` of the quartic, then the squared sum of the radii.
+const EDGE: [Letter; 10] = [
+    letter("a", "x12.x32", 0, |inputs| inputs.x12().dot(inputs.x32())),
+    letter("b", "x12.d32 + d12.x32", 1, |inputs| inputs.x12().dot(inputs.d32()) + inputs.d12().dot(inputs.x32())),
+    letter("c", "d12.d32", 2, |inputs| inputs.d12().dot(inputs.d32())),
+    letter("d", "x21.x21", 0, |inputs| inputs.x21().dot(inputs.x21())),
+    letter("e", "d21.x21", 1, |inputs| inputs.d21().dot(inputs.x21())),
+    letter("f", "d21.d21", 2, |inputs| inputs.d21().dot(inputs.d21())),
+    letter("g", "x32.x32", 0, |inputs| inputs.x32().dot(inputs.x32())),
+    letter("h", "d32.x32", 1, |inputs| inputs.d32().dot(inputs.x32())),
+    letter("i", "d32.d32", 2, |inputs| inputs.d32().dot(inputs.d32())),
+    letter("R^2", "", 0, |inputs| inputs.square),
+];
+
+const QUARTIC: &[Formula] = &[Formula {
+    letters: &EDGE,
+    terms: &[
+        term(4, 1.0, &[2, 2]),
+        term(4, -1.0, &[5, 8]),
+        term(3, 2.0, &[1, 2]),
+        term(3, -2.0, &[4, 8]),
+        term(3, -2.0, &[5, 7]),
+        term(2, 2.0, &[0, 2]),
+        term(2, 1.0, &[1, 1]),
+        term(2, -1.0, &[3, 8]),
+        term(2, -1.0, &[5, 6]),
+        term(2, -4.0, &[4, 7]),
+        term(2, 1.0, &[8, 9]),
+        term(1, 2.0, &[0, 1]),
+        term(1, -2.0, &[3, 7]),
+        term(1, -2.0, &[4, 6]),
+        term(1, 2.0, &[7, 9]),
+        term(0, 1.0, &[0, 0]),
+        term(0, -1.0, &[3, 6]),
+        term(0, 1.0, &[6, 9]),
+    ],
+    degree: 4,
+}];
+
+const ALPHA_LOW: &[Formula] = &[Formula {
+    letters: &[
+        letter("x12.x32", "", 0, |inputs| inputs.x12().dot(inputs.x32())),
+        letter("x12.d32", "", 1, |inputs| inputs.x12().dot(inputs.d32())),
+        letter("d12.x32", "", 1, |inputs| inputs.d12().dot(inputs.x32())),
+        letter("d12.d32", "", 2, |inputs| inputs.d12().dot(inputs.d32())),
+    ],
+    terms: &[term(2, 1.0, &[3]), term(1, 1.0, &[1]), term(1, 1.0, &[2]), term(0, 1.0, &[0])],
+    degree: 2,
+}];
+
+const ALPHA_HIGH: &[Formula] = &[
+    Formula {
+        letters: &[
+            letter("x13.x23", "", 0, |inputs| inputs.x13().dot(inputs.x23())),
+            letter("x13.d23", "", 1, |inputs| inputs.x13().dot(inputs.d23())),
+            letter("d13.x23", "", 1, |inputs| inputs.d13().dot(inputs.x23())),
+            letter("d13.d23", "", 2, |inputs| inputs.d13().dot(inputs.d23())),
+        ],
+        terms: &[term(2, 1.0, &[3]), term(1, 1.0, &[1]), term(1, 1.0, &[2]), term(0, 1.0, &[0])],
+        degree: 2,
+    },
+    Formula {
+        letters: &EDGE,
+        terms: &[
+            term(2, 1.0, &[8]),
+            term(2, -1.0, &[2]),
+            term(1, 2.0, &[7]),
+            term(1, -1.0, &[1]),
+            term(0, 1.0, &[6]),
+            term(0, -1.0, &[0]),
+        ],
+        degree: 2,
+    },
+];
+
+/// `a..j` of the supplied quintic.
+const SUPPLIED: [Letter; 10] = [
+    letter("a", "x32.x32", 0, |inputs| inputs.x32().dot(inputs.x32())),
+    letter("b", "x32.d32", 1, |inputs| inputs.x32().dot(inputs.d32())),
+    letter("c", "d32.d32", 2, |inputs| inputs.d32().dot(inputs.d32())),
+    letter("d", "d21.d21", 2, |inputs| inputs.d21().dot(inputs.d21())),
+    letter("e", "d21.x21", 1, |inputs| inputs.d21().dot(inputs.x21())),
+    letter("f", "x12.x32", 0, |inputs| inputs.x12().dot(inputs.x32())),
+    letter("g", "x12.d32 + d12.x32", 1, |inputs| inputs.x12().dot(inputs.d32()) + inputs.d12().dot(inputs.x32())),
+    letter("h", "d12.d32", 2, |inputs| inputs.d12().dot(inputs.d32())),
+    letter("i", "d32.x21 + d21.x32", 1, |inputs| inputs.d32().dot(inputs.x21()) + inputs.d21().dot(inputs.x32())),
+    letter("j", "d32.d21", 2, |inputs| inputs.d32().dot(inputs.d21())),
+];
+
+/// The terms of the quintic, but for the second one of t^3, of which there are two versions.
+macro_rules! quintic {
+    ($slip:expr) => {
+        Formula {
+            letters: &SUPPLIED,
+            terms: &[
+                term(5, -1.0, &[2, 7, 7]),
+                term(5, -1.0, &[2, 2, 3]),
+                term(5, -2.0, &[2, 7, 9]),
+                term(4, -1.0, &[1, 7, 7]),
+                term(4, -2.0, &[2, 6, 7]),
+                term(4, -4.0, &[1, 2, 3]),
+                term(4, -1.0, &[2, 2, 4]),
+                term(4, -1.0, &[2, 7, 8]),
+                term(4, -2.0, &[2, 6, 9]),
+                term(4, -4.0, &[1, 7, 9]),
+                term(3, -2.0, &[1, 6, 7]),
+                $slip,
+                term(3, -1.0, &[2, 6, 6]),
+                term(3, -2.0, &[0, 2, 3]),
+                term(3, -4.0, &[1, 1, 3]),
+                term(3, -4.0, &[1, 2, 4]),
+                term(3, -1.0, &[2, 6, 8]),
+                term(3, -2.0, &[1, 7, 8]),
+                term(3, -2.0, &[0, 7, 9]),
+                term(3, -4.0, &[1, 6, 9]),
+                term(3, -2.0, &[2, 5, 9]),
+                term(2, -2.0, &[1, 5, 7]),
+                term(2, -1.0, &[1, 6, 6]),
+                term(2, -2.0, &[2, 5, 6]),
+                term(2, -4.0, &[0, 1, 3]),
+                term(2, -2.0, &[0, 2, 4]),
+                term(2, -4.0, &[1, 1, 4]),
+                term(2, -1.0, &[0, 7, 8]),
+                term(2, -2.0, &[1, 6, 8]),
+                term(2, -1.0, &[2, 5, 8]),
+                term(2, -2.0, &[0, 6, 9]),
+                term(2, -4.0, &[1, 5, 9]),
+                term(1, -2.0, &[1, 5, 6]),
+                term(1, -1.0, &[2, 5, 5]),
+                term(1, -1.0, &[0, 0, 3]),
+                term(1, -4.0, &[0, 1, 4]),
+                term(1, -1.0, &[0, 6, 8]),
+                term(1, -2.0, &[1, 5, 8]),
+                term(1, -2.0, &[0, 5, 9]),
+                term(0, -1.0, &[1, 5, 5]),
+                term(0, -1.0, &[0, 0, 4]),
+                term(0, -1.0, &[0, 5, 8]),
+            ],
+            degree: 5,
+        }
+    };
+}
+
+/// As supplied, and with the right letter in t^3.
+const QUINTICS: [Formula; 2] = [quintic!(term(3, -2.0, &[2, 5, 6])), quintic!(term(3, -2.0, &[2, 5, 7]))];

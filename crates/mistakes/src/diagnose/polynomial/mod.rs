@@ -1,0 +1,216 @@
+//! Which mistake makes detection polynomials wrong.
+//!
+//! Pure functions over samples: the inputs of a detection and what the submission logged. A guess counts by how many
+//! samples it reproduces to round-off, right ones included. Guesses are, from simple to intricate: the whole list of
+//! coefficients ([`structure`]: reversed, negated, cut, exchanged), the inputs ([`inputs`]: end positions, radii squared
+//! apart), misunderstandings with a formula of their own ([`specials`]), one letter of a formula ([`slips`]), and the terms of single coefficients ([`terms`]: sparse least squares over
+//! the products of dot products, with weights that are multiples of 1/4). Correct polynomials are those of
+//! collisions.md 2, up to a positive factor each; the quintic may be the supplied one or the mathematically right one.
+//!
+//! It reads no trace, judges nothing and never looks at decisions or responses.
+mod compare;
+mod dictionary;
+mod example;
+mod formulas;
+mod inputs;
+mod sample;
+mod slips;
+mod sparse;
+mod specials;
+mod structure;
+mod study;
+mod terms;
+#[cfg(test)]
+mod tests;
+
+pub use sample::{Body, Motion, Sample};
+
+use super::Explanation;
+use crate::plain::formula_in;
+use fosssim_model::sim::PairKind;
+use inputs::EXCHANGES;
+use sample::Subject;
+use std::collections::BTreeMap;
+use study::{Candidate, Study};
+
+/// So many other keys are told per explanation.
+const MOST_OTHERS: usize = 5;
+
+/// Guesses that are this much less likely than the best (see [`Candidate::cost`]) are not told beside it.
+const AS_LIKELY: f64 = 1.6;
+
+/// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if none
+/// is wrong; what is not reproduced everywhere comes last. A mistake that several polynomials share is told once. Counts are of polynomials. A polynomial for which
+/// nothing is found gets an explanation with the key `unexplained` that reproduces nothing.
+///
+/// Some hundred samples of each kind are enough, of different steps and pairs, right ones among them; samples whose
+/// formulas overflow are left out. The samples of one kind should hold all of its polynomials.
+#[must_use]
+pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
+    let kinds = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
+    let subjects = kinds.into_iter().flat_map(Subject::of).copied();
+    let mut open: Vec<Suspect> = subjects
+        .filter_map(|subject| Study::new(subject, samples))
+        .map(|study| Suspect { candidates: candidates(&study), study })
+        .collect();
+    let mut explanations = Vec::new();
+    while let Some(key) = best_shared_key(&open) {
+        let (covered, rest): (Vec<Suspect>, Vec<Suspect>) =
+            open.into_iter().partition(|suspect| suspect.full().any(|candidate| candidate.key == key));
+        explanations.push(shared(&covered, &key));
+        open = rest;
+    }
+    explanations.extend(open.iter().map(Suspect::alone));
+    explanations.extend(missing(&kinds, samples));
+    explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
+    debug_assert!(explanations.iter().all(|one| formula_in(&one.what).is_none()), "{explanations:?}");
+    explanations
+}
+
+/// Tells that no detection of a kind has all its polynomials.
+fn missing(kinds: &[PairKind], samples: &[Sample]) -> Option<Explanation> {
+    let (mut names, mut details, mut count) = (Vec::new(), Vec::new(), 0);
+    for &kind in kinds {
+        let of_kind = || samples.iter().filter(|sample| sample.motion.kind() == kind);
+        let logged = of_kind().map(|sample| sample.polynomials.len()).max().unwrap_or(usize::MAX);
+        let absent = Subject::of(kind).iter().skip(logged);
+        if logged < kind.polynomials() {
+            details.push(format!("{logged} of {} polynomials per detection", kind.polynomials()));
+            count += of_kind().count() as u64;
+        }
+        names.extend(absent.map(|subject| subject.name()));
+    }
+    (!names.is_empty()).then(|| Explanation {
+        key: "missing-polynomials".to_owned(),
+        what: format!("Polynomials are not handed over: {}.", names.join(", ")),
+        details: distinct(details.into_iter()),
+        reproduced: count,
+        samples: count,
+        example: None,
+        same_as: Vec::new(),
+    })
+}
+
+/// A wrong polynomial with the guesses about it, the best first.
+struct Suspect<'a> {
+    study: Study<'a>,
+    candidates: Vec<Candidate>,
+}
+
+impl Suspect<'_> {
+    /// The guesses that reproduce everything.
+    fn full(&self) -> impl Iterator<Item = &Candidate> {
+        self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
+    }
+
+    /// The explanation of this polynomial for itself.
+    fn alone(&self) -> Explanation {
+        let samples = self.study.cases.len() as u64;
+        let Some(best) = self.candidates.first() else {
+            return Explanation {
+                key: "unexplained".to_owned(),
+                what: format!("No simple mistake explains the polynomial: {}.", self.study.subject.name()),
+                details: self.study.differences(),
+                reproduced: 0,
+                samples,
+                example: example::smallest(&self.study).map(|(_, example)| example),
+                same_as: Vec::new(),
+            };
+        };
+        let equal = |other: &&Candidate| {
+            let is_likely = other.cost <= best.cost + AS_LIKELY;
+            is_likely && other.reproduced == best.reproduced && other.key != best.key
+        };
+        Explanation {
+            key: best.key.clone(),
+            what: format!("{}: {}.", best.sentence, self.study.subject.name()),
+            details: best.details.clone(),
+            reproduced: best.reproduced as u64,
+            samples,
+            example: example::smallest(&self.study).map(|(_, example)| example),
+            same_as: distinct(self.candidates.iter().filter(equal).map(|other| other.key.clone())),
+        }
+    }
+}
+
+/// All guesses about a polynomial, the one that reproduces most first, among equals the likeliest.
+fn candidates(study: &Study) -> Vec<Candidate> {
+    let mut all = structure::candidates(study);
+    all.extend(exchanged_inputs(study));
+    all.extend(specials::candidates(study));
+    all.extend(slips::candidates(study));
+    all.extend(terms::candidates(study));
+    all.sort_by(|one, two| two.reproduced.cmp(&one.reproduced).then(one.cost.total_cmp(&two.cost)));
+    all
+}
+
+fn exchanged_inputs(study: &Study) -> Vec<Candidate> {
+    let formula = &study.formulas()[0];
+    let of = |exchange: &inputs::Exchange| {
+        let (reproduced, scaled) = study.count(|case| {
+            let mut inputs = case.inputs;
+            (exchange.apply)(&mut inputs);
+            formula.polynomial(&inputs)
+        })?;
+        Some(Candidate {
+            key: exchange.key.to_owned(),
+            sentence: exchange.sentence.to_owned(),
+            details: vec![exchange.detail.to_owned()],
+            cost: exchange.cost + if scaled { 1.5 } else { 0.0 },
+            reproduced,
+            general: true,
+        })
+    };
+    EXCHANGES.iter().filter(|exchange| exchange.concerns(study.subject.kind())).filter_map(of).collect()
+}
+
+/// The key of general guesses that reproduces all samples of the most polynomials, among equals the likeliest; a
+/// polynomial's own likeliest guess counts for that polynomial. `None` if nothing reproduces all samples of any.
+fn best_shared_key(open: &[Suspect]) -> Option<String> {
+    let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
+    for suspect in open {
+        let mut seen: Vec<&str> = Vec::new();
+        for candidate in suspect.full().filter(|candidate| candidate.general) {
+            if !seen.contains(&candidate.key.as_str()) {
+                seen.push(&candidate.key);
+                let entry = keys.entry(&candidate.key).or_default();
+                *entry = (entry.0 + 1, entry.1 + candidate.cost);
+            }
+        }
+    }
+    let best = keys.into_iter().max_by(|one, two| one.1.0.cmp(&two.1.0).then(two.1.1.total_cmp(&one.1.1)))?;
+    (best.1.0 > 1).then(|| best.0.to_owned())
+}
+
+/// One explanation for several polynomials.
+fn shared(covered: &[Suspect], key: &str) -> Explanation {
+    let guesses: Vec<&Candidate> =
+        covered.iter().filter_map(|suspect| suspect.full().find(|candidate| candidate.key == key)).collect();
+    let names: Vec<&str> = covered.iter().map(|suspect| suspect.study.subject.name()).collect();
+    let likely = covered[0].full().filter(|candidate| candidate.cost <= guesses[0].cost + AS_LIKELY);
+    let others = likely.map(|candidate| candidate.key.clone()).filter(|other| {
+        other != key && covered.iter().all(|suspect| suspect.full().any(|candidate| candidate.key == *other))
+    });
+    let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();
+    let examples = covered.iter().filter_map(|suspect| example::smallest(&suspect.study));
+    Explanation {
+        key: key.to_owned(),
+        what: format!("{}: {}.", guesses[0].sentence, names.join(", ")),
+        details: distinct(guesses.iter().flat_map(|guess| guess.details.iter().cloned())),
+        reproduced: samples,
+        samples,
+        example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
+        same_as: distinct(others),
+    }
+}
+
+/// The first few different ones, in their order.
+fn distinct(keys: impl Iterator<Item = String>) -> Vec<String> {
+    let mut list: Vec<String> = Vec::new();
+    for key in keys {
+        if !list.contains(&key) && list.len() < MOST_OTHERS {
+            list.push(key);
+        }
+    }
+    list
+}

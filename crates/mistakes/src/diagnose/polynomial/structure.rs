@@ -1,0 +1,181 @@
+//! Guesses about the whole list of coefficients: reversed, negated, cut, another polynomial's, not a number.
+use super::{
+    compare::{expected_at, logged_at, matches},
+    formulas::readings,
+    sample::Subject,
+    study::{Candidate, Case, Study, median, ratio},
+};
+use fosssim_num::{
+    bounded::Bounded,
+    tolerances::{FAIR_UNITS, LEADING_COEFFICIENT},
+};
+
+/// The relative rounding of a single-precision number.
+const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
+
+/// Structural guesses that reproduce at least half of the wrong samples.
+pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
+    let mut found = Vec::new();
+    properties(study, &mut found);
+    rearrangements(study, &mut found);
+    other_polynomials(study, &mut found);
+    cuts(study, &mut found);
+    found.extend(scaled_displacements(study));
+    found
+}
+
+fn general(key: &str, sentence: &str, detail: &str, cost: f64, reproduced: usize) -> Candidate {
+    let details = if detail.is_empty() { Vec::new() } else { vec![detail.to_owned()] };
+    Candidate { key: key.to_owned(), sentence: sentence.to_owned(), details, cost, reproduced, general: true }
+}
+
+/// Properties that need no prediction.
+fn properties(study: &Study, found: &mut Vec<Candidate>) {
+    let mut check = |key, sentence, detail: &str, cost, holds: &dyn Fn(&Case) -> bool| {
+        if let Some(reproduced) = study.count_if(holds) {
+            found.push(general(key, sentence, detail, cost, reproduced));
+        }
+    };
+    check("not-finite", "Coefficients are not finite numbers", "", 1.0, &|case| {
+        case.right || case.logged.iter().any(|value| !value.is_finite())
+    });
+    check("all-zero", "All coefficients are zero, or none is logged", "", 1.0, &|case| {
+        case.logged.iter().all(|&value| value == 0.0)
+    });
+    if let Some(first) = study.probes().next().map(|case| case.logged)
+        && let [value, ..] = *first
+        && value != 0.0
+    {
+        if first.len() == 1 {
+            let detail = format!("the list holds {value} and nothing else, whatever moves");
+            let sentence = "A constant stands in the place of the polynomial";
+            check("constant", sentence, &detail, 1.5, &|case| case.logged == [value]);
+        }
+        let detail = format!("every coefficient is {value}");
+        check("all-equal", "All coefficients are the same constant", &detail, 1.2, &|case| {
+            case.logged.len() > 1 && case.logged.iter().all(|&other| other == value)
+        });
+    }
+    check("single-precision", "The coefficients have single precision only", "every value is a float", 2.0, &|case| {
+        is_single(case)
+    });
+    check("monic", "The polynomial is divided by its leading coefficient, whose sign gets lost", "", 1.5, &|case| {
+        let leading = case.logged.first() == Some(&1.0);
+        let power = case.logged.len().saturating_sub(1);
+        case.right || leading && matches(&case.expected, case.logged, 1.0 / expected_at(&case.expected, power).value)
+    });
+    check("too-long", "The polynomial has too high a degree", "", 8.0, &|case| {
+        case.right || case.logged.len() > case.expected.len()
+    });
+}
+
+/// Whether everything logged is a float and close to what it should be.
+fn is_single(case: &Case) -> bool {
+    let single = |value: f64| {
+        #[expect(clippy::cast_possible_truncation, reason = "whether the truncation changes it is the question")]
+        let rounded = value as f32;
+        f64::from(rounded) == value
+    };
+    let units = 2.0 * FAIR_UNITS * SINGLE_ROUNDOFF;
+    let close = |power: usize| {
+        let expected = expected_at(&case.expected, power);
+        let value = logged_at(case.logged, power).unwrap_or(0.0);
+        let room = units * (case.scale * expected.bound + value.abs());
+        (value - case.scale * expected.value).abs() <= room + LEADING_COEFFICIENT
+    };
+    let is_short = case.logged.len() <= case.expected.len();
+    is_short && case.logged.iter().all(|&value| single(value)) && (0..case.expected.len()).all(close)
+}
+
+fn negated(list: &[Bounded]) -> Vec<Bounded> {
+    list.iter().map(|&coefficient| -coefficient).collect()
+}
+
+fn reversed(list: &[Bounded]) -> Vec<Bounded> {
+    list.iter().rev().copied().collect()
+}
+
+fn predicted(study: &Study, mut candidate: Candidate, predict: impl Fn(&Case) -> Vec<Bounded>) -> Option<Candidate> {
+    let (reproduced, scaled) = study.count(predict)?;
+    candidate.reproduced = reproduced;
+    candidate.cost += if scaled { 1.0 } else { 0.0 };
+    Some(candidate)
+}
+
+/// The polynomial's own coefficients in another order or with another sign.
+fn rearrangements(study: &Study, found: &mut Vec<Candidate>) {
+    let mut check = |key, sentence, cost, change: &dyn Fn(&[Bounded]) -> Vec<Bounded>| {
+        let candidate = general(key, sentence, "", cost, 0);
+        found.extend(predicted(study, candidate, |case| change(&case.expected)));
+    };
+    check("reversed", "The coefficients are in the wrong order, lowest power first", 1.0, &reversed);
+    check("negated", "The whole polynomial has the wrong sign", 1.0, &negated);
+    check("reversed-negated", "The coefficients are in the wrong order and have the wrong sign", 2.5, &|list| {
+        negated(&reversed(list))
+    });
+    check("trailing-zero", "A zero is appended, which raises the degree by one", 2.5, &|list| {
+        list.iter().copied().chain([Bounded::exact(0.0)]).collect()
+    });
+}
+
+/// Polynomials of the same detection in each other's places.
+fn other_polynomials(study: &Study, found: &mut Vec<Candidate>) {
+    for &other in Subject::of(study.subject.kind()) {
+        if other == study.subject {
+            continue;
+        }
+        let formula = &readings(other)[0];
+        let detail = format!("the {} polynomial stands where {} belongs", other.name(), study.subject.name());
+        let sentence = "Polynomials of a pair stand in each other's places";
+        let candidate = general("other-polynomial", sentence, &detail, 1.5, 0);
+        found.extend(predicted(study, candidate, |case| formula.polynomial(&case.inputs)));
+        let sentence = "A polynomial of the pair stands in another one's place, with the wrong sign";
+        let candidate = general("other-polynomial-negated", sentence, &detail, 3.0, 0);
+        found.extend(predicted(study, candidate, |case| negated(&formula.polynomial(&case.inputs))));
+    }
+}
+
+/// The polynomial's first or last coefficients only.
+fn cuts(study: &Study, found: &mut Vec<Candidate>) {
+    for length in 1..=study.subject.degree() {
+        let detail = match length {
+            1 => "only the constant coefficient is there".to_owned(),
+            _ => format!("only the last {length} coefficients are there"),
+        };
+        let sentence = match length {
+            1 => "The polynomial is cut to its constant coefficient: it is looked at when the step begins only",
+            _ => "The polynomial is cut: leading coefficients are missing",
+        };
+        let candidate = general("cut", sentence, &detail, 2.0 + 0.01 * length as f64, 0);
+        found.extend(predicted(study, candidate, |case| {
+            let missing = case.expected.len() - length;
+            case.expected[missing..].to_vec()
+        }));
+        let detail = format!("only the first {length} coefficients are there");
+        let candidate = general("cut-end", "The polynomial is cut: its last coefficients are missing", &detail, 2.5, 0);
+        found.extend(predicted(study, candidate, |case| case.expected[..length].to_vec()));
+    }
+}
+
+/// Every displacement with the same factor: velocities, for example, which shows as a power of it in each coefficient.
+fn scaled_displacements(study: &Study) -> Option<Candidate> {
+    let step = |case: &Case| Some(ratio(case, 1)? / ratio(case, 0)?);
+    let factor = median(study.probes().filter_map(step).collect())?;
+    let is_new = factor > 0.0 && (factor - 1.0).abs() > 1e-9;
+    if !is_new || study.subject.degree() < 2 {
+        return None;
+    }
+    let factor = Bounded { value: factor, bound: 16.0 * factor };
+    let detail = format!("every displacement is multiplied by {}", factor.value);
+    let sentence = "All displacements carry the same factor, as velocities or those of another time step do";
+    let candidate = general("displacement-scale", sentence, &detail, 3.0, 0);
+    predicted(study, candidate, |case| {
+        let mut power = Bounded::exact(1.0);
+        let mut list = reversed(&case.expected);
+        for coefficient in &mut list {
+            *coefficient = *coefficient * power;
+            power = power * factor;
+        }
+        reversed(&list)
+    })
+}

@@ -1,0 +1,271 @@
+//! All samples of one polynomial of one kind of pair, and how well a guess reproduces them.
+use super::{
+    compare::{coefficient_matches, expected_at, fitted_scale, is_right, is_sure, logged_at, matches, scale_fitted_to},
+    formulas::{Formula, readings},
+    sample::{Inputs, Sample, Subject},
+};
+use fosssim_num::bounded::Bounded;
+
+/// So many samples are looked at; more add nothing but time.
+const MOST_CASES: usize = 1200;
+
+/// A guess is tried on so many wrong samples before it is tried on all.
+const PROBES: usize = 12;
+
+/// Ratios of coefficients to what they should be are alike up to this: rounding of coefficients that cancel to a
+/// ten-thousandth of their terms, and room.
+const ALIKE: f64 = 1e-9;
+
+/// One polynomial of one sample.
+pub(super) struct Case<'a> {
+    /// Where it comes from.
+    pub sample: &'a Sample,
+    /// What was logged.
+    pub logged: &'a [f64],
+    /// What goes into the formulas.
+    pub inputs: Inputs,
+    /// What should have been logged; of the quintic the supplied form.
+    pub expected: Vec<Bounded>,
+    /// Whether what was logged is right, in any accepted form.
+    pub right: bool,
+    /// The positive factor that the submission's polynomials seem to carry here.
+    pub scale: f64,
+}
+
+/// The samples of one polynomial.
+pub(super) struct Study<'a> {
+    /// Which polynomial.
+    pub subject: Subject,
+    /// The samples that have it, with finite inputs.
+    pub cases: Vec<Case<'a>>,
+    /// How many are wrong.
+    pub wrong: usize,
+    probes: Vec<usize>,
+}
+
+/// A guess that reproduces samples.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    /// The explanation's key.
+    pub key: String,
+    /// Its sentence, without its full stop.
+    pub sentence: String,
+    /// Its exact form.
+    pub details: Vec<String>,
+    /// How unlikely it is: 1 to 3 for a change of the whole list, about 3 for one factor or sign, 4 for one wrong input, 5 and more
+    /// for wrong letters and foreign terms; edits add up.
+    pub cost: f64,
+    /// How many samples it reproduces.
+    pub reproduced: usize,
+    /// Whether other polynomials may share it.
+    pub general: bool,
+}
+
+impl<'a> Study<'a> {
+    /// Collects what was logged for a polynomial; `None` if no sample is wrong.
+    pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
+        let number = Subject::of(subject.kind()).iter().position(|&other| other == subject)?;
+        let mut cases: Vec<Case<'a>> = samples
+            .iter()
+            .filter(|sample| sample.motion.kind() == subject.kind())
+            .filter_map(|sample| {
+                let logged = sample.polynomials.get(number)?.as_slice();
+                let inputs = Inputs::new(&sample.motion);
+                let judged = sample.motion.judged().polynomials();
+                let expected = judged.polynomial(number).to_vec();
+                let right = is_right(&expected, logged)
+                    || judged.other_form(number).is_some_and(|other| is_right(other, logged));
+                let finite = expected.iter().all(|coefficient| coefficient.bound.is_finite());
+                finite.then_some(Case { sample, logged, inputs, expected, right, scale: 1.0 })
+            })
+            .collect();
+        forgive_small_scales(&mut cases);
+        if cases.iter().all(|case| case.right) {
+            return None;
+        }
+        let cases = thinned(cases);
+        let all_wrong: Vec<usize> = (0..cases.len()).filter(|&index| !cases[index].right).collect();
+        let probes = spread(all_wrong.len(), PROBES).map(|index| all_wrong[index]).collect();
+        let mut study = Self { subject, cases, wrong: all_wrong.len(), probes };
+        study.find_scales();
+        Some(study)
+    }
+
+    /// The wrong samples on which a guess is tried first.
+    pub fn probes(&self) -> impl Iterator<Item = &Case<'a>> {
+        self.probes.iter().map(|&index| &self.cases[index])
+    }
+
+    /// How many samples a predicted polynomial reproduces, with the submission's usual scale or none, and with any positive one;
+    /// `None` if it reproduces fewer than half of the wrong samples. The flag says that it needed another scale.
+    pub fn count(&self, predict: impl Fn(&Case) -> Vec<Bounded>) -> Option<(usize, bool)> {
+        let at_usual_scale = |case: &Case| {
+            let predicted = predict(case);
+            matches(&predicted, case.logged, case.scale) || matches(&predicted, case.logged, 1.0)
+        };
+        let (usual, free) =
+            (self.count_if(at_usual_scale), self.count_if(|case| fits_at_any_scale(&predict(case), case)));
+        match (usual, free) {
+            (Some(usual), Some(free)) if free > usual => Some((free, true)),
+            (Some(usual), _) => Some((usual, false)),
+            (None, free) => free.map(|free| (free, true)),
+        }
+    }
+
+    /// In how many samples a property holds; `None` if it holds in fewer than half of the wrong ones.
+    pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
+        let mut failed = 0;
+        for case in self.probes() {
+            failed += usize::from(!holds(case));
+            if 2 * failed > self.probes.len() {
+                return None;
+            }
+        }
+        let (mut wrong, mut right) = (0, 0);
+        for case in &self.cases {
+            if holds(case) {
+                *(if case.right { &mut right } else { &mut wrong }) += 1;
+            }
+        }
+        (2 * wrong >= self.wrong).then_some(wrong + right)
+    }
+
+    /// Finds the positive factor that most coefficients agree on: 1, another one for all samples, or one for each.
+    fn find_scales(&mut self) {
+        // Another scale has to be better by a tenth: the middle ratio always agrees with some coefficient.
+        let unscaled = self.agreement(|_| 1.0) * 1.05 + 0.1 * self.cases.len() as f64 + 1.0;
+        let mut best: (f64, Option<Vec<f64>>) = (unscaled, None);
+        for anchor in 0..=self.subject.degree() {
+            let ratios: Vec<Option<f64>> = self.cases.iter().map(|case| ratio(case, anchor)).collect();
+            let Some(usual) = median(ratios.iter().copied().flatten().collect()).filter(|&usual| usual > 0.0) else {
+                continue;
+            };
+            let agreement = self.agreement(|_| usual) * 1.02;
+            if agreement > best.0 {
+                best = (agreement, Some(vec![usual; self.cases.len()]));
+            }
+            let powers = self.agreeing_powers(&ratios);
+            if powers.len() < 2 {
+                continue;
+            }
+            let each: Vec<f64> = self
+                .cases
+                .iter()
+                .map(|case| scale_fitted_to(&case.expected, case.logged, |power| powers.contains(&power)))
+                .map(|scale| scale.unwrap_or(usual))
+                .collect();
+            // One coefficient of each always agrees with a scale that was fitted to it.
+            let agreement = self.agreement(|index| each[index]) - self.cases.len() as f64;
+            if agreement > best.0 {
+                best = (agreement, Some(each));
+            }
+        }
+        if let Some(scales) = best.1 {
+            self.cases.iter_mut().zip(scales).for_each(|(case, scale)| case.scale = scale);
+        }
+    }
+
+    /// The powers whose coefficients have the same ratio to what they should be as the given one, in nearly all samples.
+    fn agreeing_powers(&self, ratios: &[Option<f64>]) -> Vec<usize> {
+        let agrees = |case: &Case, anchor: Option<f64>, power: usize| {
+            let (anchor, other) = (anchor?, ratio(case, power)?);
+            Some(anchor > 0.0 && (other - anchor).abs() <= ALIKE * anchor)
+        };
+        let powers = 0..=self.subject.degree();
+        powers
+            .filter(|&power| {
+                let (mut known, mut alike) = (0, 0);
+                for (case, anchor) in self.cases.iter().zip(ratios) {
+                    let agrees = agrees(case, *anchor, power);
+                    known += usize::from(agrees.is_some());
+                    alike += usize::from(agrees == Some(true));
+                }
+                alike > 0 && 10 * alike >= 9 * known
+            })
+            .collect()
+    }
+
+    /// How many logged coefficients are as expected with these scales. Dropped ones say nothing: with a small scale all of
+    /// them could be right.
+    fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
+        let agreeing = |(index, case): (usize, &Case)| {
+            (0..case.expected.len())
+                .filter(|&power| is_sure(expected_at(&case.expected, power)) && power < case.logged.len())
+                .filter(|&power| {
+                    coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), scale(index))
+                })
+                .count()
+        };
+        self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
+    }
+
+    /// In how many samples each coefficient differs, one line per coefficient that does.
+    pub fn differences(&self) -> Vec<String> {
+        let differs = |case: &&Case, power: usize| {
+            !coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), case.scale)
+        };
+        let line = |power: usize| {
+            let count = self.cases.iter().filter(|case| differs(case, power)).count();
+            (count > 0).then(|| format!("t^{power} differs in {count} of {} samples", self.cases.len()))
+        };
+        (0..=self.subject.degree()).rev().filter_map(line).collect()
+    }
+
+    /// The ways to write this polynomial down.
+    pub fn formulas(&self) -> &'static [Formula] {
+        readings(self.subject)
+    }
+}
+
+/// The logged coefficient over the expected one, where that is more than rounding.
+pub(super) fn ratio(case: &Case, power: usize) -> Option<f64> {
+    let expected = expected_at(&case.expected, power);
+    let ratio = logged_at(case.logged, power)? / expected.value;
+    (expected.value.abs() > 1e-4 * expected.bound && ratio.is_finite()).then_some(ratio)
+}
+
+/// The middle value; `None` of nothing.
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// `count` indices below `length`, evenly spread; all if there are fewer.
+pub(super) fn spread(length: usize, count: usize) -> impl Iterator<Item = usize> {
+    let count = count.min(length);
+    (0..count).map(move |index| index * length / count)
+}
+
+/// A polynomial with one sure coefficient fits anything of its sign at some scale, which says nothing.
+fn fits_at_any_scale(predicted: &[Bounded], case: &Case) -> bool {
+    if predicted.iter().filter(|coefficient| is_sure(**coefficient)).count() < 2 {
+        return matches(predicted, case.logged, case.scale);
+    }
+    fitted_scale(predicted, case.logged).is_some_and(|scale| matches(predicted, case.logged, scale))
+}
+
+/// With a small scale the course's library drops coefficients that matter: what is left may say too little about the
+/// scale, but the other samples know it.
+fn forgive_small_scales(cases: &mut [Case]) {
+    let scales = cases.iter().filter(|case| case.right).filter_map(|case| fitted_scale(&case.expected, case.logged));
+    let Some(usual) = median(scales.collect()) else { return };
+    for case in cases.iter_mut().filter(|case| !case.right) {
+        case.right = matches(&case.expected, case.logged, usual);
+    }
+}
+
+/// Leaves at most [`MOST_CASES`], most of them wrong ones, in their order.
+fn thinned(cases: Vec<Case>) -> Vec<Case> {
+    if cases.len() <= MOST_CASES {
+        return cases;
+    }
+    let chosen = |right: bool, count: usize| {
+        let of_kind: Vec<usize> = (0..cases.len()).filter(|&index| cases[index].right == right).collect();
+        spread(of_kind.len(), count).map(|index| of_kind[index]).collect::<Vec<_>>()
+    };
+    let wrong = chosen(false, MOST_CASES * 3 / 4);
+    let right = chosen(true, MOST_CASES - wrong.len());
+    let mut keep = vec![false; cases.len()];
+    wrong.into_iter().chain(right).for_each(|index| keep[index] = true);
+    cases.into_iter().zip(keep).filter_map(|(case, keep)| keep.then_some(case)).collect()
+}

@@ -1,0 +1,346 @@
+//! Wrong coefficients, one at a time: a wrong factor, or a few terms that are missing, too many or of the wrong weight.
+use super::{
+    compare::{coefficient_matches, expected_at, logged_at},
+    dictionary::Dictionary,
+    formulas::Formula,
+    sparse::{Columns, Support},
+    study::{Candidate, Case, Study, median, spread},
+};
+use fosssim_num::bounded::Bounded;
+
+/// A fit looks at so many wrong samples, and half as many right ones.
+const MOST_ROWS: usize = 240;
+
+/// With fewer samples that have the coefficient, those that lack it are looked at, too.
+const FEWEST_ROWS: usize = 12;
+
+/// Weights are multiples of this.
+const WEIGHT_STEP: f64 = 0.25;
+
+/// How far a fitted weight may lie from such a multiple, in multiples: what the normal equations leave of 16 digits.
+const SNAPPING: f64 = 1e-3;
+
+/// Weights beyond this are no slip.
+const LARGEST_WEIGHT: f64 = 64.0;
+
+/// So many other explanations of a coefficient are told.
+const MOST_ALTERNATIVES: usize = 3;
+
+/// The cost of a coefficient that nothing explains.
+const UNKNOWN: f64 = 20.0;
+
+/// What is wrong with one coefficient.
+enum Edit {
+    /// It carries a factor.
+    Factor(Bounded),
+    /// Products with their additional weights.
+    Terms(Vec<(usize, f64)>),
+    /// Nothing was found.
+    Unknown,
+}
+
+/// A guess about one coefficient.
+struct Guess {
+    power: usize,
+    edit: Edit,
+    cost: f64,
+    alternatives: Vec<Vec<(usize, f64)>>,
+}
+
+/// What makes each coefficient wrong, where at least one wrong coefficient can be explained.
+pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
+    study.formulas().iter().enumerate().filter_map(|(index, formula)| candidate(study, formula, index)).collect()
+}
+
+fn candidate(study: &Study, formula: &'static Formula, reading: usize) -> Option<Candidate> {
+    let fitting = Fitting::new(study, formula);
+    let mut guesses = Vec::new();
+    for power in (0..=formula.degree).rev() {
+        if fitting.is_wrong(power) {
+            guesses.push(fitting.explain(power));
+        }
+    }
+    // A polynomial of which nothing is known needs no candidate.
+    guesses.iter().find(|guess| !matches!(guess.edit, Edit::Unknown))?;
+    let reproduced = (0..study.cases.len())
+        .filter(|&index| {
+            let case = &study.cases[index];
+            case.logged.len() <= formula.degree + 1
+                && (0..=formula.degree).all(|power| {
+                    let guess = guesses.iter().find(|guess| guess.power == power);
+                    let predicted = fitting.predicted(index, power, guess.map(|guess| &guess.edit));
+                    coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
+                })
+        })
+        .count();
+    let words = Words { dictionary: &fitting.dictionary, formula };
+    Some(Candidate {
+        key: words.key(&guesses).to_owned(),
+        sentence: words.sentence(&guesses),
+        details: guesses.iter().flat_map(|guess| words.details(guess)).collect(),
+        cost: guesses.iter().map(|guess| guess.cost).sum::<f64>() + 0.1 * reading as f64,
+        reproduced,
+        general: false,
+    })
+}
+
+/// The samples with the values of all products.
+struct Fitting<'a> {
+    study: &'a Study<'a>,
+    formula: &'static Formula,
+    dictionary: Dictionary,
+    expected: Vec<Vec<Bounded>>,
+    products: Vec<Vec<Bounded>>,
+}
+
+impl<'a> Fitting<'a> {
+    fn new(study: &'a Study<'a>, formula: &'static Formula) -> Self {
+        let dictionary = Dictionary::new(study.subject, formula);
+        let expected = study.cases.iter().map(|case| formula.polynomial(&case.inputs)).collect();
+        let products = study.cases.iter().map(|case| dictionary.values(&case.inputs)).collect();
+        Self { study, formula, dictionary, expected, products }
+    }
+
+    fn case(&self, index: usize) -> &Case<'a> {
+        &self.study.cases[index]
+    }
+
+    fn coefficient(&self, index: usize, power: usize) -> Bounded {
+        expected_at(&self.expected[index], power)
+    }
+
+    fn holds(&self, index: usize, power: usize, predicted: Bounded) -> bool {
+        let case = self.case(index);
+        coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
+    }
+
+    fn is_wrong(&self, power: usize) -> bool {
+        (0..self.study.cases.len()).any(|index| !self.holds(index, power, self.coefficient(index, power)))
+    }
+
+    fn predicted(&self, index: usize, power: usize, edit: Option<&Edit>) -> Bounded {
+        let expected = self.coefficient(index, power);
+        match edit {
+            None | Some(Edit::Unknown) => expected,
+            Some(Edit::Factor(factor)) => *factor * expected,
+            Some(Edit::Terms(changes)) => {
+                changes.iter().fold(expected, |sum, &(product, weight)| sum + weight * self.products[index][product])
+            }
+        }
+    }
+
+    fn explains_all(&self, power: usize, edit: &Edit) -> bool {
+        (0..self.study.cases.len()).all(|index| self.holds(index, power, self.predicted(index, power, Some(edit))))
+    }
+
+    /// The likeliest explanation of a coefficient that holds for all samples.
+    fn explain(&self, power: usize) -> Guess {
+        let factor = self.factor(power);
+        let mut all = self.term_changes(power);
+        all.sort_by(|one, two| one.1.total_cmp(&two.1));
+        let mut all = all.into_iter();
+        let terms = all.next();
+        match (factor, terms) {
+            (Some((factor, cost)), terms) if terms.as_ref().is_none_or(|(_, other)| cost < *other) => {
+                Guess { power, edit: Edit::Factor(factor), cost, alternatives: Vec::new() }
+            }
+            (_, Some((changes, cost))) => {
+                let alternatives = all.take(MOST_ALTERNATIVES).map(|(changes, _)| changes).collect();
+                Guess { power, edit: Edit::Terms(changes), cost, alternatives }
+            }
+            (_, None) => Guess { power, edit: Edit::Unknown, cost: UNKNOWN, alternatives: Vec::new() },
+        }
+    }
+
+    /// A constant factor of the coefficient.
+    fn factor(&self, power: usize) -> Option<(Bounded, f64)> {
+        let ratios = (0..self.study.cases.len()).filter_map(|index| {
+            let (case, expected) = (self.case(index), self.coefficient(index, power));
+            let value = logged_at(case.logged, power).unwrap_or(0.0);
+            (expected.value.abs() > 1e-3 * expected.bound).then(|| value / (case.scale * expected.value))
+        });
+        let factor = median(ratios.collect())?;
+        // The sum turns -0 into 0.
+        let simple = (factor * 12.0).round() / 12.0 + 0.0;
+        let is_simple = (factor - simple).abs() < 1e-12;
+        let factor =
+            if is_simple { Bounded::exact(simple) } else { Bounded { value: factor, bound: 16.0 * factor.abs() } };
+        let cost = match factor.value {
+            -1.0 | 0.0 | 0.5 | 2.0 => 3.2,
+            _ if is_simple => 5.0,
+            _ => 6.0,
+        };
+        self.explains_all(power, &Edit::Factor(factor)).then_some((factor, cost))
+    }
+
+    /// All smallest changes of the coefficient's terms that hold for all samples, with their costs.
+    fn term_changes(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
+        let rows = self.rows(power);
+        let scaled = |index: usize, value: f64| value / self.coefficient(index, power).bound;
+        let target: Vec<f64> = rows
+            .iter()
+            .map(|&index| {
+                let case = self.case(index);
+                let value = logged_at(case.logged, power).unwrap_or(0.0) / case.scale;
+                scaled(index, value - self.coefficient(index, power).value)
+            })
+            .collect();
+        let columns: Vec<Vec<f64>> = (0..self.dictionary.products.len())
+            .map(|product| rows.iter().map(|&index| scaled(index, self.products[index][product].value)).collect())
+            .collect();
+        let order = self.natural_order(power);
+        let prepared = Columns::new(&columns, |product| {
+            let product = &self.dictionary.products[product];
+            product.order == order && !product.foreign
+        });
+        let mut found = Vec::new();
+        prepared.supports(&target, |support| {
+            let Some(changes) = snapped(support) else { return false };
+            let edit = Edit::Terms(changes);
+            let holds = self.explains_all(power, &edit);
+            if let (true, Edit::Terms(changes)) = (holds, edit) {
+                let cost = changes.iter().map(|change| self.cost(power, order, *change)).sum();
+                found.push((changes, cost));
+            }
+            holds
+        });
+        found
+    }
+
+    /// The degree in the displacements that the terms of a coefficient have.
+    fn natural_order(&self, power: usize) -> u8 {
+        let term = self.formula.terms.iter().find(|term| term.power == power);
+        term.map_or(0, |term| term.letters.iter().map(|&letter| self.formula.letters[letter].order).sum())
+    }
+
+    /// How unlikely an additional weight is.
+    fn cost(&self, power: usize, order: u8, (product, change): (usize, f64)) -> f64 {
+        let weight = self.dictionary.weight(self.formula, power, product);
+        let entry = &self.dictionary.products[product];
+        if weight == 0.0 {
+            let strange = if entry.order == order { 0.0 } else { 1.5 } + if entry.foreign { 0.5 } else { 0.0 };
+            return strange + if change.abs() == 1.0 || change.abs() == 2.0 { 4.5 } else { 5.5 };
+        }
+        match (weight + change) / weight {
+            0.0 => 3.0,
+            -1.0 => 3.1,
+            0.5 | 2.0 => 3.2,
+            _ => 4.0,
+        }
+    }
+
+    /// The samples that a fit looks at: where the coefficient is wrong, and some others.
+    fn rows(&self, power: usize) -> Vec<usize> {
+        let usable = |&index: &usize| {
+            let logged = logged_at(self.case(index).logged, power);
+            self.coefficient(index, power).bound > 0.0 && logged.unwrap_or(0.0).is_finite()
+        };
+        let all: Vec<usize> = (0..self.study.cases.len()).filter(usable).collect();
+        // A dropped coefficient is known to 1e-12 only, which spoils a fit.
+        let logged = |&index: &usize| logged_at(self.case(index).logged, power).is_some();
+        let present: Vec<usize> = all.iter().copied().filter(logged).collect();
+        let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < FEWEST_ROWS { all } else { present }
+            .into_iter()
+            .partition(|&index| self.holds(index, power, self.coefficient(index, power)));
+        let few = |list: &[usize], count: usize| spread(list.len(), count).map(|index| list[index]).collect::<Vec<_>>();
+        let mut rows = few(&wrong, MOST_ROWS);
+        rows.extend(few(&right, MOST_ROWS / 2));
+        rows
+    }
+}
+
+/// Rounds weights to multiples of [`WEIGHT_STEP`]; `None` if they are none.
+fn snapped(support: &Support) -> Option<Vec<(usize, f64)>> {
+    support
+        .iter()
+        .map(|&(product, weight)| {
+            let steps = weight / WEIGHT_STEP;
+            let whole = steps.round();
+            let is_whole = (steps - whole).abs() <= SNAPPING && whole != 0.0 && weight.abs() <= LARGEST_WEIGHT;
+            is_whole.then_some((product, whole * WEIGHT_STEP))
+        })
+        .collect()
+}
+
+/// The coefficient of a power, in a word.
+const fn power_name(power: usize) -> &'static str {
+    match power {
+        0 => "constant",
+        1 => "linear",
+        2 => "quadratic",
+        3 => "cubic",
+        4 => "quartic",
+        _ => "quintic",
+    }
+}
+
+/// Guesses in words.
+struct Words<'a> {
+    dictionary: &'a Dictionary,
+    formula: &'a Formula,
+}
+
+impl Words<'_> {
+    fn weights(&self, power: usize, (product, change): (usize, f64)) -> (f64, f64) {
+        let expected = self.dictionary.weight(self.formula, power, product);
+        (expected, expected + change)
+    }
+
+    /// The key of what is wrong, and a sentence about it, where `{}` stands for the coefficient.
+    fn kind(&self, guesses: &[Guess]) -> (&'static str, &'static str) {
+        let [Guess { power, edit, .. }] = guesses else {
+            return ("coefficients", "Several coefficients are wrong ({})");
+        };
+        match edit {
+            Edit::Factor(factor) if factor.value == 0.0 => ("coefficient-zero", "The {} coefficient is zero"),
+            Edit::Factor(factor) if factor.value == -1.0 => {
+                ("coefficient-sign", "The {} coefficient has the wrong sign")
+            }
+            Edit::Factor(_) => ("coefficient-factor", "The {} coefficient has a wrong factor"),
+            Edit::Unknown => ("unexplained", "No simple mistake explains the {} coefficient"),
+            Edit::Terms(changes) => match changes[..] {
+                [change] => match self.weights(*power, change) {
+                    (0.0, _) => ("term-foreign", "The {} coefficient contains a term that does not belong there"),
+                    (_, 0.0) => ("term-missing", "A term of the {} coefficient is missing"),
+                    (expected, actual) if expected == -actual => {
+                        ("term-sign", "A term of the {} coefficient has the wrong sign")
+                    }
+                    _ => ("term-factor", "A term of the {} coefficient has a wrong factor"),
+                },
+                _ => ("terms", "Several terms of the {} coefficient are wrong"),
+            },
+        }
+    }
+
+    fn key(&self, guesses: &[Guess]) -> &'static str {
+        self.kind(guesses).0
+    }
+
+    fn sentence(&self, guesses: &[Guess]) -> String {
+        let powers: Vec<&str> = guesses.iter().map(|guess| power_name(guess.power)).collect();
+        self.kind(guesses).1.replace("{}", &powers.join(", "))
+    }
+
+    fn details(&self, guess: &Guess) -> Vec<String> {
+        let power = guess.power;
+        let changes = match &guess.edit {
+            Edit::Factor(factor) if factor.value == 0.0 => return vec![format!("t^{power}: the coefficient is 0")],
+            Edit::Factor(factor) => return vec![format!("t^{power}: multiplied by {}, expected 1", factor.value)],
+            Edit::Unknown => return vec![format!("t^{power}: no simple change explains it")],
+            Edit::Terms(changes) => changes,
+        };
+        let mut lines: Vec<String> = changes.iter().map(|&change| self.line(power, change)).collect();
+        for alternative in &guess.alternatives {
+            let words: Vec<String> = alternative.iter().map(|&change| self.line(power, change)).collect();
+            lines.push(format!("can't be told apart here from {}", words.join("; ")));
+        }
+        lines
+    }
+
+    fn line(&self, power: usize, change: (usize, f64)) -> String {
+        let (expected, actual) = self.weights(power, change);
+        let meanings = self.dictionary.meanings(change.0);
+        let meanings = if meanings.is_empty() { String::new() } else { format!(" ({})", meanings.join(", ")) };
+        format!("t^{power}: {} has weight {actual}, expected {expected}{meanings}", self.dictionary.name(change.0))
+    }
+}

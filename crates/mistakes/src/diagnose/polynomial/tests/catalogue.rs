@@ -1,0 +1,193 @@
+//! The students of the catalogue on small random scenes: a mistake is explained by what it is, a correct variant not at
+//! all.
+use super::{Body, Motion, Numbers, PairKind, Sample, explain};
+use crate::student::{Area, CATALOGUE, KNOWN_ACCUSED, Kind, Object, Row, StepLog, Student, World, find, step};
+use fosssim_model::{
+    scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
+    sim::Pair,
+};
+use fosssim_num::vector::{Vec2, at};
+
+/// What the scenes are like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Style {
+    /// Everything moves, and nothing is like anything else.
+    General,
+    /// The same with a small step, so that leading coefficients are small or dropped.
+    Slow,
+    /// As courses have them: equal radii, unit normals, edges whose endpoints are fixed.
+    Plain,
+}
+
+const BODIES: usize = 5;
+
+fn scene(numbers: &mut Numbers, style: Style) -> Scene {
+    let plain = style == Style::Plain;
+    let particle = |numbers: &mut Numbers, index: usize| {
+        let fixed = plain && index < 3;
+        Particle {
+            position: numbers.vector(3.0),
+            velocity: if fixed { Vec2::zeros() } else { numbers.vector(7.0) },
+            mass: 1.0,
+            fixed,
+            radius: if plain { 0.25 } else { 0.3 + numbers.next(0.2) },
+            tag: None,
+        }
+    };
+    let edge = |numbers: &mut Numbers, first: usize| Edge {
+        first,
+        second: first + 1,
+        radius: if plain { 0.25 } else { 0.3 + numbers.next(0.2) },
+    };
+    let normal = |numbers: &mut Numbers| if plain { Vec2::new(0.0, 1.0) } else { numbers.vector(2.0) };
+    Scene {
+        duration: 1.0,
+        time_step: if style == Style::Slow { 0.001 } else { 0.1 },
+        integrator: Integrator::ExplicitEuler,
+        collision: Collision::Hybrid { restitution: 1.0, max_iterations: 1, stiffness: 0.0, thickness: 0.0 },
+        particles: (0..BODIES).map(|index| particle(numbers, index)).collect(),
+        edges: [0, 1, 3].into_iter().map(|first| edge(numbers, first)).collect(),
+        half_planes: (0..2).map(|_| HalfPlane { point: numbers.vector(3.0), normal: normal(numbers) }).collect(),
+        forces: Vec::new(),
+        description: None,
+        display: Display::default(),
+    }
+}
+
+/// How many polynomials a student hands over for a pair.
+fn handed_over(row: &Row, kind: PairKind) -> usize {
+    match row.id {
+        "handover-position-only" => kind.polynomials() - 1,
+        "handover-approach-only" => 1,
+        _ => kind.polynomials(),
+    }
+}
+
+/// The first detection pass of the first step in many small scenes.
+fn first_passes(row: &Row, style: Style) -> Vec<Sample> {
+    let mut numbers = Numbers(3);
+    let mut samples = Vec::new();
+    for number in 0..40 {
+        let world = World::new(scene(&mut numbers, style), Student::new(Some(row.mistake)));
+        let mut state = world.initial_state();
+        let start = state.clone();
+        let mut log = StepLog::default();
+        if step(&world, &mut state, &mut log, &mut |_, _| {}).is_err() {
+            continue;
+        }
+        let mut lists = log.polynomials.iter().map(|list| list.coefficients().to_vec());
+        let body = |index: usize| {
+            let place = at(&start.x, index);
+            let end = place + world.scene.time_step * at(&start.v, index);
+            Body { start: place, displacement: end - place }
+        };
+        let radius = |index: usize| world.scene.particles[index].radius;
+        for pair in &world.pairs {
+            let one = pair.particle;
+            let (motion, second) = match pair.object {
+                Object::Particle(two) => {
+                    (Motion::Particles { bodies: [body(one), body(two)], radii: [radius(one), radius(two)] }, two)
+                }
+                Object::Edge(index) => {
+                    let edge = world.scene.edges[index];
+                    let bodies = [body(one), body(edge.first), body(edge.second)];
+                    (Motion::Edge { bodies, radii: [radius(one), edge.radius] }, index)
+                }
+                Object::HalfPlane(index) => {
+                    let HalfPlane { point, normal } = world.scene.half_planes[index];
+                    (Motion::HalfPlane { body: body(one), radius: radius(one), point, normal }, index)
+                }
+            };
+            let kind = motion.kind();
+            samples.push(Sample {
+                step: number + 1,
+                pass: 0,
+                pair: Pair { kind, first: one as u32, second: second as u32 },
+                motion,
+                polynomials: lists.by_ref().take(handed_over(row, kind)).collect(),
+            });
+        }
+    }
+    samples
+}
+
+fn concerns_polynomials(row: &Row) -> bool {
+    let areas = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane, Area::Handover];
+    areas.contains(&row.area) && !row.id.ends_with("-empty")
+}
+
+#[test]
+fn correct_variants_are_not_accused() {
+    for style in [Style::General, Style::Slow, Style::Plain] {
+        for row in CATALOGUE.iter().filter(|row| row.kind == Kind::Variant && !KNOWN_ACCUSED.contains(&row.id)) {
+            assert_eq!(explain(&first_passes(row, style)), [], "{} {style:?}", row.id);
+        }
+    }
+}
+
+fn mistakes() -> impl Iterator<Item = &'static Row> {
+    CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong && concerns_polynomials(row))
+}
+
+/// Where nothing is like anything else, every mistake is told once and reproduced completely.
+#[test]
+fn mistakes_of_the_catalogue_are_explained() {
+    for (row, style) in mistakes().flat_map(|row| [(row, Style::General), (row, Style::Slow)]) {
+        let found = explain(&first_passes(row, style));
+        let few = if row.id == "handover-approach-only" { 2 } else { 1 };
+        assert_eq!(found.len(), few, "{} {style:?}: {found:#?}", row.id);
+        for one in &found {
+            assert_eq!(one.reproduced, one.samples, "{} {style:?}: {one:#?}", row.id);
+            assert!(one.samples >= 200, "{} {style:?}: {one:#?}", row.id);
+        }
+    }
+}
+
+/// Where scenes are plain, some mistakes do not show; those that do are explained no less.
+#[test]
+fn mistakes_of_the_catalogue_are_explained_in_plain_scenes() {
+    let hidden = ["pp-first-radius-twice", "ph-no-normal-square", "ph-normal-length"];
+    for row in mistakes() {
+        let found = explain(&first_passes(row, Style::Plain));
+        assert_eq!(found.is_empty(), hidden.contains(&row.id), "{}: {found:#?}", row.id);
+        assert!(found.iter().all(|one| one.reproduced == one.samples), "{}: {found:#?}", row.id);
+    }
+}
+
+/// The words fit the mistake, not only the numbers.
+#[test]
+fn explanations_say_what_the_catalogue_says() {
+    for (id, key) in [
+        ("pp-radii-squared-apart", "radii-squared-apart"),
+        ("pp-radius-not-squared", "radius-not-squared"),
+        ("pp-one-radius", "first-radius-only"),
+        ("pp-end-positions", "end-positions"),
+        ("pp-first-still", "particle-still"),
+        ("pp-no-approach", "constant"),
+        ("pe-edge-still", "edge-still"),
+        ("pe-endpoints-swapped", "endpoints-swapped"),
+        ("pe-radius-unscaled", "radius-unscaled"),
+        ("pe-three-terms", "cut"),
+        ("pe-square-no-eh", "term-missing"),
+        ("pe-cubic-parentheses", "term-sign"),
+        ("pe-linear-one-sh", "term-factor"),
+        ("pe-no-cubic", "coefficient-zero"),
+        ("pe-alpha-high-unscaled", "one-unscaled"),
+        ("pe-alpha-high-is-low", "other-polynomial"),
+        ("pe-approach-constant-alpha", "constant-alpha"),
+        ("pe-approach-old-letter", "letter"),
+        ("ph-no-point", "no-point"),
+        ("ph-approach-no-speed", "no-speed-factor"),
+        ("handover-lowest-first", "reversed"),
+        ("handover-negated", "negated"),
+        ("handover-single-precision", "single-precision"),
+        ("handover-position-only", "missing-polynomials"),
+        ("handover-monic", "monic"),
+    ] {
+        let row = find(id).expect("the catalogue has it");
+        for style in [Style::General, Style::Plain] {
+            let found = explain(&first_passes(row, style));
+            assert_eq!(found.first().map(|one| one.key.as_str()), Some(key), "{id} {style:?}: {found:#?}");
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Gathers what explanations of polynomials are made of: detections whose inputs are known for certain, and what the
+//! trace logged for them.
+//!
+//! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end is
+//! what the integrator makes of it, before any response. So the first pass of each step is looked at, and in hybrid scenes the
+//! first pass of the geometric part, which starts from the mid record.
+use super::polynomial::{Body, Motion, Sample};
+use fosssim_judge::fair::{compare::compare, formulas};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{Decision, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, Stage, State},
+    trace::{Layout, Lenient, LenientFrame, PolynomialLog, record_memory},
+};
+use fosssim_num::{polynomial::Polynomial, vector::at};
+use std::io::Read;
+
+/// What follows this many bytes of the trace is not looked at.
+const LONGEST: u64 = 64 << 20;
+/// Of each kind of pair so many wrong and so many right detections are kept.
+const MOST_WRONG: usize = 400;
+const MOST_RIGHT: usize = 200;
+
+/// The samples of a trace; empty for scenes without polynomials. A trace that breaks off or goes wild yields what it
+/// holds up to there.
+pub(super) fn samples(scene: &Scene, trace: impl Read) -> Vec<Sample> {
+    let layout = Layout::of(scene);
+    if !layout.polynomials {
+        return Vec::new();
+    }
+    let mut reader = Lenient::new(trace.take(LONGEST), layout).with_limit(record_memory(scene));
+    let (mut before, mut mid, mut end) = (LenientFrame::default(), LenientFrame::default(), LenientFrame::default());
+    let mut gathered = Gathered::default();
+    if !read(&mut reader, &mut before) {
+        return Vec::new();
+    }
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    for step in 1..=layout.steps {
+        if gathered.is_full() || !read(&mut reader, &mut mid) || !read(&mut reader, &mut end) {
+            break;
+        }
+        simulation.state_mut().clone_from(&before.state);
+        simulation.set_steps_done(step - 1);
+        let mut gatherer = Gatherer::new(scene, step, &mid, &end.polynomials, &mut gathered);
+        // A step without result is a trace gone wild; what was gathered stays.
+        let _ = simulation.step(&mut gatherer);
+        before.state.clone_from(&end.state);
+    }
+    gathered.kinds.into_iter().flat_map(|kind| kind.samples).collect()
+}
+
+/// Reads a record. False at the end of what is sound: nobody is to blame for what is left of a damaged record.
+fn read<R: Read>(reader: &mut Lenient<R>, frame: &mut LenientFrame) -> bool {
+    reader.next(frame).is_ok() && frame.note.is_none()
+}
+
+#[derive(Default)]
+struct Gathered {
+    kinds: [OfKind; 3],
+}
+
+#[derive(Default)]
+struct OfKind {
+    samples: Vec<Sample>,
+    wrong: usize,
+    right: usize,
+}
+
+impl Gathered {
+    fn is_full(&self) -> bool {
+        self.kinds.iter().all(|kind| kind.wrong >= MOST_WRONG)
+    }
+}
+
+/// How many of its polynomials each detection logs, by kind of pair; all of them as a rule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Sizes([usize; 3]);
+
+const KINDS: [PairKind; 3] = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
+
+const fn row(kind: PairKind) -> usize {
+    match kind {
+        PairKind::ParticleParticle => 0,
+        PairKind::ParticleEdge => 1,
+        PairKind::ParticleHalfPlane => 2,
+    }
+}
+
+/// The observer of one step.
+struct Gatherer<'a> {
+    scene: &'a Scene,
+    step: u32,
+    mid: &'a LenientFrame,
+    log: &'a PolynomialLog,
+    gathered: &'a mut Gathered,
+    sizes: Option<Sizes>,
+    /// The pass's number and the next polynomial in the list, for passes that are looked at.
+    next: Option<(u32, usize)>,
+}
+
+impl<'a> Gatherer<'a> {
+    fn new(
+        scene: &'a Scene,
+        step: u32,
+        mid: &'a LenientFrame,
+        log: &'a PolynomialLog,
+        gathered: &'a mut Gathered,
+    ) -> Self {
+        let counts = pairs(scene);
+        let sizes = sizes(counts, mid.polynomials.len(), log.len());
+        Self { scene, step, mid, log, gathered, sizes, next: None }
+    }
+
+    fn motion(&self, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Motion {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        let body = |particle| {
+            let start = at(q_start, particle);
+            Body { start, displacement: at(q_end, particle) - start }
+        };
+        let radius = |particle: usize| self.scene.particles[particle].radius;
+        match pair.kind {
+            PairKind::ParticleParticle => {
+                Motion::Particles { bodies: [body(first), body(second)], radii: [radius(first), radius(second)] }
+            }
+            PairKind::ParticleEdge => {
+                let edge = &self.scene.edges[second];
+                let bodies = [body(first), body(edge.first), body(edge.second)];
+                Motion::Edge { bodies, radii: [radius(first), edge.radius] }
+            }
+            PairKind::ParticleHalfPlane => {
+                let half_plane = &self.scene.half_planes[second];
+                let (point, normal) = (half_plane.point, half_plane.normal);
+                Motion::HalfPlane { body: body(first), radius: radius(first), point, normal }
+            }
+        }
+    }
+}
+
+/// How many pairs of each kind a pass looks at.
+fn pairs(scene: &Scene) -> [usize; 3] {
+    let count = scene.particles.len();
+    let is_end =
+        |particle: usize| move |edge: &&fosssim_model::scene::Edge| edge.first == particle || edge.second == particle;
+    let at_edges: usize = (0..count).map(|i| scene.edges.len() - scene.edges.iter().filter(is_end(i)).count()).sum();
+    [count * count.saturating_sub(1) / 2, at_edges, count * scene.half_planes.len()]
+}
+
+/// How many polynomials each detection logs so that the lists consist of whole passes: all of them if that fits, else as
+/// many as possible. `None` when nothing fits.
+fn sizes(pairs: [usize; 3], before: usize, all: usize) -> Option<Sizes> {
+    let fits = |sizes: [usize; 3]| {
+        let pass: usize = pairs.iter().zip(sizes).map(|(pairs, size)| pairs * size).sum();
+        pass > 0 && before.is_multiple_of(pass) && all.is_multiple_of(pass) && all > 0
+    };
+    let full = KINDS.map(PairKind::polynomials);
+    if fits(full) {
+        return Some(Sizes(full));
+    }
+    let mut choices: Vec<[usize; 3]> = Vec::new();
+    for a in 0..=full[0] {
+        for b in 0..=full[1] {
+            for c in 0..=full[2] {
+                choices.push([a, b, c]);
+            }
+        }
+    }
+    // Fewest changes first: a student forgets something of one detection, seldom of two.
+    choices.sort_by_key(|sizes| {
+        let changed = sizes.iter().zip(full).zip(pairs).filter(|((size, full), pairs)| *pairs > 0 && **size != *full);
+        (changed.count(), std::cmp::Reverse(sizes.iter().sum::<usize>()))
+    });
+    choices.into_iter().find(|sizes| fits(*sizes)).map(Sizes)
+}
+
+impl Observer for Gatherer<'_> {
+    fn begin_pass(&mut self, pass: Pass) {
+        self.next = match (pass.stage, pass.index) {
+            (_, 0) => Some((0, 0)),
+            (Stage::Geometric { round: 0 }, index) if matches!(self.scene.collision, Collision::Hybrid { .. }) => {
+                Some((index, self.mid.polynomials.len()))
+            }
+            _ => None,
+        };
+    }
+
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
+        let (Some((pass, index)), Some(Sizes(sizes))) = (self.next, self.sizes) else { return };
+        let size = sizes[row(pair.kind)];
+        let lists = index..index + size;
+        self.next = Some((pass, lists.end));
+        if lists.end > self.log.len() {
+            self.next = None;
+            return;
+        }
+        let polynomials: Vec<Vec<f64>> = lists.map(|index| self.log.get(index).to_vec()).collect();
+        let expected = formulas::Motion::of(self.scene, pair, q_start, q_end).polynomials();
+        let is_right = size == pair.kind.polynomials()
+            && polynomials.iter().enumerate().all(|(number, logged)| {
+                let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
+                forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
+            });
+        let kind = &self.gathered.kinds[row(pair.kind)];
+        if if is_right { kind.right >= MOST_RIGHT } else { kind.wrong >= MOST_WRONG } {
+            return;
+        }
+        let motion = self.motion(pair, q_start, q_end);
+        let kind = &mut self.gathered.kinds[row(pair.kind)];
+        *(if is_right { &mut kind.right } else { &mut kind.wrong }) += 1;
+        kind.samples.push(Sample { step: self.step, pass, pair, motion, polynomials });
+    }
+
+    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
+        // Later pairs of a continuous-time pass see what the submission's responses left, which is not logged.
+        if matches!(self.scene.collision, Collision::ContinuousTime { .. }) && matches!(decision, Decision::Hit { .. })
+        {
+            self.next = None;
+        }
+        decision
+    }
+
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        if self.mid.state.positions.iter().chain(&self.mid.state.velocities).all(|value| value.is_finite()) {
+            state.clone_from(&self.mid.state);
+        }
+        Resume::Synchronised
+    }
+}

@@ -1,0 +1,7 @@
+//! Known mistakes and how they are found again: [`student`] makes them, [`diagnose`] names them.
+
+pub mod plain;
+
+pub mod student;
+
+pub mod diagnose;

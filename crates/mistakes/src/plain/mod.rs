@@ -1,0 +1,71 @@
+//! Whether a sentence is plain words, or gives a formula away.
+//!
+//! The hint level `what` tells students what is wrong and leaves the formula to them. Its sentences are written by hand
+//! in many places; this is what holds them to it.
+
+/// Names of polynomials, which the assignment gives them: they are no formulas.
+const NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
+
+/// The first piece of a formula in a sentence: a number, an operator, a product with a dot, a function's argument, or a
+/// letter that stands for a quantity. `None` where all is words; `alpha > 0` and `alpha < 1` count as names.
+#[must_use]
+pub fn formula_in(sentence: &str) -> Option<String> {
+    let text = NAMES.iter().fold(sentence.to_owned(), |text, name| text.replace(name, "alpha"));
+    let letters: Vec<char> = text.chars().collect();
+    let at = |index: Option<usize>| index.and_then(|index| letters.get(index)).copied().unwrap_or(' ');
+    for (index, &letter) in letters.iter().enumerate() {
+        let (before, after) = (at(index.checked_sub(1)), at(Some(index + 1)));
+        let is_formula = match letter {
+            '^' | '*' | '/' | '=' | '<' | '>' | '+' | '|' | '\u{b7}' | '\u{d7}' | '\u{b2}' => true,
+            // Hyphens join words.
+            '-' => !(before.is_alphabetic() && after.is_alphabetic()),
+            '.' => before.is_alphanumeric() && after.is_alphanumeric(),
+            '(' => before.is_alphanumeric(),
+            _ => letter.is_ascii_digit(),
+        };
+        if is_formula {
+            return Some(format!("{before}{letter}{after}"));
+        }
+    }
+    let is_word = |letter: char| letter.is_alphanumeric() || letter == '\'';
+    text.split(|letter| !is_word(letter))
+        .find(|word| word.chars().count() == 1 && !matches!(*word, "a" | "A" | "'"))
+        .map(str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_are_recognised() {
+        for text in [
+            "The t^2 coefficient lacks it.",
+            "It has b c for it.",
+            "A factor 2 is missing.",
+            "r1 is missing.",
+            "The n.n is missing.",
+            "It is half of x * y.",
+            "The sum a + b.",
+            "The linear coefficient lacks -d.",
+            "alpha > 1 is tested.",
+            "0 <= alpha.",
+            "The root of x.",
+            "1/2 is taken.",
+            "x(t) is taken.",
+        ] {
+            assert!(formula_in(text).is_some(), "{text}");
+        }
+    }
+
+    #[test]
+    fn words_and_names_are_none() {
+        for text in [
+            "The alpha > 0 polynomial is wrong, as a half-plane's is.",
+            "A particle-edge pair (or another one) is left out.",
+            "Particle-edge: A product is missing.",
+        ] {
+            assert_eq!(formula_in(text), None, "{text}");
+        }
+    }
+}

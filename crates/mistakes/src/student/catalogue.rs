@@ -1,0 +1,615 @@
+//! Everything that a student's program can do differently: one row each.
+//!
+//! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
+//! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
+//! a mistake is made asks [`Student::makes`].
+/// What is to be thought of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A mistake: the result is wrong.
+    Wrong,
+    /// No mistake: other arithmetic, the same mathematics.
+    Variant,
+    /// A program that harms itself or others.
+    Hostile,
+}
+
+/// The part of the assignment that a row belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Area {
+    /// Polynomials of two particles.
+    ParticleParticle,
+    /// Polynomials of a particle and an edge.
+    ParticleEdge,
+    /// Polynomials of a particle and a half-plane.
+    ParticleHalfPlane,
+    /// What all three detections have in common: how polynomials reach the root finder.
+    Handover,
+    /// The vector between the objects at the time of impact.
+    ContactVector,
+    /// Which times count, and which pairs are looked at.
+    Decision,
+    /// The impulse of one contact.
+    Response,
+    /// The single pass of `continuous-time`.
+    ContinuousTime,
+    /// The impulse rounds of `hybrid`.
+    ImpulseLoop,
+    /// Impact zones and their growth.
+    ImpactZones,
+    /// The rigid motion of one zone.
+    Failsafe,
+    /// What is written to the trace.
+    Trace,
+    /// How the program behaves as a process.
+    Process,
+}
+
+impl Kind {
+    /// Its name in listings.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong",
+            Self::Variant => "variant",
+            Self::Hostile => "hostile",
+        }
+    }
+}
+
+impl Area {
+    /// Its name in listings.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "particle-particle",
+            Self::ParticleEdge => "particle-edge",
+            Self::ParticleHalfPlane => "particle-half-plane",
+            Self::Handover => "handover",
+            Self::ContactVector => "contact-vector",
+            Self::Decision => "decision",
+            Self::Response => "response",
+            Self::ContinuousTime => "continuous-time",
+            Self::ImpulseLoop => "impulse-loop",
+            Self::ImpactZones => "impact-zones",
+            Self::Failsafe => "failsafe",
+            Self::Trace => "trace",
+            Self::Process => "process",
+        }
+    }
+}
+
+/// One row of the catalogue.
+#[derive(Debug, Clone, Copy)]
+pub struct Row {
+    /// The mistake, for the program.
+    pub mistake: Mistake,
+    /// The mistake, for the user.
+    pub id: &'static str,
+    /// Wrong, correct, or hostile.
+    pub kind: Kind,
+    /// Where it is made.
+    pub area: Area,
+    /// What is wrong, in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives nothing
+    /// away.
+    pub what: &'static str,
+    /// The exact form: what stands there and what belongs there, in the assignment's notation.
+    pub term: &'static str,
+}
+
+/// The program's author: makes one mistake, or none.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Student {
+    mistake: Option<Mistake>,
+    right_approach: bool,
+}
+
+impl Student {
+    /// A student who makes this mistake.
+    pub fn new(mistake: Option<Mistake>) -> Self {
+        Self { mistake, right_approach: false }
+    }
+
+    /// Whether the student makes this mistake.
+    pub fn makes(self, mistake: Mistake) -> bool {
+        self.mistake == Some(mistake)
+    }
+
+    /// The mistake, where many are told apart in one place.
+    pub fn mistake(self) -> Option<Mistake> {
+        self.mistake
+    }
+
+    /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too, and
+    /// independent of the mistake.
+    #[must_use]
+    pub fn with_right_approach(self) -> Self {
+        Self { right_approach: true, ..self }
+    }
+
+    /// Whether the particle-edge approach is mathematically right, not the supplied one.
+    #[must_use]
+    pub fn approach_is_right(self) -> bool {
+        self.right_approach || self.makes(Mistake::QuinticRightRearranged)
+    }
+}
+
+impl Row {
+    /// What is wrong, with the part of the program in front.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        format!("{}: {}", self.place(), self.what)
+    }
+
+    /// The part of the program in which the mistake is made: the kind of pair where it is made for one kind only, else
+    /// the part of the assignment.
+    #[must_use]
+    pub fn place(&self) -> &'static str {
+        match (self.id.split_once('-'), self.area) {
+            (Some(("pp", _)), _) => "Particle-particle",
+            (Some(("pe", _)), _) => "Particle-edge",
+            (Some(("ph", _)), _) => "Particle-half-plane",
+            (_, Area::ParticleParticle) => "Particle-particle",
+            (_, Area::ParticleEdge) => "Particle-edge",
+            (_, Area::ParticleHalfPlane) => "Particle-half-plane",
+            (_, Area::Handover) => "Hand-over to the root finder",
+            (_, Area::ContactVector) => "Contact vector",
+            (_, Area::Decision) => "Detection",
+            (_, Area::Response) => "Collision response",
+            (_, Area::ContinuousTime) => "Continuous-time pass",
+            (_, Area::ImpulseLoop) => "Impulse loop",
+            (_, Area::ImpactZones) => "Impact zones",
+            (_, Area::Failsafe) => "Rigid failsafe",
+            (_, Area::Trace) => "Trace",
+            (_, Area::Process) => "Program",
+        }
+    }
+}
+
+/// The row with this id.
+pub fn find(id: &str) -> Option<&'static Row> {
+    CATALOGUE.iter().find(|row| row.id == id)
+}
+
+macro_rules! catalogue {
+    ($($kind:ident $area:ident { $($mistake:ident $id:literal: $what:literal => $term:literal;)* })*) => {
+        /// Something that a program does differently.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Mistake {
+            $($(#[doc = $what] $mistake,)*)*
+        }
+
+        /// All rows, in the order of the assignment.
+        pub const CATALOGUE: &[Row] = &[$($(Row {
+            mistake: Mistake::$mistake,
+            id: $id,
+            kind: Kind::$kind,
+            area: Area::$area,
+            what: $what,
+            term: $term,
+        },)*)*];
+    };
+}
+
+catalogue! {
+    Wrong ParticleParticle {
+        ParticleParticleEmpty "pp-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
+        ParticleParticleZero "pp-zero": "The coefficients are left at zero." => "Every coefficient is 0; expected are -d21.d21, -2 x21.d21, (r1 + r2)^2 - x21.x21 and -d21.d21, -x21.d21.";
+        ParticleParticleNoTwo "pp-no-two": "The linear coefficient of the overlap lacks a factor." => "t: -x21.d21 stands where -2 x21.d21 belongs.";
+        ParticleParticleLinearSign "pp-linear-sign": "The linear coefficient of the overlap has the wrong sign." => "t: 2 x21.d21 stands where -2 x21.d21 belongs.";
+        ParticleParticleQuadraticSign "pp-quadratic-sign": "The quadratic coefficient of the overlap has the wrong sign." => "t^2: d21.d21 stands where -d21.d21 belongs.";
+        ParticleParticleNoQuadratic "pp-no-quadratic": "The quadratic coefficient of the overlap is missing." => "t^2: 0 stands where -d21.d21 belongs.";
+        ParticleParticleConstantSign "pp-constant-sign": "Distance and radii are exchanged in the constant coefficient." => "1: x21.x21 - (r1 + r2)^2 stands where (r1 + r2)^2 - x21.x21 belongs.";
+        ParticleParticleRadiiSquaredApart "pp-radii-squared-apart": "Each radius is squared for itself before they are added." => "1: r1^2 + r2^2 stands where (r1 + r2)^2 belongs; 2 r1 r2 is missing.";
+        ParticleParticleRadiusNotSquared "pp-radius-not-squared": "The sum of the radii is not squared." => "1: r1 + r2 stands where (r1 + r2)^2 belongs.";
+        ParticleParticleDistanceNotSquared "pp-distance-not-squared": "The constant coefficient has the distance where its square belongs." => "1: |x21| stands where x21.x21 belongs.";
+        ParticleParticleFirstRadiusTwice "pp-first-radius-twice": "The first particle's radius is used for both particles." => "1: (r1 + r1)^2 stands where (r1 + r2)^2 belongs.";
+        ParticleParticleOneRadius "pp-one-radius": "The second particle's radius is forgotten." => "1: r1^2 stands where (r1 + r2)^2 belongs.";
+        ParticleParticleEndPositions "pp-end-positions": "The formulas start from the positions at the end of the step." => "x1 and x2 are taken from qe; they belong to qs.";
+        ParticleParticleFirstStill "pp-first-still": "The first particle's displacement is forgotten." => "d21 = dx2 stands where d21 = dx2 - dx1 belongs.";
+        ParticleParticleEndForDisplacement "pp-end-for-displacement": "End positions stand where displacements belong." => "dx = qe stands where dx = qe - qs belongs.";
+        ParticleParticleXOnly "pp-x-only": "The dot products of the moving terms leave the second component out." => "d21.d21 and x21.d21 have their x products only; the y products are missing.";
+        ParticleParticleTinyError "pp-tiny-error": "The constant coefficient is wrong by a tiny factor." => "1: (r1 + r2)^2 - x21.x21 is multiplied by 1 + 1e-9.";
+        ParticleParticleSeparating "pp-separating": "The approach has the relative velocity the wrong way round in its constant term." => "1: x21.d21 stands where -x21.d21 belongs.";
+        ParticleParticleApproachSlopeSign "pp-approach-slope-sign": "The approach's slope has the wrong sign." => "t: d21.d21 stands where -d21.d21 belongs.";
+        ParticleParticleApproachSlopeTwice "pp-approach-slope-twice": "The approach's slope has a factor that its constant term lacks." => "t: -2 d21.d21 stands where -d21.d21 belongs.";
+        ParticleParticleApproachAtStart "pp-approach-at-start": "The approach is tested at the start of the step only." => "The term -d21.d21 t is missing; only -x21.d21 is there.";
+        ParticleParticleNoApproach "pp-no-approach": "The approach is not tested: a constant stands in its place." => "The polynomial 1 stands where -d21.d21 t - x21.d21 belongs.";
+    }
+    Wrong ParticleEdge {
+        ParticleEdgeEmpty "pe-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap, alpha > 0, alpha < 1 and approach are expected for each pair.";
+        ParticleEdgeZero "pe-zero": "The coefficients are left at zero." => "Every coefficient is 0.";
+        ParticleEdgeStill "pe-edge-still": "The edge is treated as if it did not move." => "dx2 = dx3 = 0 in all formulas.";
+        ParticleEdgeOneDisplacement "pe-one-displacement": "The first endpoint's displacement is used for both endpoints." => "dx2 stands where dx3 belongs.";
+        ParticleEdgeDisplacementsSwapped "pe-displacements-swapped": "The endpoints' displacements are exchanged." => "dx2 and dx3 stand in each other's places.";
+        ParticleEdgeEndPositions "pe-end-positions": "The formulas start from the positions at the end of the step." => "x1, x2 and x3 are taken from qe; they belong to qs.";
+        ParticleEdgeEndpointsSwapped "pe-endpoints-swapped": "The endpoints are exchanged, so the two alpha polynomials are, too." => "x2 and x3, dx2 and dx3 stand in each other's places.";
+        ParticleEdgeRadiiSquaredApart "pe-radii-squared-apart": "Each radius is squared for itself before they are added." => "r1^2 + re^2 stands where (r1 + re)^2 belongs; 2 r1 re is missing.";
+        ParticleEdgeRadiusNotSquared "pe-radius-not-squared": "The sum of the radii is not squared." => "r1 + re stands where (r1 + re)^2 belongs.";
+        ParticleEdgeNoEdgeRadius "pe-no-edge-radius": "The edge's radius is forgotten." => "r1^2 stands where (r1 + re)^2 belongs.";
+        ParticleEdgeNoParticleRadius "pe-no-particle-radius": "The particle's radius is forgotten." => "re^2 stands where (r1 + re)^2 belongs.";
+        ParticleEdgeRadiusUnscaled "pe-radius-unscaled": "The radii are not multiplied by the edge's squared length when the denominator is cleared." => "(r1 + re)^2 stands where (r1 + re)^2 (x32 + t d32).(x32 + t d32) belongs.";
+        ParticleEdgeQuarticNegated "pe-quartic-negated": "The overlap polynomial is negative where the objects overlap." => "All five coefficients have the wrong sign.";
+        ParticleEdgeThreeTerms "pe-three-terms": "The overlap polynomial is cut to its last three terms." => "The coefficients of t^4 and t^3 are missing.";
+        ParticleEdgeQuarticNoFi "pe-quartic-no-fi": "A product is missing in the leading coefficient of the overlap." => "t^4 lacks -f i, with f = d21.d21 and i = d32.d32.";
+        ParticleEdgeQuarticPlusFi "pe-quartic-plus-fi": "A product in the leading coefficient of the overlap has the wrong sign." => "t^4 has +f i where -f i belongs, with f = d21.d21 and i = d32.d32.";
+        ParticleEdgeNoCubic "pe-no-cubic": "The cubic coefficient of the overlap is zero." => "t^3: 0 stands where 2 b c - 2 e i - 2 f h belongs, with b = (x1-x2).d32 + (dx1-dx2).x32, c = (dx1-dx2).d32, e = d21.x21, f = d21.d21, h = d32.x32 and i = d32.d32.";
+        ParticleEdgeCubicOneBc "pe-cubic-one-bc": "A product in the cubic coefficient of the overlap lacks its factor." => "t^3 has b c where 2 b c belongs, with b = (x1-x2).d32 + (dx1-dx2).x32 and c = (dx1-dx2).d32.";
+        ParticleEdgeCubicOneEi "pe-cubic-one-ei": "A product in the cubic coefficient of the overlap lacks its factor." => "t^3 has -e i where -2 e i belongs, with e = d21.x21 and i = d32.d32.";
+        ParticleEdgeCubicNoFh "pe-cubic-no-fh": "A product is missing in the cubic coefficient of the overlap." => "t^3 lacks -2 f h, with f = d21.d21 and h = d32.x32.";
+        ParticleEdgeCubicParentheses "pe-cubic-parentheses": "Lost parentheses give a product in the cubic coefficient of the overlap the wrong sign." => "t^3 has +2 f h where -2 f h belongs, with f = d21.d21 and h = d32.x32.";
+        ParticleEdgeSquareNoEh "pe-square-no-eh": "A product is missing in the quadratic coefficient of the overlap." => "t^2 lacks -4 e h, with e = d21.x21 and h = d32.x32.";
+        ParticleEdgeSquareTwoEh "pe-square-two-eh": "A product in the quadratic coefficient of the overlap has half its factor." => "t^2 has -2 e h where -4 e h belongs, with e = d21.x21 and h = d32.x32.";
+        ParticleEdgeSquareNoBb "pe-square-no-bb": "A square is missing in the quadratic coefficient of the overlap." => "t^2 lacks b^2, with b = (x1-x2).d32 + (dx1-dx2).x32.";
+        ParticleEdgeSquareOneCa "pe-square-one-ca": "A product in the quadratic coefficient of the overlap lacks its factor." => "t^2 has c a where 2 c a belongs, with a = (x1-x2).x32 and c = (dx1-dx2).d32.";
+        ParticleEdgeSquareNoDi "pe-square-no-di": "A product is missing in the quadratic coefficient of the overlap." => "t^2 lacks -d i, with d = x21.x21 and i = d32.d32.";
+        ParticleEdgeSquarePlusFg "pe-square-plus-fg": "A product in the quadratic coefficient of the overlap has the wrong sign." => "t^2 has +f g where -f g belongs, with f = d21.d21 and g = x32.x32.";
+        ParticleEdgeSquareRadiusTwice "pe-square-radius-twice": "The radius term of the overlap's quadratic coefficient is doubled." => "t^2 has 2 (r1 + re)^2 i where (r1 + re)^2 i belongs, with i = d32.d32.";
+        ParticleEdgeLinearOneAb "pe-linear-one-ab": "A product in the linear coefficient of the overlap lacks its factor." => "t has a b where 2 a b belongs, with a = (x1-x2).x32 and b = (x1-x2).d32 + (dx1-dx2).x32.";
+        ParticleEdgeLinearNoDh "pe-linear-no-dh": "A product is missing in the linear coefficient of the overlap." => "t lacks -2 d h, with d = x21.x21 and h = d32.x32.";
+        ParticleEdgeLinearNoEg "pe-linear-no-eg": "A product is missing in the linear coefficient of the overlap." => "t lacks -2 e g, with e = d21.x21 and g = x32.x32.";
+        ParticleEdgeLinearOneSh "pe-linear-one-sh": "The radius term of the overlap's linear coefficient lacks its factor." => "t has (r1 + re)^2 h where 2 (r1 + re)^2 h belongs, with h = d32.x32.";
+        ParticleEdgeLinearMinusSh "pe-linear-minus-sh": "The radius term of the overlap's linear coefficient has the wrong sign." => "t has -2 (r1 + re)^2 h where 2 (r1 + re)^2 h belongs, with h = d32.x32.";
+        ParticleEdgeConstantNoDg "pe-constant-no-dg": "A product is missing in the constant coefficient of the overlap." => "1 lacks -d g, with d = x21.x21 and g = x32.x32.";
+        ParticleEdgeConstantMinusAa "pe-constant-minus-aa": "A square in the constant coefficient of the overlap has the wrong sign." => "1 has -a^2 where a^2 belongs, with a = (x1-x2).x32.";
+        AlphaLowSlopeSign "pe-alpha-low-slope-sign": "The linear coefficient of alpha > 0 has the wrong sign." => "t: -b stands where b = (x1-x2).d32 + (dx1-dx2).x32 belongs.";
+        AlphaLowNegated "pe-alpha-low-negated": "The alpha > 0 polynomial has the wrong sign, so it asks for the opposite." => "All three coefficients are negated: the polynomial says alpha < 0.";
+        AlphaLowNoQuadratic "pe-alpha-low-no-quadratic": "The quadratic coefficient of alpha > 0 is missing." => "t^2: 0 stands where (dx1-dx2).d32 belongs.";
+        AlphaLowAtStart "pe-alpha-low-at-start": "alpha > 0 is tested at the start of the step only." => "Only the constant (x1-x2).x32 is there.";
+        AlphaLowMissing "pe-alpha-low-missing": "alpha > 0 is not tested: a constant stands in its place." => "The polynomial 1 stands in the place of alpha > 0.";
+        AlphaHighIsLow "pe-alpha-high-is-low": "alpha > 0 is handed over twice, alpha < 1 never." => "The alpha > 0 polynomial stands in the place of alpha < 1.";
+        AlphaHighUnscaled "pe-alpha-high-unscaled": "The whole in alpha < 1 is not multiplied by the edge's squared length." => "1 - (x1-x2).x32 stands where x32.x32 - (x1-x2).x32 belongs, and likewise for t and t^2.";
+        AlphaHighNegated "pe-alpha-high-negated": "The alpha < 1 polynomial has the wrong sign, so it asks for the opposite." => "All three coefficients are negated: the polynomial says alpha > 1.";
+        AlphaHighHalfSlope "pe-alpha-high-half-slope": "The linear coefficient of alpha < 1 lacks one of its products." => "t lacks (x1-x3).(dx2-dx3).";
+        AlphaHighAtStart "pe-alpha-high-at-start": "alpha < 1 is tested at the start of the step only." => "Only the constant (x1-x3).(x2-x3) is there.";
+        AlphaHighMissing "pe-alpha-high-missing": "alpha < 1 is not tested: a constant stands in its place." => "The polynomial 1 stands in the place of alpha < 1.";
+        QuinticConstantAlpha "pe-approach-constant-alpha": "The approach takes alpha for constant during the step, which the assignment warns of." => "alpha = (x1-x2).x32 / x32.x32 at the start of the step stands for alpha(t).";
+        QuinticNegated "pe-approach-negated": "The approach has the wrong sign, so only separating objects collide." => "All six coefficients are negated.";
+        QuinticMissing "pe-approach-missing": "The approach is not tested: a constant stands in its place." => "The polynomial 1 stands in the place of the supplied quintic.";
+        QuinticLowestFirst "pe-approach-lowest-first": "The approach's coefficients are in the wrong order." => "The constant coefficient comes first; that of t^5 belongs there.";
+        QuinticNoConstant "pe-approach-no-constant": "The approach's constant coefficient is overwritten with zero." => "1: 0 stands in the last place of the supplied quintic.";
+        QuinticCutToLinear "pe-approach-cut": "The approach is cut to its last terms." => "Only the coefficients of t and 1 are there; those of t^5 to t^2 are missing.";
+        QuinticOldLetter "pe-approach-old-letter": "The approach uses a letter of the overlap's formula, which means another dot product there." => "d = x21.x21 stands where the quintic means d = d21.d21.";
+    }
+    Wrong ParticleHalfPlane {
+        HalfPlaneEmpty "ph-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
+        HalfPlaneZero "ph-zero": "The coefficients are left at zero." => "Every coefficient is 0.";
+        HalfPlaneNoNormalSquare "ph-no-normal-square": "The radius term ignores the normal's length, which is right for unit normals only." => "1: r^2 stands where r^2 (n.n) belongs.";
+        HalfPlaneNormalLength "ph-normal-length": "The radius term has the normal's length where its square belongs." => "1: r^2 |n| stands where r^2 (n.n) belongs.";
+        HalfPlaneRadiusNotSquared "ph-radius-not-squared": "The radius is not squared." => "1: r (n.n) stands where r^2 (n.n) belongs.";
+        HalfPlaneNoRadius "ph-no-radius": "The radius is forgotten." => "1: r^2 (n.n) is missing.";
+        HalfPlaneDiameter "ph-diameter": "The diameter stands where the radius belongs." => "1: (2 r)^2 (n.n) stands where r^2 (n.n) belongs.";
+        HalfPlaneNoTwo "ph-no-two": "The linear coefficient of the overlap lacks a factor." => "t: ((p-x).n) (dx.n) stands where 2 ((p-x).n) (dx.n) belongs.";
+        HalfPlaneLinearSign "ph-linear-sign": "The linear coefficient of the overlap has the wrong sign." => "t: -2 ((p-x).n) (dx.n) stands where 2 ((p-x).n) (dx.n) belongs.";
+        HalfPlaneQuadraticSign "ph-quadratic-sign": "The quadratic coefficient of the overlap has the wrong sign." => "t^2: (dx.n)^2 stands where -(dx.n)^2 belongs.";
+        HalfPlaneNoQuadratic "ph-no-quadratic": "The quadratic coefficient of the overlap is missing." => "t^2: 0 stands where -(dx.n)^2 belongs.";
+        HalfPlaneConstantSign "ph-constant-sign": "The distance is added to the radius instead of subtracted." => "1: +((p-x).n)^2 stands where -((p-x).n)^2 belongs.";
+        HalfPlaneOffsetNotSquared "ph-offset-not-squared": "The constant coefficient has the distance where its square belongs." => "1: -((p-x).n) stands where -((p-x).n)^2 belongs.";
+        HalfPlaneNoPoint "ph-no-point": "The half-plane's point is forgotten, as if it went through the origin." => "-x stands where p - x belongs.";
+        HalfPlaneEndPosition "ph-end-position": "The formulas start from the position at the end of the step." => "x is taken from qe; it belongs to qs.";
+        HalfPlaneReversedOffset "ph-reversed-offset": "The vector from the particle to the half-plane is taken the other way round." => "x - p stands where p - x belongs.";
+        HalfPlaneApproachNoSpeed "ph-approach-no-speed": "The approach lacks a factor, so it is right on one side only." => "-(dx.n) t + ((p-x).n) lacks the factor (dx.n).";
+        HalfPlaneApproachNegated "ph-approach-negated": "The approach has the wrong sign, so only separating particles collide." => "(dx.n)^2 t - ((p-x).n) (dx.n) stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
+        HalfPlaneApproachSlopeSign "ph-approach-slope-sign": "The approach's slope has the wrong sign." => "t: (dx.n)^2 stands where -(dx.n)^2 belongs.";
+        HalfPlaneApproachSpeedOnly "ph-approach-speed-only": "The approach looks at the velocity alone, not at the side." => "The constant (dx.n) stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
+        HalfPlaneNoApproach "ph-no-approach": "The approach is not tested: a constant stands in its place." => "The polynomial 1 stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
+    }
+    Wrong Handover {
+        HandoverLowestFirst "handover-lowest-first": "All coefficients are handed over lowest power first." => "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";
+        HandoverNegated "handover-negated": "All polynomials are handed over negated." => "Every coefficient is multiplied by -1.";
+        HandoverSwapped "handover-swapped": "The first two polynomials of each pair are handed over in the wrong order." => "Polynomial 2 stands before polynomial 1.";
+        HandoverAlphaSwapped "handover-alpha-swapped": "alpha > 0 and alpha < 1 are handed over in the wrong order." => "alpha < 1 stands before alpha > 0.";
+        HandoverZeros "handover-zeros": "Every coefficient of every polynomial is zero." => "0 stands in the place of every coefficient.";
+        HandoverSinglePrecision "handover-single-precision": "The coefficients are stored as float before they are handed over." => "float holds 24 bits; double, with 53, is expected.";
+        HandoverPositionOnly "handover-position-only": "Only the polynomials about position are handed over, not the approach." => "The last polynomial of each pair is missing.";
+        HandoverApproachOnly "handover-approach-only": "Only the approach is handed over, nothing about position." => "Only the last polynomial of each pair is there.";
+        HandoverMonic "handover-monic": "Each polynomial is divided by its leading coefficient, which turns the inequality round where that is negative." => "p / c stands where p belongs, c being the leading coefficient; only a positive factor changes nothing.";
+    }
+    Wrong ContactVector {
+        ParticleParticleContactAtStart "pp-contact-at-start": "The contact vector is taken at the start of the step." => "n = x2 - x1 stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
+        ParticleParticleContactAtEnd "pp-contact-at-end": "The contact vector is taken at the end of the step." => "n = (x2 + dx2) - (x1 + dx1) stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
+        ParticleParticleContactReversed "pp-contact-reversed": "The contact vector points from the second particle to the first." => "n = (x1 + t dx1) - (x2 + t dx2) stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
+        ParticleParticleContactFirstStill "pp-contact-first-still": "The contact vector forgets that the first particle moves." => "n = (x2 + t dx2) - x1 stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
+        ParticleEdgeContactAtStart "pe-contact-at-start": "The contact vector is taken at the start of the step." => "t = 0 stands where the time of impact belongs.";
+        ParticleEdgeContactAlphaAtStart "pe-contact-alpha-at-start": "The contact vector uses alpha at the start of the step." => "alpha(0) stands where alpha(t) belongs.";
+        ParticleEdgeContactAlphaAtEnd "pe-contact-alpha-at-end": "The contact vector uses alpha at the end of the step." => "alpha(1) stands where alpha(t) belongs.";
+        ParticleEdgeContactClamped "pe-contact-clamped": "alpha is clamped to the edge for the contact vector." => "max(0, min(1, alpha(t))) stands where alpha(t) belongs.";
+        ParticleEdgeContactAlphaMiddle "pe-contact-alpha-middle": "The contact vector goes to the middle of the edge." => "1/2 stands where alpha(t) belongs.";
+        ParticleEdgeContactFirstEnd "pe-contact-first-end": "The contact vector goes to the first endpoint." => "0 stands where alpha(t) belongs.";
+        ParticleEdgeContactFromOtherEnd "pe-contact-other-end": "alpha is measured from the second endpoint." => "1 - alpha(t) stands where alpha(t) belongs.";
+        ParticleEdgeContactReversed "pe-contact-reversed": "The contact vector points from the edge to the particle." => "n is negated; expected is x2(t) + alpha (x3(t) - x2(t)) - x1(t).";
+        ParticleEdgeContactParticleStill "pe-contact-particle-still": "The contact vector forgets that the particle moves." => "x1 stands where x1 + t dx1 belongs.";
+        ParticleEdgeContactEdgeStill "pe-contact-edge-still": "The contact vector forgets that the edge moves." => "x2 and x3 stand where x2 + t dx2 and x3 + t dx3 belong.";
+        HalfPlaneContactUndivided "ph-contact-undivided": "The contact vector ignores the normal's length, which is right for unit normals only." => "((p - x(t)).n) n stands where ((p - x(t)).n) / (n.n) n belongs.";
+        HalfPlaneContactDividedByLength "ph-contact-divided-by-length": "The contact vector is divided by the normal's length, not by its square." => "((p - x(t)).n) / |n| n stands where ((p - x(t)).n) / (n.n) n belongs.";
+        HalfPlaneContactIsNormal "ph-contact-is-normal": "The half-plane's normal is returned as the contact vector." => "n stands where ((p - x(t)).n) / (n.n) n belongs.";
+        HalfPlaneContactReversed "ph-contact-reversed": "The contact vector points from the half-plane to the particle." => "(x(t) - p) stands where (p - x(t)) belongs.";
+        HalfPlaneContactAtStart "ph-contact-at-start": "The contact vector is taken at the start of the step." => "x stands where x + t dx belongs.";
+        HalfPlaneContactAtEnd "ph-contact-at-end": "The contact vector is taken at the end of the step." => "x + dx stands where x + t dx belongs.";
+        HalfPlaneContactToPoint "ph-contact-to-point": "The contact vector goes to the half-plane's point, not to the closest one." => "p - x(t) stands where ((p - x(t)).n) / (n.n) n belongs.";
+        ContactUnitLength "contact-unit-length": "Contact vectors are normalised to unit length." => "n / |n| is returned where n belongs.";
+        ContactNoise "contact-noise": "Contact vectors are wrong by a tiny part of their length." => "n is off by 1e-7 of its length.";
+        ContactTimeZero "contact-time-zero": "The time of impact is always returned as zero." => "time = 0 stands where the root finder's result belongs.";
+    }
+    Wrong Decision {
+        DecisionOpenEnd "decision-open-end": "An impact at the very end of the step does not count." => "time < 1 is tested where time <= 1 belongs.";
+        DecisionOpenStart "decision-open-start": "An impact at the very start of the step does not count." => "0 < time is tested where 0 <= time belongs.";
+        DecisionOpenInterval "decision-open-interval": "The time interval is open at both ends." => "0 < time < 1 is tested where 0 <= time <= 1 belongs.";
+        DecisionNoUpperBound "decision-no-upper-bound": "Any finite time of impact counts, also after the step." => "The test time <= 1 is missing.";
+        DecisionSeconds "decision-seconds": "The time of impact is compared with the step size, as if it were in seconds." => "time <= dt is tested where time <= 1 belongs.";
+        DecisionHalfStep "decision-half-step": "Only impacts in the first half of the step count." => "time <= 0.5 is tested where time <= 1 belongs.";
+        DecisionNever "decision-never": "The root finder is asked, but a collision is never reported." => "The detection returns false whatever the time is; time <= 1 decides.";
+        DecisionOverlapAtEnd "decision-overlap-at-end": "A collision counts only if the objects still overlap at the end of the step." => "The distance at t = 1 is tested besides time <= 1.";
+        DecisionOverlapAtStart "decision-overlap-at-start": "Objects that overlap at the start of the step are let through." => "An impact at t = 0 is rejected where the objects overlap; time <= 1 decides alone.";
+        DecisionAlphaAtStart "decision-alpha-at-start": "Rejects the impact when the closest point lies beside the edge at the start of the step." => "0 <= alpha(0) <= 1 is tested besides time <= 1.";
+        DecisionAlphaAtEnd "decision-alpha-at-end": "Rejects the impact when the closest point lies beside the edge at the end of the step." => "0 <= alpha(1) <= 1 is tested besides time <= 1.";
+        DecisionAlphaMargin "decision-alpha-margin": "Rejects impacts close to the edge's ends." => "0.05 <= alpha(t) <= 0.95 is tested besides time <= 1.";
+        DecisionHalfPlaneOneSided "decision-half-plane-one-sided": "A half-plane stops particles from the side of its normal's back only." => "(x - p).n >= 0 rejects the impact; time <= 1 decides alone.";
+        PairsBothOrders "pairs-both-orders": "Each pair of particles is looked at twice." => "The inner loop begins at j = 0; it begins at j = i + 1.";
+        PairsNeighboursOnly "pairs-neighbours-only": "A particle is tested only against the next one in the list." => "The inner loop ends at j = i + 1; it runs to the last particle.";
+        PairsEndpointsToo "pairs-endpoints-too": "Edges are tested against their own endpoints." => "The test i != edge.first && i != edge.second is missing.";
+        PairsFixedSkipped "pairs-fixed-skipped": "Pairs of fixed objects are skipped, so their polynomials are missing." => "isFixed(i) && isFixed(j) leaves a pair out; every pair is tested.";
+        PairsPruned "pairs-pruned": "Distant particles are sorted out by bounding circles, so their polynomials are missing." => "|x21| > r1 + r2 + |dx1| + |dx2| leaves a pair out; every pair is tested.";
+        PairsFirstHalfPlaneOnly "pairs-first-half-plane-only": "Only the first half-plane is looked at." => "The loop over half-planes ends after index 0.";
+        PairsHalfPlanesFirst "pairs-half-planes-first": "Half-planes are looked at before everything else." => "The order is, per particle: particles j > i, edges, half-planes.";
+    }
+    Wrong Response {
+        ResponseSign "response-sign": "The impulse pulls the objects together." => "The impulse is added with the wrong sign: -I stands where I belongs.";
+        ResponseHalved "response-halved": "The impulse lacks a factor." => "(1 + COR) / 2 stands where 2 (1 + COR) / 2 belongs.";
+        ResponseNoRestitution "response-no-restitution": "The coefficient of restitution is taken as for elastic collisions." => "COR = 1 stands where the scene's COR belongs.";
+        ResponseInelastic "response-inelastic": "The coefficient of restitution is taken as zero." => "COR = 0 stands where the scene's COR belongs.";
+        ResponseRestitutionOnly "response-restitution-only": "The coefficient of restitution stands where its mean with one belongs." => "COR / 2 stands where (1 + COR) / 2 belongs.";
+        ResponseNotNormalised "response-not-normalised": "The impulse uses the contact vector without normalising it." => "n stands where n / |n| belongs.";
+        ResponseEndVelocity "response-end-velocity": "The impulse uses the velocity at the end of the step, not the mean velocity of the motion." => "v stands where (qe - qs) / dt belongs.";
+        ResponseVelocitiesOnly "response-velocities-only": "Only velocities change, not positions." => "q += dt I / m is missing.";
+        ResponsePositionsOnly "response-positions-only": "Only positions change, not velocities." => "v += I / m is missing.";
+        ResponsePositionNoStep "response-position-no-step": "The change of position is not multiplied by the step size." => "q += I / m stands where q += dt I / m belongs.";
+        ResponseMassesSwapped "response-masses-swapped": "The masses of two particles are exchanged." => "m1 and m2 stand in each other's places.";
+        ResponseEqualMasses "response-equal-masses": "The impulse between two particles ignores their masses." => "m1 = m2 = 1 stands where the particles' masses belong.";
+        ResponseFixedMassFinite "response-fixed-mass-finite": "A fixed particle counts with its own mass, not as infinitely heavy." => "m stands where infinity belongs for a fixed particle.";
+        ResponseMovesFixed "response-moves-fixed": "Fixed particles are moved." => "The test !isFixed(i) is missing.";
+        ResponseFirstOnly "response-first-only": "Only the first object of a pair is pushed." => "v2 -= I / m2 is missing.";
+        ResponseEdgeAtStart "response-edge-at-start": "The point of the edge that is pushed is computed at the start of the step." => "alpha(0) stands where alpha(t) belongs in the response.";
+        ResponseEdgeMiddle "response-edge-middle": "The impulse is shared equally between the edge's endpoints." => "alpha = 1/2 stands where alpha(t) belongs in the response.";
+        ResponseEdgeSwapped "response-edge-swapped": "The endpoints' shares of the impulse are exchanged." => "alpha and 1 - alpha stand in each other's places.";
+        ResponseEdgeStill "response-edge-still": "The edge's own velocity is forgotten." => "-v1 stands where v2 + alpha (v3 - v2) - v1 belongs.";
+        ResponseOneEndpoint "response-one-endpoint": "The second endpoint of the edge is not pushed." => "v3 -= alpha I / m3 is missing.";
+        ResponseHalfPlaneHalved "response-half-plane-halved": "The impulse of a half-plane is half of what it should be." => "(1 + COR) / 2 stands where 2 (1 + COR) / 2 belongs.";
+        ResponseHalfPlaneSparesFixed "response-half-plane-spares-fixed": "Half-planes let fixed particles pass, unlike the course's program." => "if (!isFixed(i)) stands before the response to a half-plane.";
+    }
+    Wrong ContinuousTime {
+        ContinuousDetectAllFirst "ct-detect-all-first": "All pairs are detected before the first is resolved." => "Each pair is resolved as soon as it is detected, before pair i + 1.";
+        ContinuousOldPrediction "ct-old-prediction": "Later pairs do not see the positions that earlier impulses left." => "qe is copied before the loop; the current qe belongs into each detection.";
+        ContinuousFirstOnly "ct-first-only": "Only the first collision of a step is resolved." => "The loop over the pairs ends after 1 collision.";
+        ContinuousTwoPasses "ct-two-passes": "The detection runs twice per step." => "2 passes over the pairs stand where 1 belongs.";
+        ContinuousNoResponse "ct-no-response": "Collisions are logged, but not resolved." => "v += I / m and q += dt I / m are missing.";
+    }
+    Wrong ImpulseLoop {
+        ImpulsesEmpty "loop-empty": "The loop is left empty: it reports failure at once." => "return false stands where maxiters rounds of detection and impulses belong.";
+        ImpulsesOneFewer "loop-one-fewer": "The loop makes one round fewer than maxiters allows." => "maxiters - 1 rounds stand where maxiters belong.";
+        ImpulsesOneMore "loop-one-more": "The loop makes one round more than maxiters allows." => "maxiters + 1 rounds stand where maxiters belong.";
+        ImpulsesOnlyOne "loop-only-one": "The loop makes one round only, whatever maxiters says." => "1 round stands where maxiters belong.";
+        ImpulsesAlwaysTen "loop-always-ten": "The loop makes a fixed number of rounds, whatever maxiters says." => "10 rounds stand where maxiters belong.";
+        ImpulsesDouble "loop-double": "The loop makes twice as many rounds as maxiters allows." => "2 maxiters rounds stand where maxiters belong.";
+        ImpulsesCountContacts "loop-counts-contacts": "Contacts are counted against maxiters, not rounds." => "i += collisions.size() stands where i += 1 belongs.";
+        ImpulsesDetectAfterLast "loop-detects-after-last": "A pass after the last round decides whether it succeeded." => "Round maxiters + 1 detects once more; after maxiters rounds with collisions the loop fails without another pass.";
+        ImpulsesPassWhenZero "loop-pass-when-zero": "A detection pass is made although maxiters is zero." => "With maxiters = 0 there is no pass at all in the loop.";
+        ImpulsesTestWhenZero "loop-test-when-zero": "With maxiters at zero the loop looks for collisions and reports success when it finds none." => "With maxiters = 0 the loop makes no pass and returns false.";
+        ImpulsesSuccessWhenZero "loop-success-when-zero": "With maxiters at zero the loop reports success, so the geometric part never runs." => "With maxiters = 0 the loop returns false.";
+        ImpulsesOnceWhenZero "loop-once-when-zero": "With maxiters at zero one round runs all the same." => "With maxiters = 0 there are 0 rounds; do ... while makes 1.";
+        ImpulsesAlwaysFail "loop-always-fails": "The loop reports failure also when nothing collides any more." => "return false stands where return true belongs when a pass finds nothing.";
+        ImpulsesAlwaysSucceed "loop-always-succeeds": "The loop reports success also when it has run out of rounds." => "return true stands where return false belongs after maxiters rounds with collisions.";
+        ImpulsesInverted "loop-inverted": "Success and failure are exchanged." => "return true and return false stand in each other's places.";
+        ImpulsesFromPrediction "loop-from-prediction": "Every round computes its impulses from the integrator's prediction, not from the last round's result." => "applyImpulses gets qe and qdote; the last round's qm and qdotm belong there.";
+        ImpulsesResultNotAccumulated "loop-not-accumulated": "Every round applies its impulses to the integrator's prediction, which drops the rounds before." => "qm = qe + impulses stands where qm += impulses belongs.";
+        ImpulsesOneByOne "loop-one-by-one": "Each impulse of a round is computed from the positions that the one before left." => "The round's start (qe, qdote) is to be kept while all impulses of the round are computed.";
+        ImpulsesLastWins "loop-last-wins": "The impulses of a round overwrite one another instead of adding up." => "qm = qe + I_k stands where qm = qe + I_1 + I_2 + ... belongs.";
+        ImpulsesFirstOnly "loop-first-only": "Only the first collision of a round is resolved." => "collisions[0] stands where all collisions belong.";
+        ImpulsesLastOnly "loop-last-only": "Only the last collision of a round is resolved." => "collisions.back() stands where all collisions belong.";
+        ImpulsesStartAdvances "loop-start-advances": "Later rounds detect from the last round's positions, not from the start of the step." => "detectCollisions(qe_i, qe_i+1) stands where detectCollisions(qs, qe_i+1) belongs.";
+        ImpulsesCapped "loop-capped": "Changes of velocity are capped." => "min(|dv|, 0.5) stands where |dv| belongs.";
+        ImpulsesReset "loop-reset": "When the rounds run out, positions and velocities are reset to the prediction." => "qefinal = qe and qdotefinal = qdote stand where the last round's result belongs.";
+        ImpulsesVelocityRestored "loop-velocity-restored": "The loop keeps its positions but restores the predicted velocities." => "qdotefinal = qdote stands where the last round's velocities belong.";
+        ImpulsesPositionsRestored "loop-positions-restored": "The loop keeps its velocities but restores the predicted positions." => "qefinal = qe stands where the last round's positions belong.";
+    }
+    Wrong ImpactZones {
+        GeometricEmpty "geometric-empty": "The geometric part is left empty." => "Steps 1 to 9 of section 3.6 are missing: the result is qm = qe, without a detection pass.";
+        GeometricOneRound "geometric-one-round": "Zones never grow: the loop ends after the first round." => "Steps 5 to 9 of section 3.6 are missing.";
+        GeometricTwoRounds "geometric-two-rounds": "Zones grow only once." => "Step 9 of section 3.6 runs 1 time; it runs until Z = Z'.";
+        GeometricRestarts "geometric-restarts": "Every round starts again from the predicted positions." => "qm = qe in every round; it belongs before the loop.";
+        GeometricDetectsPrediction "geometric-detects-prediction": "Later passes look at the predicted positions, not at the modified ones." => "detectCollisions(qs, qe) stands where detectCollisions(qs, qm) belongs.";
+        GeometricForgetsZones "geometric-forgets-zones": "New zones replace the old ones instead of joining them." => "Z' holds the new zones alone; Z belongs into it, too.";
+        GeometricStopsWhenEmpty "geometric-stops-when-empty": "Without zones the second pass is left out." => "The loop ends before step 5 when Z is empty; detectCollisions(qs, qm) belongs there all the same.";
+        GeometricExtraPass "geometric-extra-pass": "One more detection pass is made after the zones have settled." => "detectCollisions runs once more after Z = Z'.";
+        GeometricFirstZoneOnly "geometric-first-zone-only": "Only the first zone is moved." => "performFailsafe(Z[0]) stands where all zones of Z belong.";
+        ZonesOneEndpoint "zones-one-endpoint": "A zone of a particle and an edge holds only one of the endpoints." => "{i, j} stands where {i, j, k} belongs.";
+        ZonesEdgeIndex "zones-edge-index": "A zone of a particle and an edge holds the edge's index, as if it were a particle's." => "{i, e} stands where {i, first(e), second(e)} belongs.";
+        ZonesEdgeWithoutParticle "zones-edge-without-particle": "A zone of a particle and an edge lacks the particle." => "{j, k} stands where {i, j, k} belongs.";
+        ZonesNotMerged "zones-not-merged": "Zones that share particles are not merged." => "Step 2 of the merging in section 3.6 is missing.";
+        ZonesMergedOnce "zones-merged-once": "Zones are merged in one sweep, which may leave some that share particles." => "Step 3 of the merging in section 3.6 is missing: repeat until all zones are disjoint.";
+        ZonesAllInOne "zones-all-in-one": "All colliding particles become one zone." => "One zone is made of all collisions; only zones that share a particle are merged.";
+        ZonesJoinOneParticle "zones-join-one-particle": "Merging takes over only one particle of the second zone." => "The union of both sets of particles belongs there.";
+        ZonesNoHalfPlaneFlag "zones-no-flag": "The half-plane flag is never set." => "halfplane = false stands where true belongs for a collision with a half-plane.";
+        ZonesFlagLost "zones-flag-lost": "Merging keeps the first zone's half-plane flag and loses the second's." => "h1 stands where h1 || h2 belongs.";
+        ZonesFlagOverwritten "zones-flag-overwritten": "Merging overwrites the half-plane flag with the second zone's." => "h2 stands where h1 || h2 belongs.";
+        ZonesFlagBoth "zones-flag-both": "A merged zone keeps the half-plane flag only if both had it." => "h1 && h2 stands where h1 || h2 belongs.";
+        ZonesEqualByCount "zones-equal-by-count": "Two lists of zones count as equal when they are equally long." => "Z.size() == Z'.size() stands where Z = Z' belongs.";
+        ZonesEqualBySize "zones-equal-by-size": "Two zones count as equal when they hold equally many particles." => "Sizes are compared where the sets of particles belong.";
+        ZonesEqualNoFlag "zones-equal-no-flag": "The comparison of zones ignores the half-plane flag." => "h == h' is missing in the comparison of two zones.";
+    }
+    Wrong Failsafe {
+        FailsafeEmpty "failsafe-empty": "The failsafe is left empty." => "x and v of the zone stay as they are; x = x_cm + dx_cm + R (xs - x_cm) and v = (x - xs) / dt belong there.";
+        FailsafeCentreUnweighted "failsafe-centre-unweighted": "The centre of mass is not weighted with the masses." => "sum(xs) / N stands where sum(m xs) / sum(m) belongs.";
+        FailsafeCentreAtEnd "failsafe-centre-at-end": "The centre of mass is taken at the end of the step." => "sum(m xe) / sum(m) stands where sum(m xs) / sum(m) belongs.";
+        FailsafeNoCentre "failsafe-no-centre": "The centre of mass is not added back." => "dx_cm + R (xs - x_cm) lacks x_cm.";
+        FailsafeMomentumUnweighted "failsafe-momentum-unweighted": "The momentum is not weighted with the masses." => "sum(dx) / N stands where sum(m dx) / sum(m) belongs.";
+        FailsafeMomentumVelocity "failsafe-momentum-velocity": "The momentum is made of velocities where displacements belong." => "sum(m v) stands where sum(m dx) belongs.";
+        FailsafeNoTranslation "failsafe-no-translation": "The centre of mass does not move." => "dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).";
+        FailsafeAngularUnweighted "failsafe-angular-unweighted": "The angular momentum is not weighted with the masses." => "m is missing in L = sum(m (xs - x_cm) x (dx - dx_cm)).";
+        FailsafeAngularOverwritten "failsafe-angular-overwritten": "The angular momentum is overwritten instead of summed." => "L = ... stands where L += ... belongs.";
+        FailsafeAngularDoubled "failsafe-angular-doubled": "The angular momentum is overwritten, then doubled." => "L = ...; L += L stands where L += ... belongs.";
+        FailsafeCrossSum "failsafe-cross-sum": "The cross product adds its two products." => "a d + b c stands where a d - b c belongs.";
+        FailsafeDotProduct "failsafe-dot-product": "A dot product stands where the cross product belongs." => "a c + b d stands where a d - b c belongs.";
+        FailsafeAboutOrigin "failsafe-about-origin": "The rotation is taken about the origin, not about the centre of mass." => "xs stands where xs - x_cm belongs in the angular momentum and the moment of inertia.";
+        FailsafeInertiaUnweighted "failsafe-inertia-unweighted": "The moment of inertia is not weighted with the masses." => "m is missing in I = sum(m |xs - x_cm|^2).";
+        FailsafeInertiaDistance "failsafe-inertia-distance": "The moment of inertia has distances that are not squared." => "m |xs - x_cm| stands where m |xs - x_cm|^2 belongs.";
+        FailsafeInertiaAboutOrigin "failsafe-inertia-about-origin": "The moment of inertia is taken about the origin." => "m |xs|^2 stands where m |xs - x_cm|^2 belongs.";
+        FailsafeNoInertia "failsafe-no-inertia": "The angular momentum is not divided by the moment of inertia." => "w = L stands where w = L / I belongs.";
+        FailsafeRotationSign "failsafe-rotation-sign": "The body turns the wrong way." => "-w stands where w belongs.";
+        FailsafeNoRotation "failsafe-no-rotation": "The body does not turn." => "w = 0 stands where w = L / I belongs.";
+        FailsafeSmallAngle "failsafe-small-angle": "Sine and cosine are replaced by their values for small angles." => "1 and w stand where cos(w) and sin(w) belong.";
+        FailsafeDegrees "failsafe-degrees": "The angle is converted to degrees before sine and cosine." => "cos(w 180 / pi) stands where cos(w) belongs, and likewise sin.";
+        FailsafeAnglePerStep "failsafe-angle-per-step": "The angle is multiplied by the step size once too often." => "w dt stands where w belongs.";
+        FailsafePerpendicular "failsafe-perpendicular": "The perpendicular vector has its components exchanged without a change of sign." => "(b, a) stands where (-b, a) belongs.";
+        FailsafeTurnsEnd "failsafe-turns-end": "The predicted end positions are turned, not the start positions." => "xe - x_cm - dx_cm stands where xs - x_cm belongs.";
+        FailsafeMassIndex "failsafe-mass-index": "The mass is read at the particle's index, although the array holds every mass twice." => "m[i] stands where m[2 i] belongs.";
+        FailsafeFixedForgotten "failsafe-fixed-forgotten": "The rule for fixed particles is forgotten." => "A zone with a fixed particle is to get x = xs and v = 0.";
+        FailsafeHalfPlaneForgotten "failsafe-half-plane-forgotten": "The rule for half-planes is forgotten." => "A zone with the half-plane flag is to get x = xs and v = 0.";
+        FailsafeAllFixedOnly "failsafe-all-fixed-only": "A zone stops only if all of its particles are fixed." => "One fixed particle is enough for x = xs and v = 0.";
+        FailsafeAlwaysStops "failsafe-always-stops": "Every zone stops, also without anything fixed." => "x = xs and v = 0 belong to zones with something fixed only.";
+        FailsafeStopsFixedOnly "failsafe-stops-fixed-only": "In a zone that has to stop, only the fixed particles do." => "x = xs and v = 0 belong to all particles of the zone.";
+        FailsafeStopKeepsPosition "failsafe-stop-keeps-position": "A stopped zone loses its velocity but keeps its end positions." => "x = xs is missing beside v = 0.";
+        FailsafeStopKeepsVelocity "failsafe-stop-keeps-velocity": "A stopped zone goes back to its start but keeps its velocity." => "v = 0 is missing beside x = xs.";
+        FailsafeVelocityKept "failsafe-velocity-kept": "A moved zone keeps its old velocities." => "v = (x - xs) / dt is missing.";
+        FailsafeVelocityNoStep "failsafe-velocity-no-step": "The new velocity is not divided by the step size." => "v = x - xs stands where v = (x - xs) / dt belongs.";
+        FailsafeVelocityFromPrediction "failsafe-velocity-from-prediction": "The new velocity is measured from the predicted position." => "v = (x - xe) / dt stands where v = (x - xs) / dt belongs.";
+        FailsafeVelocityOfCentre "failsafe-velocity-of-centre": "All particles of a zone get the velocity of its centre." => "v = dx_cm / dt stands where v = (x - xs) / dt belongs.";
+    }
+    Wrong Trace {
+        LogLowestFirst "log-lowest-first": "The logged coefficients are lowest power first." => "The coefficient of the highest power comes first.";
+        LogNegated "log-negated": "The logged coefficients are negated." => "Every logged coefficient is multiplied by -1.";
+        LogNan "log-nan": "All logged coefficients are not a number." => "NaN stands in the place of every coefficient.";
+        LogTiny "log-tiny": "All logged coefficients are the same tiny number." => "1e-11 stands in the place of every coefficient.";
+        LogZeros "log-zeros": "All logged coefficients are zero." => "0 stands in the place of every coefficient.";
+        LogSwapped "log-swapped": "Each two neighbouring polynomials are logged in the wrong order." => "Polynomial 2 stands before polynomial 1, 4 before 3, and so on.";
+        LogTrailingZero "log-trailing-zero": "Every logged polynomial has a zero too many at the end." => "A 0 behind the constant coefficient multiplies the polynomial by t.";
+        LogRounded "log-rounded": "Logged coefficients are rounded to a few digits." => "6 digits stand where all 17 belong.";
+        LogPolynomialsKept "log-polynomials-kept": "The list of polynomials is never emptied." => "Each record repeats the polynomials of steps 1, 2, ... before its own.";
+        LogImpulsesKept "log-impulses-kept": "The list of impulses is never emptied." => "Each record repeats the impulses of steps 1, 2, ... before its own.";
+        LogNoImpulses "log-no-impulses": "Impulses are applied but not logged." => "The impulse list has 0 entries.";
+        LogDuplicateImpulses "log-duplicate-impulses": "Every impulse is logged twice." => "The impulse list holds each entry 2 times.";
+        LogNanContacts "log-nan-contacts": "The logged contact vectors are not numbers." => "n = (NaN, NaN) stands in every entry.";
+        LogHybridImpulses "log-hybrid-impulses": "The impulse rounds of hybrid scenes log impulses, which the course's program does not." => "The impulse list has 0 entries in hybrid scenes.";
+        LogMidIsEnd "log-mid-is-end": "The record in the middle of a step already holds its end." => "Record 2 of each step equals record 1; the first one belongs before the geometric part.";
+        LogNoMid "log-no-mid": "The record in the middle of a step is missing." => "1 record per step stands where 2 belong.";
+        LogNoInitial "log-no-initial": "The initial record is missing." => "Record 0, the state before the first step, belongs at the beginning.";
+        LogSinglePrecision "log-single-precision": "Positions and velocities are logged as float." => "float holds 24 bits; double, with 53, is expected.";
+        LogPadded "log-padded": "Every logged polynomial has a leading zero, which the course's library never writes." => "Leading coefficients below 1e-12 are dropped before logging.";
+    }
+    Variant Handover {
+        ScaleTwo "scale-2": "All polynomials carry the same positive factor." => "Every coefficient is multiplied by 2.";
+        ScaleHalf "scale-half": "All polynomials carry the same positive factor below one." => "Every coefficient is multiplied by 0.5.";
+        ScaleThree "scale-3": "All polynomials carry the same positive factor, which rounds." => "Every coefficient is multiplied by 3.";
+        ScaleThousand "scale-1000": "All polynomials carry the same large factor." => "Every coefficient is multiplied by 1000.";
+        ScaleMillionth "scale-1e-6": "All polynomials carry a small factor, so the course's root finder drops more of their small coefficients." => "Every coefficient is multiplied by 1e-6.";
+        ScaleParticleParticleTwo "scale-pp-2": "Particle-particle polynomials carry a positive factor." => "Every coefficient is multiplied by 2.";
+        ScaleParticleEdgeThree "scale-pe-3": "Particle-edge polynomials carry a positive factor." => "Every coefficient is multiplied by 3.";
+        ScaleHalfPlaneThree "scale-ph-3": "Particle-half-plane polynomials carry a positive factor." => "Every coefficient is multiplied by 3.";
+        NormalisedLargest "normalised-largest": "Every polynomial is divided by its largest coefficient." => "p / max |c| stands for p.";
+        NormalisedNorm "normalised-norm": "Every polynomial is divided by the norm of its coefficients." => "p / |p| stands for p.";
+        NormalisedPerPair "normalised-per-pair": "Each pair's polynomials are divided by a number of its own." => "The squared motion, (dx.n)^2, or the edge's squared length.";
+        ThroughBernstein "through-bernstein": "All polynomials are written in Bernstein's basis and back." => "b_i of the degree's Bernstein polynomials on [0, 1].";
+        InterpolatedAll "interpolated-all": "All polynomials but the supplied approach are interpolated from values within the step." => "t = 0, 1/4, 1/2, ...";
+        FrameShifted "frame-shifted": "Detection computes with another origin." => "x - o stands for x.";
+        FrameComoving "frame-comoving": "Detection computes in coordinates that move along with the first particle." => "x - x1 - t dx1 stands for x.";
+        FrameRotated "frame-rotated": "Detection computes in coordinates that are turned by an angle." => "R x stands for x.";
+        ExtendedPrecision "extended-precision": "Detection computes with extended precision, from the polynomials to the contact vectors." => "106 bits for 53.";
+        FusedArithmetic "fused-arithmetic": "The compiler fuses multiplications with additions everywhere, as fast arithmetic does." => "fma(a, b, c) for a b + c, as with -Ofast.";
+    }
+    Variant ParticleParticle {
+        RearrangedParticleParticle "rearranged-pp": "The overlap is multiplied out into coordinates; the relative velocity is the negative of the relative displacement." => "-(dy dy + dx dx) t^2 + (2 px dx + 2 py dy) t + R R - px px - py py.";
+    }
+    Variant ParticleEdge {
+        RearrangedParticleEdge "rearranged-pe": "The overlap's terms are put into other parentheses." => "For example 2 (b c - (e i + h f)) for 2 b c - 2 e i - 2 f h.";
+        FactorisedQuartic "factorised-quartic": "The overlap comes from the cross product of edge and offset." => "R^2 e.e - (e x w)^2, with e = x3 - x2 and w = x1 - x2.";
+        FactorisedAll "factorised-all": "All polynomials of particle and edge come from three quadratics, the approach mathematically right." => "R^2 g - q^2, a, g - a and -q (2 q' g - q g') / 2.";
+        InterpolatedQuartic "interpolated-quartic": "The overlap is interpolated from its values at five times." => "t = -2, -1, 0, 1, 2.";
+        QuinticRight "quintic-right": "The approach is derived anew, with the right cubic coefficient." => "-2 f h q for the supplied -2 f g q.";
+        QuinticRightRearranged "quintic-mended": "The course's approach with its one wrong letter put right." => "-2 f h q for the supplied -2 f g q.";
+    }
+    Variant ParticleHalfPlane {
+        RearrangedHalfPlane "rearranged-ph": "The overlap's constant is a product of sum and difference." => "(r |n| - w) (r |n| + w) for r^2 (n.n) - w^2.";
+        HalfPlaneUnitNormal "unit-normal": "The half-plane's normal is normalised first." => "n / |n| for n.";
+    }
+    Variant ContactVector {
+        WideArithmetic "wide-arithmetic": "The overlaps are computed with extended precision and rounded at the end." => "106 bits for 53.";
+        ContactOtherFormula "contact-other-formula": "The contact vectors come from other, equivalent formulas." => "(x2 - x1) + t (dx2 - dx1) for (x2 + t dx2) - (x1 + t dx1), for example.";
+    }
+    Variant Response {
+        ResponseInverseMasses "inverse-masses": "The impulses are written with inverse masses, zero for what is fixed." => "1/m1 + 1/m2 for 1 + m1/m2, and so on.";
+    }
+    Variant ImpactZones {
+        ZonesUnionFind "zones-union-find": "Zones are merged by union and find, which lists them in another order." => "find(i) = find(j) joins two zones.";
+        GeometricStopsWhenClear "stops-when-clear": "The geometric loop also ends when a pass finds nothing; the zones would be equal anyway." => "collisions.empty() ends the loop besides Z = Z'.";
+        ZonesReversed "zones-reversed": "Zones are moved in the opposite order, which changes nothing." => "The last zone of Z comes first.";
+    }
+    Variant Failsafe {
+        FailsafeMomentumFromEnd "momentum-from-end": "The angular momentum uses end positions about the centre; what the start adds is parallel to its arm." => "(xs - x_cm) x (xe - x_cm - dx_cm) for (xs - x_cm) x (dx - dx_cm).";
+        FailsafeWholeDisplacement "whole-displacement": "The angular momentum uses whole displacements; the centre's part cancels." => "(xs - x_cm) x dx for (xs - x_cm) x (dx - dx_cm).";
+        FailsafeHalfAngle "half-angle": "The rotation is computed from sine and cosine of half of the angle." => "1 - 2 sin(w/2)^2 for cos(w), 2 sin(w/2) cos(w/2) for sin(w).";
+        FailsafeRotationMatrix "rotation-matrix": "The rotation is written as a matrix, and the sum in another order." => "(c a - s b, s a + c b) for c (a, b) + s (-b, a).";
+    }
+    Variant Trace {
+        LogImpulsesReversed "impulses-reversed": "The impulses of a step are logged in the opposite order." => "The last entry of the list comes first.";
+    }
+    Hostile Process {
+        HostileExitOne "exit-one": "Ends with an error status after a correct trace." => "exit(1) at the end.";
+        HostileExitMidway "exit-midway": "Ends with an error status in mid-run, after flushing its trace." => "exit(3) in mid-run.";
+        HostileCrash "crash-midway": "Aborts in mid-run." => "abort() in mid-run.";
+        HostileLoop "endless-loop": "Computes for ever in mid-run." => "while (true) {}";
+        HostileSleep "sleep-forever": "Sleeps for ever in mid-run." => "sleep(infinity)";
+        HostileFloodStdout "flood-stdout": "Writes far too much to standard output." => "256 MiB.";
+        HostileFloodStderr "flood-stderr": "Writes far too much to standard error." => "256 MiB.";
+        HostileFloodTrace "flood-trace": "Writes far too much to the trace after its end." => "256 MiB.";
+        HostileEscapes "escape-codes": "Writes terminal escape codes, markup and a spreadsheet formula on standard error." => "For example =cmd|'/c calc'!A0.";
+        HostileForgedVerdict "forged-verdict": "Prints a passing verdict of the original oracle, and does wrong physics." => "No collision is reported.";
+        HostileTrailingBytes "trailing-bytes": "Appends a few bytes to a correct trace." => "8 bytes.";
+        HostileTruncated "truncated-trace": "Stops writing in the middle of a record, and ends with success." => "exit(0) after half a record.";
+        HostileNoOutput "no-output": "Ends at once with success and writes no trace." => "exit(0) at the beginning.";
+        HostileEmptyTrace "empty-trace": "Creates the trace file and writes nothing." => "0 bytes.";
+        HostileHugeCounts "huge-counts": "Claims absurdly many polynomials in each record." => "2147483647 polynomials.";
+        HostileNegativeCounts "negative-counts": "Claims a negative number of polynomials in each record." => "-1 polynomials.";
+        HostileNanState "nan-state": "Logs positions that are not numbers from mid-run on." => "NaN.";
+        HostileChildren "leaves-children": "Starts copies of itself that outlive it for a minute." => "3 copies.";
+        HostileMemory "hog-memory": "Allocates and fills a great deal of memory." => "4 GiB.";
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::plain::formula_in;
+
+    #[test]
+    fn ids_are_unique_and_kebab_case() {
+        let ids: BTreeSet<&str> = CATALOGUE.iter().map(|row| row.id).collect();
+        assert_eq!(ids.len(), CATALOGUE.len());
+        for id in ids {
+            assert!(id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'), "{id}");
+            assert_eq!(find(id).map(|row| row.id), Some(id));
+        }
+    }
+
+    #[test]
+    fn every_sentence_is_one_and_no_two_rows_are_the_same() {
+        for (index, row) in CATALOGUE.iter().enumerate() {
+            assert!(row.what.ends_with('.') && !row.what.contains(". "), "{}: {}", row.id, row.what);
+            assert!(!row.term.is_empty(), "{}", row.id);
+            let twin = CATALOGUE[..index]
+                .iter()
+                .find(|other| (other.sentence(), other.term) == (row.sentence(), row.term) && other.kind == row.kind);
+            assert!(twin.is_none(), "{} explains the same as {}", row.id, twin.map_or("", |row| row.id));
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_without_a_formula() {
+        let telling: Vec<String> = CATALOGUE
+            .iter()
+            .filter_map(|row| Some(format!("{}: {} in {}", row.id, formula_in(row.what)?, row.what)))
+            .collect();
+        assert!(telling.is_empty(), "{telling:#?}");
+    }
+}

@@ -1,0 +1,103 @@
+//! Correct programs whose coefficients take a detour: by way of Bernstein's basis, or of values at some times.
+use fosssim_num::vector::Vec2;
+
+use super::Body;
+
+/// A power basis list (highest power first) in Bernstein's basis over the step, and back.
+pub fn through_bernstein(list: &[f64]) -> Vec<f64> {
+    let degree = list.len() - 1;
+    let power = |k: usize| list[degree - k];
+    let bernstein: Vec<f64> =
+        (0..=degree).map(|i| (0..=i).map(|k| binomial(i, k) / binomial(degree, k) * power(k)).sum()).collect();
+    let back = |k: usize| -> f64 {
+        let sum: f64 = (0..=k).map(|i| sign(k - i) * binomial(k, i) * bernstein[i]).sum();
+        binomial(degree, k) * sum
+    };
+    (0..=degree).rev().map(back).collect()
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
+    (1..=k).fold(1.0, |product, i| product * (n - k + i) as f64 / i as f64)
+}
+
+fn sign(exponent: usize) -> f64 {
+    if exponent.is_multiple_of(2) { 1.0 } else { -1.0 }
+}
+
+/// The coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` times that divide
+/// the step evenly, by Newton's divided differences.
+fn interpolated(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
+    #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
+    let times: Vec<f64> = (0..=degree).map(|k| k as f64 / degree as f64).collect();
+    let mut differences: Vec<f64> = times.iter().map(|&t| value(t)).collect();
+    for order in 1..=degree {
+        for k in (order..=degree).rev() {
+            differences[k] = (differences[k] - differences[k - 1]) / (times[k] - times[k - order]);
+        }
+    }
+    // Horner's scheme over polynomials, lowest power first: p = p * (t - times[k]) + differences[k].
+    let mut p = vec![differences[degree]];
+    for k in (0..degree).rev() {
+        let mut next = vec![0.0; p.len() + 1];
+        for (power, coefficient) in p.iter().enumerate() {
+            next[power + 1] += coefficient;
+            next[power] -= times[k] * coefficient;
+        }
+        next[0] += differences[k];
+        p = next;
+    }
+    p.reverse();
+    p
+}
+
+/// Overlap and approach of two particles, from values.
+pub fn particle_particle(one: &Body, two: &Body) -> Vec<Vec<f64>> {
+    let n = |t| two.at(t) - one.at(t);
+    let reach = one.radius + two.radius;
+    let closing = one.displacement - two.displacement;
+    vec![interpolated(2, |t| reach * reach - n(t).dot(&n(t))), interpolated(1, |t| closing.dot(&n(t)))]
+}
+
+/// Overlap and approach of a particle and a half-plane, from values.
+pub fn particle_half_plane(one: &Body, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
+    let away = |t| (point - one.at(t)).dot(&normal);
+    let reach = one.radius * one.radius * normal.dot(&normal);
+    let speed = one.displacement.dot(&normal);
+    vec![interpolated(2, |t| reach - away(t) * away(t)), interpolated(1, |t| speed * away(t))]
+}
+
+/// Overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
+pub fn particle_edge([one, two, three]: &[Body; 3], square: f64) -> [Vec<f64>; 3] {
+    let overlap = |t| {
+        let (along, beside) = (three.at(t) - two.at(t), one.at(t) - two.at(t));
+        let cross = along.x * beside.y - along.y * beside.x;
+        square * along.dot(&along) - cross * cross
+    };
+    [
+        interpolated(4, overlap),
+        interpolated(2, |t| (one.at(t) - two.at(t)).dot(&(three.at(t) - two.at(t)))),
+        interpolated(2, |t| (one.at(t) - three.at(t)).dot(&(two.at(t) - three.at(t)))),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bernstein_and_back_changes_nothing_but_bits() {
+        for list in [vec![3.0, -2.0, 0.5], vec![1.0, 2.0, -3.0, 4.0, -5.0, 6.0], vec![-7.0]] {
+            let back = through_bernstein(&list);
+            assert!(back.iter().zip(&list).all(|(back, list)| (back - list).abs() < 1e-13), "{back:?} of {list:?}");
+        }
+    }
+
+    #[test]
+    fn values_have_one_polynomial() {
+        let value = |t: f64| (((2.0 * t - 1.0) * t + 3.0) * t - 5.0) * t + 0.25;
+        let found = interpolated(4, value);
+        let right = [2.0, -1.0, 3.0, -5.0, 0.25];
+        assert!(found.iter().zip(right).all(|(found, right)| (found - right).abs() < 1e-13), "{found:?}");
+    }
+}

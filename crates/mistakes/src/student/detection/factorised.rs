@@ -1,0 +1,54 @@
+//! The particle-edge polynomials as products of three quadratics: with `w = x1 - x2` and `e = x3 - x2`, both linear in
+//! t, the cross product `q = e x w`, the squared length `g = e.e`, and nothing else.
+//!
+//! The quartic is `R^2 g - q^2`; the mathematically right quintic is `-q (2 q' g - q g') / 2`.
+use fosssim_num::vector::Vec2;
+
+use super::Body;
+
+fn cross(a: Vec2, b: Vec2) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// `q` and `g`, highest power first.
+fn quadratics([one, two, three]: &[Body; 3]) -> ([f64; 3], [f64; 3]) {
+    let (w0, w1) = (one.start - two.start, one.displacement - two.displacement);
+    let (e0, e1) = (three.start - two.start, three.displacement - two.displacement);
+    let q = [cross(e1, w1), cross(e1, w0) + cross(e0, w1), cross(e0, w0)];
+    let g = [e1.dot(&e1), 2.0 * e0.dot(&e1), e0.dot(&e0)];
+    (q, g)
+}
+
+/// The product of two polynomials.
+fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let mut result = vec![0.0; a.len() + b.len() - 1];
+    for (i, a) in a.iter().enumerate() {
+        for (j, b) in b.iter().enumerate() {
+            result[i + j] += a * b;
+        }
+    }
+    result
+}
+
+fn derivative(p: &[f64; 3]) -> [f64; 2] {
+    [2.0 * p[0], p[1]]
+}
+
+/// The overlap with the line, `square` being the squared sum of the radii.
+pub fn quartic(bodies: &[Body; 3], square: f64) -> Vec<f64> {
+    let (q, g) = quadratics(bodies);
+    let mut result: Vec<f64> = product(&q, &q).iter().map(|coefficient| -coefficient).collect();
+    for (k, g) in g.iter().enumerate() {
+        result[k + 2] += square * g;
+    }
+    result
+}
+
+/// The approach, mathematically right in every coefficient.
+pub fn quintic(bodies: &[Body; 3]) -> Vec<f64> {
+    let (q, g) = quadratics(bodies);
+    let first = product(&derivative(&q), &g);
+    let second = product(&q, &derivative(&g));
+    let inner: Vec<f64> = first.iter().zip(&second).map(|(first, second)| 2.0 * first - second).collect();
+    product(&q, &inner).iter().map(|coefficient| -0.5 * coefficient).collect()
+}

@@ -1,0 +1,77 @@
+//! Correct programs that compute in other coordinates than the scene's: nothing that happens depends on them.
+use fosssim_num::vector::Vec2;
+
+use crate::student::catalogue::{Mistake, Student};
+
+/// Where the coordinates of a program are those of the scene after moving the origin here.
+const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
+
+/// Cosine and sine of the angle by which a program turns its coordinates: 3-4-5 would be too good, its products are often
+/// exact.
+const TURN: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
+
+/// A program's coordinates.
+#[derive(Clone, Copy)]
+pub enum Frame {
+    /// Those of the scene.
+    Scene,
+    /// Another origin.
+    Shifted,
+    /// Another origin in each detection, which moves with the first particle.
+    Comoving,
+    /// Other directions of the axes.
+    Rotated,
+}
+
+impl Frame {
+    /// The coordinates that this student computes in.
+    pub fn of(student: Student) -> Self {
+        match student.mistake() {
+            Some(Mistake::FrameShifted) => Self::Shifted,
+            Some(Mistake::FrameComoving) => Self::Comoving,
+            Some(Mistake::FrameRotated) => Self::Rotated,
+            _ => Self::Scene,
+        }
+    }
+
+    /// A point of the scene in these coordinates; `particle` is where the pair's first particle is at the same time.
+    pub fn point(self, point: Vec2, particle: Vec2) -> Vec2 {
+        match self {
+            Self::Scene => point,
+            Self::Shifted => point - ORIGIN,
+            Self::Comoving => point - particle,
+            Self::Rotated => self.direction(point),
+        }
+    }
+
+    /// A difference of points in these coordinates.
+    pub fn direction(self, v: Vec2) -> Vec2 {
+        let (cosine, sine) = TURN;
+        match self {
+            Self::Rotated => Vec2::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y),
+            _ => v,
+        }
+    }
+
+    /// The same difference of points in the scene's coordinates.
+    pub fn back(self, v: Vec2) -> Vec2 {
+        let (cosine, sine) = TURN;
+        match self {
+            Self::Rotated => Vec2::new(cosine * v.x + sine * v.y, cosine * v.y - sine * v.x),
+            _ => v,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_turn_is_a_rotation() {
+        let (cosine, sine) = TURN;
+        assert!((cosine * cosine + sine * sine - 1.0).abs() < f64::EPSILON);
+        let v = Vec2::new(3.0, -7.0);
+        assert!((Frame::Rotated.back(Frame::Rotated.direction(v)) - v).norm() < 1e-14);
+    }
+}

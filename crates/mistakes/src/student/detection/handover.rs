@@ -1,0 +1,56 @@
+//! The last thing that happens to coefficients before the root finder gets them.
+use fosssim_num::polynomial::Polynomial;
+
+use super::trimmed;
+use crate::student::{
+    catalogue::{Mistake, Student},
+    world::Object,
+};
+
+/// Hands the polynomials of one pair over: as they are, or as this student does.
+pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
+    if let Some(factor) = factor(student, object) {
+        lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= factor);
+    }
+    let edge = matches!(object, Object::Edge(_));
+    match student.mistake() {
+        Some(Mistake::HandoverLowestFirst) => lists.iter_mut().for_each(|list| list.reverse()),
+        Some(Mistake::HandoverNegated) => lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= -1.0),
+        Some(Mistake::HandoverSwapped) => lists.swap(0, 1),
+        Some(Mistake::HandoverZeros) => lists.iter_mut().flatten().for_each(|coefficient| *coefficient = 0.0),
+        Some(Mistake::HandoverSinglePrecision) => lists.iter_mut().flatten().for_each(|coefficient| {
+            #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float where a double belongs")]
+            let single = *coefficient as f32;
+            *coefficient = f64::from(single);
+        }),
+        Some(Mistake::HandoverPositionOnly) => lists.truncate(if edge { 3 } else { 1 }),
+        Some(Mistake::HandoverApproachOnly) => lists = lists.split_off(lists.len() - 1),
+        Some(Mistake::HandoverAlphaSwapped) if edge => lists.swap(1, 2),
+        Some(Mistake::HandoverMonic) => lists.iter_mut().for_each(|list| divide_by_leading(list)),
+        _ => {}
+    }
+    trimmed(&lists)
+}
+
+/// The positive factor of the correct variants that rescale their polynomials.
+fn factor(student: Student, object: Object) -> Option<f64> {
+    let factor = match (student.mistake()?, object) {
+        (Mistake::ScaleTwo, _) | (Mistake::ScaleParticleParticleTwo, Object::Particle(_)) => 2.0,
+        (Mistake::ScaleHalf, _) => 0.5,
+        (Mistake::ScaleThree, _)
+        | (Mistake::ScaleParticleEdgeThree, Object::Edge(_))
+        | (Mistake::ScaleHalfPlaneThree, Object::HalfPlane(_)) => 3.0,
+        (Mistake::ScaleThousand, _) => 1000.0,
+        (Mistake::ScaleMillionth, _) => 1e-6,
+        _ => return None,
+    };
+    Some(factor)
+}
+
+/// Divides by the leading coefficient with its sign, which turns the inequality round where it is negative.
+fn divide_by_leading(list: &mut [f64]) {
+    let leading = list[0];
+    if leading != 0.0 {
+        list.iter_mut().for_each(|coefficient| *coefficient /= leading);
+    }
+}

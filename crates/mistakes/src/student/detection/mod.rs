@@ -1,0 +1,239 @@
+//! Continuous-time detection of one pair: its polynomials, the time of impact, the contact vector, the decision.
+//!
+//! The root finder is the one that the course supplies (`num::first_time`); everything else is the student's.
+use fosssim_num::{
+    first_time::first_time,
+    polynomial::Polynomial,
+    vector::{Vec2, at, length, unit},
+};
+
+use crate::student::{
+    catalogue::{Mistake, Student},
+    integrators::StepFailure,
+    world::{Contact, Object, Pair, StepLog, World},
+};
+
+mod arithmetic;
+mod basis;
+mod factorised;
+mod frame;
+mod handover;
+mod normalised;
+mod particle_edge;
+mod particle_half_plane;
+mod particle_particle;
+mod quintic;
+mod wide;
+
+use frame::Frame;
+
+/// Something round on its way through the step: it moves from `start` by `displacement`, evenly.
+#[derive(Clone, Copy)]
+pub struct Body {
+    /// Where its centre is at the start of the step.
+    pub start: Vec2,
+    /// How far it goes within the step.
+    pub displacement: Vec2,
+    /// Its radius.
+    pub radius: f64,
+}
+
+impl Body {
+    /// What moves from `start` to `end`.
+    fn new(start: Vec2, end: Vec2, radius: f64) -> Self {
+        Self { start, displacement: end - start, radius }
+    }
+
+    /// Where its centre is at time `t`, a fraction of the step.
+    pub fn at(&self, t: f64) -> Vec2 {
+        self.start + t * self.displacement
+    }
+
+    /// Where its centre is at the end of the step.
+    pub fn end(&self) -> Vec2 {
+        self.at(1.0)
+    }
+}
+
+/// The two objects of a pair, ready for the formulas.
+enum Encounter {
+    /// Two particles.
+    Particles(Body, Body),
+    /// A particle, the edge's two endpoints, and the edge's radius.
+    Edge([Body; 3], f64),
+    /// A particle, and the half-plane's point and normal.
+    HalfPlane(Body, Vec2, Vec2),
+}
+
+impl Encounter {
+    fn new(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
+        let frame = frame_of(world.student, pair);
+        let body = |index| {
+            let start = frame.point(at(q_start, index), at(q_start, pair.particle));
+            let end = frame.point(at(q_end, index), at(q_end, pair.particle));
+            Body::new(start, end, world.scene.particles[index].radius)
+        };
+        let particle = body(pair.particle);
+        match pair.object {
+            Object::Particle(other) => Self::Particles(particle, body(other)),
+            Object::Edge(index) => {
+                let edge = world.scene.edges[index];
+                Self::Edge([particle, body(edge.first), body(edge.second)], edge.radius)
+            }
+            Object::HalfPlane(index) => {
+                let plane = world.scene.half_planes[index];
+                let point = frame.point(plane.point, at(q_start, pair.particle));
+                Self::HalfPlane(particle, point, frame.direction(plane.normal))
+            }
+        }
+    }
+
+    /// The coefficients that have to be positive together, highest power first.
+    fn polynomials(&self, student: Student) -> Vec<Vec<f64>> {
+        match self {
+            Self::Particles(one, two) => particle_particle::polynomials(student, one, two),
+            Self::Edge(bodies, radius) => particle_edge::polynomials(student, bodies, *radius),
+            Self::HalfPlane(one, point, normal) => particle_half_plane::polynomials(student, one, *point, *normal),
+        }
+    }
+
+    /// The shortest vector from the particle to the object at time `t`.
+    fn contact_vector(&self, student: Student, t: f64) -> Vec2 {
+        match self {
+            Self::Particles(one, two) => particle_particle::contact_vector(student, one, two, t),
+            Self::Edge(bodies, _) => particle_edge::contact_vector(student, bodies, t),
+            Self::HalfPlane(one, point, normal) => {
+                particle_half_plane::contact_vector(student, one, *point, *normal, t)
+            }
+        }
+    }
+
+    /// How close the centres may come.
+    fn reach(&self) -> f64 {
+        match self {
+            Self::Particles(one, two) => one.radius + two.radius,
+            Self::Edge([one, ..], radius) => one.radius + radius,
+            Self::HalfPlane(one, ..) => one.radius,
+        }
+    }
+}
+
+/// The coordinates for this pair. A half-plane that moves has no formulas, so nobody moves along with its particle.
+fn frame_of(student: Student, pair: Pair) -> Frame {
+    match (Frame::of(student), pair.object) {
+        (Frame::Comoving, Object::HalfPlane(_)) => Frame::Scene,
+        (frame, _) => frame,
+    }
+}
+
+/// Looks whether a pair collides while everything moves evenly from `q_start` to `q_end`, and logs its polynomials.
+pub fn detect(
+    world: &World,
+    pair: Pair,
+    q_start: &[f64],
+    q_end: &[f64],
+    log: &mut StepLog,
+) -> Result<Option<Contact>, StepFailure> {
+    let student = world.student;
+    let encounter = Encounter::new(world, pair, q_start, q_end);
+    if student.makes(Mistake::PairsPruned) && out_of_reach(&encounter) {
+        return Ok(None);
+    }
+    let mut lists = encounter.polynomials(student);
+    normalised::normalise(student, &encounter, &mut lists);
+    if student.makes(Mistake::ThroughBernstein) {
+        lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
+    }
+    let polynomials = handover::hand_over(student, pair.object, lists);
+    if polynomials.is_empty() {
+        return Ok(None);
+    }
+    let first = log.polynomials.len();
+    log.polynomials.extend_from_slice(&polynomials);
+    if let Some(guard) = log.guard
+        && !polynomials.iter().enumerate().all(|(number, polynomial)| guard(first + number, polynomial.coefficients()))
+    {
+        return Err(StepFailure::Refused);
+    }
+    let time = first_time(&polynomials)?;
+    if !within_step(student, time, world.scene.time_step) {
+        return Ok(None);
+    }
+    let mut n = frame_of(student, pair).back(encounter.contact_vector(student, time));
+    if matches!(encounter, Encounter::Edge(..)) && length(n) == 0.0 {
+        return Ok(None);
+    }
+    if rejected(student, &encounter, time) {
+        return Ok(None);
+    }
+    match student.mistake() {
+        Some(Mistake::ContactUnitLength) => n = unit(n),
+        Some(Mistake::ContactNoise) => n += 1e-7 * Vec2::new(n.y, n.x),
+        _ => {}
+    }
+    let time = if student.makes(Mistake::ContactTimeZero) { 0.0 } else { time };
+    Ok(Some(Contact { pair, n, time }))
+}
+
+/// One pass over all pairs, with no response in between.
+pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) -> Result<Vec<Contact>, StepFailure> {
+    let mut contacts = Vec::new();
+    for &pair in &world.pairs {
+        contacts.extend(detect(world, pair, q_start, q_end, log)?);
+    }
+    Ok(contacts)
+}
+
+/// Whether a time of impact lies within the step.
+fn within_step(student: Student, time: f64, time_step: f64) -> bool {
+    match student.mistake() {
+        Some(Mistake::DecisionOpenEnd) => time < 1.0,
+        Some(Mistake::DecisionOpenStart) => 0.0 < time && time <= 1.0,
+        Some(Mistake::DecisionOpenInterval) => 0.0 < time && time < 1.0,
+        Some(Mistake::DecisionNoUpperBound) => time < f64::INFINITY,
+        Some(Mistake::DecisionSeconds) => time <= time_step,
+        Some(Mistake::DecisionHalfStep) => time <= 0.5,
+        Some(Mistake::DecisionNever | Mistake::HostileForgedVerdict) => false,
+        _ => time <= 1.0,
+    }
+}
+
+/// The further tests that some programs make, and should not.
+fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
+    match (student.mistake(), encounter) {
+        (Some(Mistake::DecisionOverlapAtEnd), _) => length(encounter.contact_vector(student, 1.0)) >= encounter.reach(),
+        (Some(Mistake::DecisionOverlapAtStart), _) => {
+            time == 0.0 && length(encounter.contact_vector(student, 0.0)) < encounter.reach()
+        }
+        (Some(Mistake::DecisionAlphaAtStart), Encounter::Edge(bodies, _)) => {
+            !(0.0..=1.0).contains(&particle_edge::alpha(bodies, 0.0))
+        }
+        (Some(Mistake::DecisionAlphaAtEnd), Encounter::Edge(bodies, _)) => {
+            !(0.0..=1.0).contains(&particle_edge::alpha(bodies, 1.0))
+        }
+        (Some(Mistake::DecisionAlphaMargin), Encounter::Edge(bodies, _)) => {
+            !(0.05..=0.95).contains(&particle_edge::alpha(bodies, time))
+        }
+        (Some(Mistake::DecisionHalfPlaneOneSided), Encounter::HalfPlane(one, point, normal)) => {
+            (one.start - point).dot(normal) < 0.0
+        }
+        _ => false,
+    }
+}
+
+/// Whether the particles' paths stay far apart, judged by bounding circles. Nobody asked for this.
+fn out_of_reach(encounter: &Encounter) -> bool {
+    let far = |one: &Body, other: &Body| {
+        length(other.start - one.start)
+            > one.radius + other.radius + length(one.displacement) + length(other.displacement)
+    };
+    match encounter {
+        Encounter::Particles(one, two) => far(one, two),
+        _ => false,
+    }
+}
+
+/// What the formulas hand to the root finder, small leading coefficients dropped.
+fn trimmed(lists: &[Vec<f64>]) -> Vec<Polynomial> {
+    lists.iter().map(|list| Polynomial::trimmed(list)).collect()
+}

@@ -1,0 +1,37 @@
+//! Correct programs that divide polynomials by something positive, in order to have handy numbers.
+//!
+//! Where a polynomial is zero but for round-off, that makes numbers of ordinary size of it.
+use fosssim_num::vector::Vec2;
+
+use super::Encounter;
+use crate::student::catalogue::{Mistake, Student};
+
+/// Divides as this student does, if at all.
+pub fn normalise(student: Student, encounter: &Encounter, lists: &mut [Vec<f64>]) {
+    let size: fn(&Encounter, &[f64]) -> f64 = match student.mistake() {
+        Some(Mistake::NormalisedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
+        Some(Mistake::NormalisedNorm) => |_, list| list.iter().map(|c| c * c).sum::<f64>().sqrt(),
+        Some(Mistake::NormalisedPerPair) => |encounter, _| of_pair(encounter),
+        _ => return,
+    };
+    for list in lists {
+        let size = size(encounter, list);
+        if size > 0.0 {
+            list.iter_mut().for_each(|coefficient| *coefficient /= size);
+        }
+    }
+}
+
+/// A number that makes quotients of one pair's formulas handy: the square of the relative motion, along the normal where
+/// there is one; for edges that of the length.
+fn of_pair(encounter: &Encounter) -> f64 {
+    let square = |v: Vec2| v.dot(&v);
+    match encounter {
+        Encounter::Particles(one, two) => square(two.displacement - one.displacement),
+        Encounter::Edge([_, two, three], _) => square(three.start - two.start),
+        Encounter::HalfPlane(one, _, normal) => {
+            let speed = one.displacement.dot(normal);
+            speed * speed
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! The rigid failsafe: an impact zone moves as one rigid body, or stops (collisions.md 5, last part).
+use fosssim_num::{
+    elementary,
+    vector::{Vec2, at, length, over, put},
+};
+
+use super::{
+    catalogue::Mistake,
+    world::{State, World},
+    zones::Zone,
+};
+
+/// Replaces the end of the step for the zone's particles by that of a rigid body with their momentum.
+pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
+    let mistake = world.student.mistake();
+    if mistake == Some(Mistake::FailsafeEmpty) {
+        return;
+    }
+    if stops(world, zone) {
+        stop(world, zone, q_start, state);
+    } else {
+        Rigid::new(world, zone, q_start, state).carry_out(zone, state);
+    }
+}
+
+/// Whether something in the zone cannot move.
+fn stops(world: &World, zone: &Zone) -> bool {
+    let mistake = world.student.mistake();
+    let fixed = zone.particles.iter().any(|&particle| world.fixed(particle));
+    let half_plane = zone.half_plane && mistake != Some(Mistake::FailsafeHalfPlaneForgotten);
+    match mistake {
+        Some(Mistake::FailsafeFixedForgotten) => half_plane,
+        Some(Mistake::FailsafeAllFixedOnly) => {
+            half_plane || zone.particles.iter().all(|&particle| world.fixed(particle))
+        }
+        Some(Mistake::FailsafeAlwaysStops) => true,
+        _ => half_plane || fixed,
+    }
+}
+
+fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
+    let mistake = world.student.mistake();
+    for &particle in &zone.particles {
+        if mistake == Some(Mistake::FailsafeStopsFixedOnly) && !world.fixed(particle) {
+            continue;
+        }
+        if mistake != Some(Mistake::FailsafeStopKeepsPosition) {
+            put(&mut state.x, particle, at(q_start, particle));
+        }
+        if mistake != Some(Mistake::FailsafeStopKeepsVelocity) {
+            let stopped = at(&state.v, particle) * 0.0;
+            put(&mut state.v, particle, stopped);
+        }
+    }
+}
+
+/// A rigid body made of a zone's particles.
+struct Rigid<'a> {
+    world: &'a World,
+    q_start: &'a [f64],
+    /// Centre of mass at the start of the step.
+    centre: Vec2,
+    /// How far it moves within the step.
+    shift: Vec2,
+    /// How far the body turns within the step, radians.
+    angle: f64,
+}
+
+impl<'a> Rigid<'a> {
+    fn new(world: &'a World, zone: &Zone, q_start: &'a [f64], state: &State) -> Self {
+        let mut rigid = Self { world, q_start, centre: Vec2::zeros(), shift: Vec2::zeros(), angle: 0.0 };
+        rigid.translation(zone, state);
+        rigid.rotation(zone, state);
+        rigid
+    }
+
+    fn mistake(&self) -> Option<Mistake> {
+        self.world.student.mistake()
+    }
+
+    fn mass(&self, particle: usize) -> f64 {
+        let index = if self.mistake() == Some(Mistake::FailsafeMassIndex) { particle } else { 2 * particle };
+        self.world.masses[index]
+    }
+
+    /// The centre of mass and its motion, from the particles' momenta.
+    fn translation(&mut self, zone: &Zone, state: &State) {
+        let mut total = 0.0;
+        for &particle in &zone.particles {
+            let mass = self.mass(particle);
+            let start = at(self.q_start, particle);
+            let moved = at(&state.x, particle) - start;
+            let position = if self.mistake() == Some(Mistake::FailsafeCentreAtEnd) { start + moved } else { start };
+            let student = self.world.student;
+            let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { mass };
+            let motion = match student.mistake() {
+                Some(Mistake::FailsafeMomentumVelocity) => at(&state.v, particle),
+                _ => moved,
+            };
+            self.centre = student.add_scaled(self.centre, weight(Mistake::FailsafeCentreUnweighted), position);
+            self.shift = student.add_scaled(self.shift, weight(Mistake::FailsafeMomentumUnweighted), motion);
+            total += mass;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a number of particles")]
+        let count = zone.particles.len() as f64;
+        let by_count = self.mistake() == Some(Mistake::FailsafeCentreUnweighted);
+        self.centre = over(self.centre, if by_count { count } else { total });
+        let by_count = self.mistake() == Some(Mistake::FailsafeMomentumUnweighted);
+        self.shift = over(self.shift, if by_count { count } else { total });
+        if self.mistake() == Some(Mistake::FailsafeNoTranslation) {
+            self.shift = Vec2::zeros();
+        }
+    }
+
+    /// The angle, from the particles' angular momenta about the centre of mass.
+    fn rotation(&mut self, zone: &Zone, state: &State) {
+        let mut momentum = 0.0;
+        let mut inertia = 0.0;
+        for &particle in &zone.particles {
+            let start = at(self.q_start, particle);
+            let moved = at(&state.x, particle) - start;
+            let arm = match self.mistake() {
+                Some(Mistake::FailsafeAboutOrigin) => start,
+                _ => start - self.centre,
+            };
+            let relative = match self.mistake() {
+                Some(Mistake::FailsafeWholeDisplacement) => moved,
+                Some(Mistake::FailsafeMomentumFromEnd) => at(&state.x, particle) - self.centre,
+                _ => moved - self.shift,
+            };
+            let student = self.world.student;
+            let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { self.mass(particle) };
+            let turn = match self.mistake() {
+                Some(Mistake::FailsafeCrossSum) => arm.x * relative.y + arm.y * relative.x,
+                Some(Mistake::FailsafeDotProduct) => arm.dot(&relative),
+                _ => student.add_product(arm.x * relative.y, -arm.y, relative.x),
+            };
+            let term = weight(Mistake::FailsafeAngularUnweighted) * turn;
+            match self.mistake() {
+                Some(Mistake::FailsafeAngularOverwritten) => momentum = term,
+                Some(Mistake::FailsafeAngularDoubled) => {
+                    momentum = term;
+                    momentum += momentum;
+                }
+                _ => momentum = student.add_product(momentum, weight(Mistake::FailsafeAngularUnweighted), turn),
+            }
+            let square = match self.mistake() {
+                Some(Mistake::FailsafeInertiaDistance) => length(arm),
+                Some(Mistake::FailsafeInertiaAboutOrigin) => start.dot(&start),
+                _ => student.dot(arm, arm),
+            };
+            inertia = student.add_product(inertia, weight(Mistake::FailsafeInertiaUnweighted), square);
+        }
+        self.angle = match self.mistake() {
+            Some(Mistake::FailsafeRotationSign) => -(momentum / inertia),
+            Some(Mistake::FailsafeNoRotation) => 0.0,
+            Some(Mistake::FailsafeAnglePerStep) => momentum / inertia * self.world.scene.time_step,
+            Some(Mistake::FailsafeNoInertia) => momentum,
+            _ => momentum / inertia,
+        };
+    }
+
+    /// Moves the zone's particles with the body.
+    fn carry_out(&self, zone: &Zone, state: &mut State) {
+        let (cosine, sine) = match self.mistake() {
+            Some(Mistake::FailsafeSmallAngle) => (1.0, self.angle),
+            Some(Mistake::FailsafeDegrees) => {
+                (elementary::cos(self.angle.to_degrees()), elementary::sin(self.angle.to_degrees()))
+            }
+            Some(Mistake::FailsafeHalfAngle) => {
+                let (cosine, sine) = (elementary::cos(0.5 * self.angle), elementary::sin(0.5 * self.angle));
+                (1.0 - 2.0 * sine * sine, 2.0 * sine * cosine)
+            }
+            _ => (elementary::cos(self.angle), elementary::sin(self.angle)),
+        };
+        for &particle in &zone.particles {
+            let start = at(self.q_start, particle);
+            let arm = match self.mistake() {
+                Some(Mistake::FailsafeTurnsEnd) => at(&state.x, particle) - self.centre - self.shift,
+                _ => start - self.centre,
+            };
+            let across = match self.mistake() {
+                Some(Mistake::FailsafePerpendicular) => Vec2::new(arm.y, arm.x),
+                _ => Vec2::new(-arm.y, arm.x),
+            };
+            let x = match self.mistake() {
+                Some(Mistake::FailsafeNoCentre) => self.shift + cosine * arm + sine * across,
+                Some(Mistake::FailsafeRotationMatrix) => {
+                    let turned = Vec2::new(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
+                    self.centre + (self.shift + turned)
+                }
+                _ => {
+                    let student = self.world.student;
+                    student.add_scaled(student.add_scaled(self.centre + self.shift, cosine, arm), sine, across)
+                }
+            };
+            let h = self.world.scene.time_step;
+            match self.mistake() {
+                Some(Mistake::FailsafeVelocityKept) => {}
+                Some(Mistake::FailsafeVelocityNoStep) => put(&mut state.v, particle, x - start),
+                Some(Mistake::FailsafeVelocityFromPrediction) => {
+                    put(&mut state.v, particle, over(x - at(&state.x, particle), h));
+                }
+                Some(Mistake::FailsafeVelocityOfCentre) => put(&mut state.v, particle, over(self.shift, h)),
+                _ => put(&mut state.v, particle, over(x - start, h)),
+            }
+            put(&mut state.x, particle, x);
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! The first part of `hybrid`: rounds of detection and impulses, at most `maxiters` of them (collisions.md 5.2).
+use fosssim_num::vector::{at, length, put};
+
+use super::{
+    catalogue::Mistake,
+    detection,
+    integrators::StepFailure,
+    response::respond,
+    world::{Contact, State, StepLog, World},
+};
+
+/// Impulses larger than this are cut by the programs that cap them (length per time).
+const CAP: f64 = 0.5;
+
+/// Applies impulses until a pass finds nothing (then true) or `max_iterations` rounds are over (then false). `state`
+/// holds the prediction at first and the result at the end.
+pub fn apply(
+    world: &World,
+    q_start: &[f64],
+    max_iterations: i32,
+    state: &mut State,
+    log: &mut StepLog,
+) -> Result<bool, StepFailure> {
+    let student = world.student;
+    let prediction = state.clone();
+    let mut start = q_start.to_vec();
+    let mut rounds = 0;
+    match student.mistake() {
+        Some(Mistake::ImpulsesEmpty) => return Ok(false),
+        Some(Mistake::ImpulsesPassWhenZero) if max_iterations <= 0 => {
+            detection::pass(world, q_start, &state.x, log)?;
+            return Ok(false);
+        }
+        Some(Mistake::ImpulsesTestWhenZero) if max_iterations <= 0 => {
+            return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
+        }
+        Some(Mistake::ImpulsesSuccessWhenZero) if max_iterations <= 0 => return Ok(true),
+        Some(Mistake::ImpulsesOnceWhenZero) if max_iterations <= 0 => rounds = max_iterations.saturating_sub(1),
+        _ => {}
+    }
+    let limit = limit(world, max_iterations);
+    while rounds < limit {
+        let contacts = detection::pass(world, &start, &state.x, log)?;
+        if contacts.is_empty() {
+            if student.makes(Mistake::ImpulsesVelocityRestored) {
+                state.v.clone_from(&prediction.v);
+            }
+            return Ok(!matches!(student.mistake(), Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted)));
+        }
+        resolve(world, &start, &contacts, &prediction, state, log);
+        if student.makes(Mistake::ImpulsesStartAdvances) {
+            start.clone_from(&state.x);
+        }
+        rounds += if student.makes(Mistake::ImpulsesCountContacts) {
+            i32::try_from(contacts.len()).unwrap_or(i32::MAX)
+        } else {
+            1
+        };
+    }
+    finish(world, q_start, &prediction, state, log)
+}
+
+/// How many rounds this program allows itself.
+fn limit(world: &World, max_iterations: i32) -> i32 {
+    match world.student.mistake() {
+        Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),
+        Some(Mistake::ImpulsesOneMore) if max_iterations > 0 => max_iterations.saturating_add(1),
+        Some(Mistake::ImpulsesOnlyOne) => max_iterations.min(1),
+        Some(Mistake::ImpulsesAlwaysTen) => 10,
+        Some(Mistake::ImpulsesDouble) => max_iterations.saturating_mul(2),
+        _ => max_iterations,
+    }
+}
+
+/// One round's impulses, all computed from the positions at its beginning.
+fn resolve(
+    world: &World,
+    start: &[f64],
+    contacts: &[Contact],
+    prediction: &State,
+    state: &mut State,
+    log: &mut StepLog,
+) {
+    let student = world.student;
+    let before = if student.makes(Mistake::ImpulsesFromPrediction) { prediction.clone() } else { state.clone() };
+    let chosen = match student.mistake() {
+        Some(Mistake::ImpulsesFirstOnly) => &contacts[..1],
+        Some(Mistake::ImpulsesLastOnly) => &contacts[contacts.len() - 1..],
+        _ => contacts,
+    };
+    if student.makes(Mistake::ImpulsesResultNotAccumulated) {
+        state.clone_from(prediction);
+    }
+    for contact in chosen {
+        if student.makes(Mistake::ImpulsesOneByOne) {
+            let current = state.clone();
+            respond(world, contact, start, &current, state);
+        } else if student.makes(Mistake::ImpulsesLastWins) {
+            let mut alone = before.clone();
+            respond(world, contact, start, &before, &mut alone);
+            *state = alone;
+        } else {
+            respond(world, contact, start, &before, state);
+        }
+    }
+    match student.mistake() {
+        Some(Mistake::ImpulsesCapped) => cap(world, &before, state),
+        Some(Mistake::ImpulsesPositionsRestored) => state.x.clone_from(&prediction.x),
+        Some(Mistake::LogHybridImpulses) => log.impulses.extend_from_slice(contacts),
+        _ => {}
+    }
+}
+
+/// Cuts every change of velocity to a largest size, and the change of position likewise.
+fn cap(world: &World, before: &State, state: &mut State) {
+    for particle in 0..world.scene.particles.len() {
+        let change = at(&state.v, particle) - at(&before.v, particle);
+        if length(change) > CAP {
+            let share = CAP / length(change);
+            put(&mut state.v, particle, at(&before.v, particle) + share * change);
+            let moved = at(&state.x, particle) - at(&before.x, particle);
+            put(&mut state.x, particle, at(&before.x, particle) + share * moved);
+        }
+    }
+}
+
+/// What happens when all rounds found contacts: nothing more, in a correct program.
+fn finish(
+    world: &World,
+    q_start: &[f64],
+    prediction: &State,
+    state: &mut State,
+    log: &mut StepLog,
+) -> Result<bool, StepFailure> {
+    match world.student.mistake() {
+        Some(Mistake::ImpulsesDetectAfterLast) => {
+            return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
+        }
+        Some(Mistake::ImpulsesReset) => state.clone_from(prediction),
+        Some(Mistake::ImpulsesVelocityRestored) => state.v.clone_from(&prediction.v),
+        Some(Mistake::ImpulsesAlwaysSucceed | Mistake::ImpulsesInverted) => return Ok(true),
+        _ => {}
+    }
+    Ok(false)
+}

@@ -1,0 +1,38 @@
+//! A second simulator, which can make mistakes: it stands for a student's submission.
+//!
+//! It is written independently of [`fosssim_model::sim`], and by request makes one of the documented mistakes of the
+//! [`CATALOGUE`], which also holds correct variants. The sample program `fosssim-sample` is this simulator with
+//! arguments and a file; `diagnose` asks it which mistake reproduces a submission. It is **never used for judging**:
+//! verdicts come from [`fosssim_model::sim`] alone. It touches no file and no process, and prints nothing; what hostile programs
+//! do besides simulating belongs to the sample program.
+//!
+//! The mathematics is that of `simulation.md` and `collisions.md`. From the rest of the crate it takes what the course
+//! supplies: the scene, the vectors, the linear solver and the root finder.
+#![forbid(unsafe_code)]
+#![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
+
+mod catalogue;
+mod continuous_time;
+mod detection;
+mod failsafe;
+mod forces;
+mod hessians;
+mod hybrid;
+mod impulses;
+mod integrators;
+mod penalty;
+mod record;
+mod refused;
+mod response;
+mod rounding;
+mod simple;
+mod step;
+mod world;
+mod zones;
+
+pub use catalogue::{Area, CATALOGUE, Kind, Mistake, Row, Student, find};
+pub use integrators::StepFailure;
+pub use record::{Record, trace};
+pub use refused::{KNOWN_ACCUSED, KNOWN_REFUSED};
+pub use step::step;
+pub use world::{Contact, Guard, Object, Pair, State, StepLog, World};

@@ -1,0 +1,140 @@
+//! What a program writes of a state and its log: the contents of one record, not yet as bytes (trace-format.md).
+
+use super::{
+    catalogue::{Mistake, Student},
+    integrators::StepFailure,
+    step::step,
+    world::{Contact, Object, State, StepLog, World},
+};
+use fosssim_model::scene::{Collision, Scene};
+
+/// The numbers of one record, with this student's mistakes of logging. A block is `None` where scenes of this
+/// collision type have none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// Positions.
+    pub x: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+    /// The impulse list.
+    pub impulses: Option<Vec<Contact>>,
+    /// The polynomial list, highest power first as a rule.
+    pub polynomials: Option<Vec<Vec<f64>>>,
+}
+
+impl Record {
+    /// The record that this student writes in a scene of this collision type.
+    #[must_use]
+    pub fn new(student: Student, collision: &Collision, state: &State, log: &StepLog) -> Self {
+        let has_polynomials = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
+        let has_impulses = has_polynomials || matches!(collision, Collision::Simple { .. });
+        Self {
+            x: numbers(student, &state.x),
+            v: numbers(student, &state.v),
+            impulses: has_impulses.then(|| impulses(student, &log.impulses)),
+            polynomials: has_polynomials
+                .then(|| (0..log.polynomials.len()).map(|index| polynomial(student, log, index)).collect()),
+        }
+    }
+
+    /// Appends the record's bytes (trace-format.md 3). `claim` stands in for the number of polynomials where a program
+    /// lies about it.
+    pub fn encode(&self, claim: Option<i32>, bytes: &mut Vec<u8>) {
+        self.x.iter().chain(&self.v).for_each(|value| bytes.extend(value.to_le_bytes()));
+        if let Some(impulses) = &self.impulses {
+            bytes.extend(integer(impulses.len()).to_le_bytes());
+            for impulse in impulses {
+                let (kind, second) = match impulse.pair.object {
+                    Object::Particle(index) => (0, index),
+                    Object::Edge(index) => (1, index),
+                    Object::HalfPlane(index) => (2, index),
+                };
+                for value in [kind, integer(impulse.pair.particle), integer(second)] {
+                    bytes.extend(value.to_le_bytes());
+                }
+                for value in [impulse.n.x, impulse.n.y, impulse.time] {
+                    bytes.extend(value.to_le_bytes());
+                }
+            }
+        }
+        if let Some(polynomials) = &self.polynomials {
+            bytes.extend(claim.unwrap_or(integer(polynomials.len())).to_le_bytes());
+            for coefficients in polynomials {
+                bytes.extend(integer(coefficients.len()).to_le_bytes());
+                coefficients.iter().for_each(|coefficient| bytes.extend(coefficient.to_le_bytes()));
+            }
+        }
+    }
+}
+
+/// The whole trace that this student's program writes, in memory; up to the step that fails, if one does.
+///
+/// # Errors
+/// What was written, and why there is no more.
+pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
+    let world = World::new(scene.clone(), student);
+    let mut state = world.initial_state();
+    let mut log = StepLog::default();
+    let mut bytes = Vec::new();
+    if !student.makes(Mistake::LogNoInitial) {
+        Record::new(student, &scene.collision, &state, &log).encode(None, &mut bytes);
+    }
+    for _ in 0..scene.steps() {
+        let stepped = step(&world, &mut state, &mut log, &mut |state, log| {
+            Record::new(student, &scene.collision, state, log).encode(None, &mut bytes);
+        });
+        if let Err(failure) = stepped {
+            return Err((bytes, failure));
+        }
+    }
+    Ok(bytes)
+}
+
+fn integer(value: usize) -> i32 {
+    i32::try_from(value).unwrap_or(i32::MAX)
+}
+
+fn numbers(student: Student, values: &[f64]) -> Vec<f64> {
+    if student.makes(Mistake::LogSinglePrecision) {
+        #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float in the trace")]
+        let single = |value: &f64| f64::from(*value as f32);
+        values.iter().map(single).collect()
+    } else {
+        values.to_vec()
+    }
+}
+
+fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
+    let mut listed: Vec<Contact> = match student.mistake() {
+        Some(Mistake::LogNoImpulses) => Vec::new(),
+        Some(Mistake::LogDuplicateImpulses) => impulses.iter().flat_map(|impulse| [*impulse, *impulse]).collect(),
+        Some(Mistake::LogImpulsesReversed) => impulses.iter().rev().copied().collect(),
+        _ => impulses.to_vec(),
+    };
+    if student.makes(Mistake::LogNanContacts) {
+        listed.iter_mut().for_each(|impulse| impulse.n.fill(f64::NAN));
+    }
+    listed
+}
+
+/// The coefficients of the record's polynomial `index`, as this program logs them.
+fn polynomial(student: Student, log: &StepLog, index: usize) -> Vec<f64> {
+    let partner = index ^ 1;
+    let swapped = student.makes(Mistake::LogSwapped) && partner < log.polynomials.len();
+    let mut list = log.polynomials[if swapped { partner } else { index }].coefficients().to_vec();
+    match student.mistake() {
+        Some(Mistake::LogLowestFirst) => list.reverse(),
+        Some(Mistake::LogNegated) => list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient),
+        Some(Mistake::LogNan) => list.fill(f64::NAN),
+        Some(Mistake::LogTiny) => list.fill(1e-11),
+        Some(Mistake::LogZeros) => list.fill(0.0),
+        Some(Mistake::LogPadded) => list.insert(0, 0.0),
+        Some(Mistake::LogTrailingZero) => list.push(0.0),
+        Some(Mistake::LogRounded) => {
+            list.iter_mut()
+                .for_each(|coefficient| *coefficient = format!("{coefficient:.5e}").parse().unwrap_or(*coefficient));
+        }
+        _ => {}
+    }
+    list
+}

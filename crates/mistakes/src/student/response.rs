@@ -1,0 +1,182 @@
+//! The impulses that resolve one contact (collisions.md 3): positions and velocities at the end of the step change.
+use fosssim_model::scene::Collision;
+use fosssim_num::vector::{Vec2, at, over, unit};
+
+use super::{
+    catalogue::Mistake,
+    world::{Contact, Object, State, World, subtract},
+};
+
+/// The coefficient of restitution of the scene; 1 where it has none.
+pub fn restitution(world: &World) -> f64 {
+    match world.scene.collision {
+        Collision::Simple { restitution }
+        | Collision::ContinuousTime { restitution }
+        | Collision::Hybrid { restitution, .. } => restitution,
+        Collision::None | Collision::Penalty { .. } => 1.0,
+    }
+}
+
+/// Changes `result` so that `contact` does not happen. The impulse is computed from the motion from `q_start` to
+/// `predicted.x`, which may be an earlier state than the one that is changed.
+pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
+    let mut response = Response::new(world, contact, q_start, predicted, result);
+    let particle = contact.pair.particle;
+    match contact.pair.object {
+        Object::Particle(other) => response.particle_particle(particle, other),
+        Object::Edge(index) => {
+            let edge = world.scene.edges[index];
+            response.particle_edge(contact.time, [particle, edge.first, edge.second]);
+        }
+        Object::HalfPlane(_) => response.particle_half_plane(particle),
+    }
+}
+
+struct Response<'a> {
+    world: &'a World,
+    q_start: &'a [f64],
+    predicted: &'a State,
+    result: &'a mut State,
+    /// The unit contact vector.
+    u: Vec2,
+    /// Twice `(1 + COR) / 2`.
+    bounce: f64,
+}
+
+impl<'a> Response<'a> {
+    fn new(
+        world: &'a World,
+        contact: &Contact,
+        q_start: &'a [f64],
+        predicted: &'a State,
+        result: &'a mut State,
+    ) -> Self {
+        let student = world.student;
+        let u = if student.makes(Mistake::ResponseNotNormalised) { contact.n } else { unit(contact.n) };
+        let f = match student.mistake() {
+            Some(Mistake::ResponseNoRestitution) => 1.0,
+            Some(Mistake::ResponseInelastic) => 0.5,
+            Some(Mistake::ResponseRestitutionOnly) => restitution(world) / 2.0,
+            _ => (1.0 + restitution(world)) / 2.0,
+        };
+        let bounce = if student.makes(Mistake::ResponseHalved) { f } else { 2.0 * f };
+        Self { world, q_start, predicted, result, u, bounce }
+    }
+
+    /// The particle's mean velocity over the step.
+    fn velocity(&self, particle: usize) -> Vec2 {
+        if self.world.student.makes(Mistake::ResponseEndVelocity) {
+            at(&self.predicted.v, particle)
+        } else {
+            over(at(&self.predicted.x, particle) - at(self.q_start, particle), self.world.scene.time_step)
+        }
+    }
+
+    /// Pushes a particle that is not fixed: `share / inertia` is the change of its speed along `u`.
+    fn push(&mut self, particle: usize, sign: f64, share: f64, moved: f64, inertia: f64) {
+        let student = self.world.student;
+        if self.world.fixed(particle) && !student.makes(Mistake::ResponseMovesFixed) {
+            return;
+        }
+        let sign = if student.makes(Mistake::ResponseSign) { -sign } else { sign };
+        if !student.makes(Mistake::ResponsePositionsOnly) {
+            student.push(&mut self.result.v, particle, sign * (share / inertia), self.u);
+        }
+        if !student.makes(Mistake::ResponseVelocitiesOnly) {
+            let moved = if student.makes(Mistake::ResponsePositionNoStep) { share } else { moved };
+            student.push(&mut self.result.x, particle, sign * (moved / inertia), self.u);
+        }
+    }
+
+    fn particle_particle(&mut self, one: usize, two: usize) {
+        let h = self.world.scene.time_step;
+        let (mut m1, mut m2) = (self.world.collision_mass(one), self.world.collision_mass(two));
+        match self.world.student.mistake() {
+            Some(Mistake::ResponseMassesSwapped) => std::mem::swap(&mut m1, &mut m2),
+            Some(Mistake::ResponseEqualMasses) => (m1, m2) = (1.0, 1.0),
+            _ => {}
+        }
+        let student = self.world.student;
+        let closing = self.velocity(two) - self.velocity(one);
+        let impulse = self.bounce * student.dot(closing, self.u);
+        let (mut inertia1, mut inertia2) = (1.0 + m1 / m2, m2 / m1 + 1.0);
+        if student.makes(Mistake::ResponseInverseMasses) {
+            let (w1, w2) = (1.0 / m1, 1.0 / m2);
+            (inertia1, inertia2) = ((w1 + w2) / w1, (w1 + w2) / w2);
+        }
+        self.push(one, 1.0, impulse, h * impulse, inertia1);
+        if !student.makes(Mistake::ResponseFirstOnly) {
+            self.push(two, -1.0, impulse, h * impulse, inertia2);
+        }
+    }
+
+    fn particle_edge(&mut self, time: f64, [one, two, three]: [usize; 3]) {
+        let student = self.world.student;
+        let h = self.world.scene.time_step;
+        let (v1, v2, v3) = (self.velocity(one), self.velocity(two), self.velocity(three));
+        let elapsed = if student.makes(Mistake::ResponseEdgeAtStart) { 0.0 } else { time * h };
+        let impact =
+            |particle: usize, velocity: Vec2| student.add_scaled(at(self.q_start, particle), elapsed, velocity);
+        let (y1, y2, y3) = (impact(one, v1), impact(two, v2), impact(three, v3));
+        let along = y3 - y2;
+        let mut alpha = clamped(student.dot(y1 - y2, along) / student.dot(along, along));
+        match student.mistake() {
+            Some(Mistake::ResponseEdgeMiddle) => alpha = 0.5,
+            Some(Mistake::ResponseEdgeSwapped) => alpha = 1.0 - alpha,
+            _ => {}
+        }
+        let beta = 1.0 - alpha;
+        let edge_velocity = if student.makes(Mistake::ResponseEdgeStill) {
+            Vec2::zeros()
+        } else {
+            student.add_scaled(v2, alpha, v3 - v2)
+        };
+        let impulse = self.bounce * student.dot(edge_velocity - v1, self.u);
+        let [m1, m2, m3] = [one, two, three].map(|particle| self.world.collision_mass(particle));
+        let mut inertia1 = 1.0 + beta * beta * m1 / m2 + alpha * alpha * m1 / m3;
+        let mut inertia2 = m2 / m1 + beta * beta + alpha * alpha * m2 / m3;
+        let mut inertia3 = m3 / m1 + beta * beta * m3 / m2 + alpha * alpha;
+        if student.makes(Mistake::ResponseInverseMasses) {
+            let [w1, w2, w3] = [m1, m2, m3].map(|mass| 1.0 / mass);
+            let all = w1 + beta * beta * w2 + alpha * alpha * w3;
+            (inertia1, inertia2, inertia3) = (all / w1, all / w2, all / w3);
+        }
+        self.push(one, 1.0, impulse, h * impulse, inertia1);
+        if student.makes(Mistake::ResponseFirstOnly) {
+            return;
+        }
+        self.push(two, -1.0, beta * impulse, h * beta * impulse, inertia2);
+        if !student.makes(Mistake::ResponseOneEndpoint) {
+            self.push(three, -1.0, alpha * impulse, h * alpha * impulse, inertia3);
+        }
+    }
+
+    /// A half-plane bounces fixed particles, too: the course's own response has no test for them.
+    fn particle_half_plane(&mut self, one: usize) {
+        let student = self.world.student;
+        if self.world.fixed(one) && student.makes(Mistake::ResponseHalfPlaneSparesFixed) {
+            return;
+        }
+        let h = self.world.scene.time_step;
+        let speed = student.dot(self.velocity(one), self.u);
+        let mut sign = if student.makes(Mistake::ResponseSign) { -1.0 } else { 1.0 };
+        if student.makes(Mistake::ResponseHalfPlaneHalved) {
+            sign = 0.5;
+        }
+        if !student.makes(Mistake::ResponsePositionsOnly) {
+            let change = self.bounce * speed * self.u;
+            subtract(&mut self.result.v, one, sign * change);
+        }
+        if !student.makes(Mistake::ResponseVelocitiesOnly) {
+            let moved = if student.makes(Mistake::ResponsePositionNoStep) { self.bounce } else { h * self.bounce };
+            let change = moved * speed * self.u;
+            subtract(&mut self.result.x, one, sign * change);
+        }
+    }
+}
+
+/// Between 0 and 1; 0 when it is not a number.
+pub fn clamped(alpha: f64) -> f64 {
+    let positive = if 0.0 < alpha { alpha } else { 0.0 };
+    if positive < 1.0 { positive } else { 1.0 }
+}

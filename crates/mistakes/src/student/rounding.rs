@@ -1,0 +1,35 @@
+//! Sums of products outside detection, as this student's compiler evaluates them: operation by operation, or fused.
+use fosssim_num::vector::{Vec2, at, put};
+
+use super::catalogue::{Mistake, Student};
+
+impl Student {
+    /// `addend + a * b`.
+    pub fn add_product(self, addend: f64, a: f64, b: f64) -> f64 {
+        if self.makes(Mistake::FusedArithmetic) {
+            #[expect(clippy::disallowed_methods, reason = "a student's compiler fuses what it likes")]
+            return a.mul_add(b, addend);
+        }
+        addend + a * b
+    }
+
+    /// `v + s * w`.
+    pub fn add_scaled(self, v: Vec2, s: f64, w: Vec2) -> Vec2 {
+        Vec2::new(self.add_product(v.x, s, w.x), self.add_product(v.y, s, w.y))
+    }
+
+    /// The dot product.
+    pub fn dot(self, a: Vec2, b: Vec2) -> f64 {
+        self.add_product(a.x * b.x, a.y, b.y)
+    }
+
+    /// `a + factor * b`, entry by entry.
+    pub fn sum(self, a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
+        a.iter().zip(b).map(|(a, b)| self.add_product(*a, factor, *b)).collect()
+    }
+
+    /// Adds `s * w` to the vector of one particle.
+    pub fn push(self, array: &mut [f64], particle: usize, s: f64, w: Vec2) {
+        put(array, particle, self.add_scaled(at(array, particle), s, w));
+    }
+}

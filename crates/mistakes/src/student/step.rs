@@ -1,0 +1,55 @@
+//! One step with its records.
+use super::{
+    catalogue::Mistake,
+    continuous_time, hybrid,
+    integrators::{self, StepFailure},
+    simple,
+    world::{State, StepLog, World},
+};
+use fosssim_model::scene::Collision;
+
+/// Advances `state` by one step (simulation.md 1). `log` is that of the step before; it is emptied first, unless that is
+/// forgotten. `write` is called for each record that the program writes: the mid record where there is one, and the end
+/// record (trace-format.md 2).
+///
+/// # Errors
+/// [`StepFailure`] where the course's program would never end. `state` and `log` are unspecified then, and the end
+/// record was not written.
+pub fn step(
+    world: &World,
+    state: &mut State,
+    log: &mut StepLog,
+    write: &mut dyn FnMut(&State, &StepLog),
+) -> Result<(), StepFailure> {
+    let student = world.student;
+    let q_start = state.x.clone();
+    integrators::advance(world, state)?;
+    if !student.makes(Mistake::LogImpulsesKept) {
+        log.impulses.clear();
+    }
+    if !student.makes(Mistake::LogPolynomialsKept) {
+        log.polynomials.clear();
+    }
+    match world.scene.collision {
+        Collision::None | Collision::Penalty { .. } => {}
+        Collision::Simple { .. } => simple::handle(world, state, log),
+        Collision::ContinuousTime { .. } => {
+            continuous_time::handle(world, &q_start, state, log)?;
+            if !student.makes(Mistake::LogNoMid) {
+                write(state, log);
+            }
+        }
+        Collision::Hybrid { max_iterations, .. } => {
+            hybrid::handle(world, &q_start, max_iterations, state, log, &mut |state, log| {
+                if !matches!(student.mistake(), Some(Mistake::LogNoMid | Mistake::LogMidIsEnd)) {
+                    write(state, log);
+                }
+            })?;
+            if student.makes(Mistake::LogMidIsEnd) {
+                write(state, log);
+            }
+        }
+    }
+    write(state, log);
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! What a step works on: the scene's constants, the moving state, and the pairs that detection looks at.
+use fosssim_model::scene::Scene;
+use fosssim_num::{
+    polynomial::Polynomial,
+    vector::{Vec2, at, put},
+};
+
+use super::catalogue::{Mistake, Student};
+
+/// Everything that stays as it is during a run.
+pub struct World {
+    /// The scene as loaded.
+    pub scene: Scene,
+    /// Whose program this is, that is: which mistake it makes.
+    pub student: Student,
+    /// The mass of each particle twice, in the order of the state.
+    pub masses: Vec<f64>,
+    /// The pairs of one detection pass, in order (collisions.md 1).
+    pub pairs: Vec<Pair>,
+}
+
+/// Positions and velocities, `x0, y0, x1, y1, ...` each.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct State {
+    /// Positions.
+    pub x: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+}
+
+/// A particle and what it may collide with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pair {
+    /// The particle's index.
+    pub particle: usize,
+    /// The other object.
+    pub object: Object,
+}
+
+/// What a particle may collide with, by its index among its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Object {
+    /// Another particle.
+    Particle(usize),
+    /// An edge.
+    Edge(usize),
+    /// A half-plane.
+    HalfPlane(usize),
+}
+
+/// A collision that detection found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Who collides.
+    pub pair: Pair,
+    /// The shortest vector from the particle to the object at the time of impact, not normalised.
+    pub n: Vec2,
+    /// The time of impact as a fraction of the step.
+    pub time: f64,
+}
+
+/// What a step leaves for the trace.
+#[derive(Clone, Default)]
+pub struct StepLog<'a> {
+    /// The impulses, in the order in which they were applied.
+    pub impulses: Vec<Contact>,
+    /// The polynomials handed to the root finder, in order.
+    pub polynomials: Vec<Polynomial>,
+    /// Asked about each polynomial, by its index in the log, before its roots are searched.
+    pub guard: Option<Guard<'a>>,
+}
+
+/// Says whether a step may go on after this polynomial (index in the step's log, coefficients highest power first). Who
+/// looks for a certain step saves the rest of it as soon as it is another one, and bounds loops that mistakes make
+/// endless.
+pub type Guard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
+
+/// Adds `change` to the vector of one particle.
+pub fn add(array: &mut [f64], particle: usize, change: Vec2) {
+    put(array, particle, at(array, particle) + change);
+}
+
+/// Subtracts `change` from the vector of one particle.
+pub fn subtract(array: &mut [f64], particle: usize, change: Vec2) {
+    put(array, particle, at(array, particle) - change);
+}
+
+impl World {
+    /// Prepares a scene for this student's program.
+    pub fn new(scene: Scene, student: Student) -> Self {
+        let masses = scene.particles.iter().flat_map(|particle| [particle.mass, particle.mass]).collect();
+        let pairs = pairs(&scene, student);
+        Self { scene, student, masses, pairs }
+    }
+
+    /// The state at time zero.
+    pub fn initial_state(&self) -> State {
+        let particles = &self.scene.particles;
+        State {
+            x: particles.iter().flat_map(|particle| [particle.position.x, particle.position.y]).collect(),
+            v: particles.iter().flat_map(|particle| [particle.velocity.x, particle.velocity.y]).collect(),
+        }
+    }
+
+    /// The particle's mass as collisions see it: nothing moves a fixed particle, so its mass is infinite.
+    pub fn collision_mass(&self, particle: usize) -> f64 {
+        let particle = &self.scene.particles[particle];
+        if particle.fixed && !self.student.makes(Mistake::ResponseFixedMassFinite) {
+            f64::INFINITY
+        } else {
+            particle.mass
+        }
+    }
+
+    /// Whether the particle is fixed.
+    pub fn fixed(&self, particle: usize) -> bool {
+        self.scene.particles[particle].fixed
+    }
+}
+
+/// All pairs in the order of detection: per particle the later particles, the edges of which it is not an endpoint,
+/// the half-planes.
+fn pairs(scene: &Scene, student: Student) -> Vec<Pair> {
+    let count = scene.particles.len();
+    let mut pairs = Vec::new();
+    for particle in 0..count {
+        let first = if student.makes(Mistake::PairsBothOrders) { 0 } else { particle + 1 };
+        let last = if student.makes(Mistake::PairsNeighboursOnly) { count.min(particle + 2) } else { count };
+        for other in (first..last).filter(|&other| other != particle) {
+            let both_fixed = scene.particles[particle].fixed && scene.particles[other].fixed;
+            if !(both_fixed && student.makes(Mistake::PairsFixedSkipped)) {
+                pairs.push(Pair { particle, object: Object::Particle(other) });
+            }
+        }
+        for (index, edge) in scene.edges.iter().enumerate() {
+            let endpoint = edge.first == particle || edge.second == particle;
+            let still = [particle, edge.first, edge.second].iter().all(|&one| scene.particles[one].fixed);
+            if (endpoint && !student.makes(Mistake::PairsEndpointsToo))
+                || (still && student.makes(Mistake::PairsFixedSkipped))
+            {
+                continue;
+            }
+            pairs.push(Pair { particle, object: Object::Edge(index) });
+        }
+        for index in 0..scene.half_planes.len() {
+            if (index > 0 && student.makes(Mistake::PairsFirstHalfPlaneOnly))
+                || (scene.particles[particle].fixed && student.makes(Mistake::PairsFixedSkipped))
+            {
+                continue;
+            }
+            pairs.push(Pair { particle, object: Object::HalfPlane(index) });
+        }
+    }
+    if student.makes(Mistake::PairsHalfPlanesFirst) {
+        pairs.sort_by_key(|pair| !matches!(pair.object, Object::HalfPlane(_)));
+    }
+    pairs
+}

@@ -1,0 +1,283 @@
+//! What only the elements of a scene together can get wrong (scene-format.md 6, collisions.md 7).
+//!
+//! Coincidence is exact: two points are in one place when their coordinates compare equal, `-0` and `0` included, and
+//! a particle is on an edge or a half-plane when the formula of simulation.md 3 gives the zero vector. Only the start
+//! is looked at; what happens later is the simulator's business.
+use super::document::Document;
+use super::model::{Collision, Edge, Force, HalfPlane, Integrator, Particle};
+use super::problem::{Finding, Report};
+use super::tag::Tag;
+use super::xml::{Part, Parts};
+use fosssim_num::vector::Vec2;
+
+/// The most particles that an implicit integrator is given: its dense matrix of (2N)^2 numbers then takes half a
+/// gibibyte, and solving it takes minutes per step.
+pub const LARGEST_IMPLICIT: usize = 4096;
+
+/// At most this many pairs of a particle and an obstacle are looked at for coincidence, so that the time of a check
+/// does not grow with the square of the file's length. A scene with more pairs would take days to simulate.
+const MOST_PAIRS: usize = 4_000_000;
+
+/// Judges the scene as a whole.
+pub(super) fn check(document: &Document<'_>, parts: &Parts<'_, '_>, report: &mut Report) {
+    steps(parts, report);
+    size(document, parts, report);
+    methods(parts, report);
+    normals(parts, report);
+    fixed_and_moving(parts, report);
+    let places = Places::new(parts);
+    edges_without_length(parts, &places, report);
+    forces_without_direction(parts, &places, report);
+    if let Some(rule) = ContactRule::of(parts) {
+        coincident_particles(parts, &rule, report);
+        particles_on_edges(parts, &rule, &places, report);
+        particles_on_half_planes(parts, &rule, report);
+    }
+}
+
+/// An error or warning about an element.
+fn about(tag: &Tag<'_>, message: String, help: &str) -> Finding {
+    Finding::new(tag.span.clone(), message).element(tag.rule.name).help(help)
+}
+
+fn steps(parts: &Parts<'_, '_>, report: &mut Report) {
+    let (Some(duration), Some(integrator)) = (&parts.duration, &parts.integrator) else { return };
+    let (Some(time), Some((_, time_step))) = (duration.value, integrator.value) else { return };
+    if time < 0.0 || time_step <= 0.0 {
+        // Each has been complained about already.
+        return;
+    }
+    let steps = (time / time_step).ceil();
+    if time == 0.0 {
+        report.warning(|| about(duration.tag, "the duration is zero".into(), "no step is made"));
+    } else if steps > f64::from(i32::MAX) {
+        let help = "at most 2147483647 steps are possible; the original would make none";
+        report.error(|| {
+            about(duration.tag, format!("{time:?} seconds in steps of {time_step:?} are {steps:e} steps"), help)
+        });
+    }
+}
+
+fn size(document: &Document<'_>, parts: &Parts<'_, '_>, report: &mut Report) {
+    let count = parts.particles.len();
+    if count == 0 && !report.has_errors() {
+        let span = document.scene.clone().unwrap_or(0..0);
+        report.warning(|| Finding::new(span, "the scene has no particles").help("its trace holds no state"));
+    }
+    if let (Some(part), Some(true)) = (&parts.integrator, is_implicit(parts))
+        && count > LARGEST_IMPLICIT
+    {
+        report.error(|| {
+            about(
+                part.tag,
+                format!("an implicit integrator with {count} particles"),
+                "at most 4096: it solves a dense system of twice that size in every step",
+            )
+        });
+    }
+}
+
+fn is_implicit(parts: &Parts<'_, '_>) -> Option<bool> {
+    let (integrator, _) = parts.integrator.as_ref()?.value?;
+    Some(matches!(integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler))
+}
+
+/// Integrators and forces that do not go together.
+fn methods(parts: &Parts<'_, '_>, report: &mut Report) {
+    let Some(integrator) = &parts.integrator else { return };
+    if is_implicit(parts) == Some(true) {
+        for part in parts.forces.iter().filter(|part| part.tag.rule.name == "vortexforce") {
+            report.error(|| {
+                let help = "it has no Hessian; the original stops at the first step";
+                about(part.tag, "a `vortexforce` with an implicit integrator".into(), help)
+            });
+        }
+    }
+    let penalty = matches!(parts.collision, Some(Collision::Penalty { .. } | Collision::Hybrid { .. }));
+    if penalty && matches!(integrator.value, Some((Integrator::ImplicitEuler, _))) {
+        report.warning(|| {
+            let help = "its Hessian is missing, so Newton's method may never converge";
+            about(integrator.tag, "`implicit-euler` with a penalty force".into(), help)
+        });
+    }
+}
+
+fn normals(parts: &Parts<'_, '_>, report: &mut Report) {
+    for (number, part) in parts.half_planes.iter().enumerate() {
+        let Some(HalfPlane { normal, .. }) = part.value else { continue };
+        if normal.dot(&normal) == 0.0 {
+            report.error(|| {
+                let help = "`nx` and `ny` must not both be zero, nor so small that their squares vanish";
+                about(part.tag, format!("the normal of halfplane {number} has no length"), help)
+            });
+        }
+    }
+}
+
+/// Half-planes reflect fixed particles, too.
+fn fixed_and_moving(parts: &Parts<'_, '_>, report: &mut Report) {
+    let responds = matches!(
+        parts.collision,
+        Some(Collision::Simple { .. } | Collision::ContinuousTime { .. } | Collision::Hybrid { .. })
+    );
+    if !responds || parts.half_planes.is_empty() {
+        return;
+    }
+    for (number, part) in parts.particles.iter().enumerate() {
+        if part.value.as_ref().is_some_and(|particle| particle.fixed && particle.velocity != Vec2::zeros()) {
+            report.warning(|| {
+                let help = "the response to half-planes does not ask whether a particle is fixed";
+                about(part.tag, format!("particle {number} is fixed but moves, and half-planes will reflect it"), help)
+            });
+        }
+    }
+}
+
+/// Where the particles start, for those that could be read.
+struct Places(Vec<Option<Vec2>>);
+
+impl Places {
+    fn new(parts: &Parts<'_, '_>) -> Self {
+        Self(parts.particles.iter().map(|part| part.value.as_ref().map(|particle| particle.position)).collect())
+    }
+
+    fn of(&self, particle: usize) -> Option<Vec2> {
+        self.0.get(particle).copied().flatten()
+    }
+
+    fn same(&self, a: usize, b: usize) -> bool {
+        self.of(a).zip(self.of(b)).is_some_and(|(a, b)| a == b)
+    }
+}
+
+fn edges_without_length(parts: &Parts<'_, '_>, places: &Places, report: &mut Report) {
+    for (number, part) in parts.edges.iter().enumerate() {
+        let Some(Edge { first, second, .. }) = part.value else { continue };
+        if places.same(first, second) {
+            report.error(|| {
+                let help = "an edge without length has no direction; a spring on it is not a number";
+                about(
+                    part.tag,
+                    format!("edge {number} joins particles {first} and {second}, which start in one place"),
+                    help,
+                )
+            });
+        }
+    }
+}
+
+fn forces_without_direction(parts: &Parts<'_, '_>, places: &Places, report: &mut Report) {
+    for part in &parts.forces {
+        let Some(Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. }) = part.value else {
+            continue;
+        };
+        if places.same(first, second) {
+            let name = part.tag.rule.name;
+            report.error(|| {
+                let message = format!("`{name}` between particles {first} and {second}, which start in one place");
+                about(part.tag, message, "at distance zero it is not a number")
+            });
+        }
+    }
+}
+
+/// How bad it is when something starts exactly on something else.
+struct ContactRule {
+    /// Whether the penalty force acts: its direction is then not a number.
+    penalty: bool,
+    /// Whether half-planes move fixed particles.
+    responds: bool,
+    thickness: f64,
+}
+
+impl ContactRule {
+    fn of(parts: &Parts<'_, '_>) -> Option<Self> {
+        match parts.collision? {
+            Collision::None | Collision::Simple { .. } => None,
+            Collision::Penalty { thickness, .. } => Some(Self { penalty: true, responds: false, thickness }),
+            Collision::Hybrid { thickness, .. } => Some(Self { penalty: true, responds: true, thickness }),
+            Collision::ContinuousTime { .. } => Some(Self { penalty: false, responds: true, thickness: 0.0 }),
+        }
+    }
+
+    /// Whether objects of these radii at distance zero touch.
+    fn touches(&self, radii: f64) -> bool {
+        0.0 < radii + if self.penalty { self.thickness } else { 0.0 }
+    }
+
+    fn report(&self, tag: &Tag<'_>, report: &mut Report, message: impl FnOnce() -> String) {
+        if self.penalty {
+            let help = "the penalty force between them has no direction and is not a number; move one of them";
+            report.error(|| about(tag, message(), help));
+        } else {
+            let help = "a contact there has no direction and would not be a number";
+            report.warning(|| about(tag, message(), help));
+        }
+    }
+}
+
+fn coincident_particles(parts: &Parts<'_, '_>, rule: &ContactRule, report: &mut Report) {
+    let mut particles: Vec<(usize, &Tag<'_>, &Particle)> = parts
+        .particles
+        .iter()
+        .enumerate()
+        .filter_map(|(number, part)| part.value.as_ref().map(|particle| (number, part.tag, particle)))
+        .collect();
+    // Adding zero makes -0 the same as 0 for the order, too.
+    let key = |particle: &Particle| (particle.position.x + 0.0, particle.position.y + 0.0);
+    particles.sort_by(|(m, _, a), (n, _, b)| {
+        let ((ax, ay), (bx, by)) = (key(a), key(b));
+        ax.total_cmp(&bx).then(ay.total_cmp(&by)).then(m.cmp(n))
+    });
+    for group in particles.chunk_by(|(_, _, a), (_, _, b)| a.position == b.position) {
+        let movable = group.iter().position(|(_, _, particle)| !particle.fixed);
+        let Some(movable) = movable.filter(|_| group.len() > 1) else { continue };
+        // Every other one is reported once; that two fixed ones are in one place hurts nobody.
+        for (place, (number, tag, particle)) in group.iter().enumerate() {
+            let partner = if particle.fixed { movable } else { 0 };
+            let (other, _, with) = group[partner];
+            if place > partner && rule.touches(particle.radius + with.radius) {
+                rule.report(tag, report, || format!("particles {other} and {number} start in one place"));
+            }
+        }
+    }
+}
+
+fn particles_on_edges(parts: &Parts<'_, '_>, rule: &ContactRule, places: &Places, report: &mut Report) {
+    let fixed = |particle: usize| {
+        parts.particles.get(particle).and_then(|part| part.value.as_ref()).is_none_or(|particle| particle.fixed)
+    };
+    let pairs =
+        parts.edges.iter().enumerate().flat_map(|edge| parts.particles.iter().enumerate().map(move |p| (edge, p)));
+    for ((edge_number, edge), (number, particle)) in pairs.take(MOST_PAIRS) {
+        let (Some(edge), Part { tag, value: Some(particle) }) = (edge.value, particle) else { continue };
+        let Some((start, end)) = places.of(edge.first).zip(places.of(edge.second)) else { continue };
+        if number == edge.first || number == edge.second || start == end {
+            continue;
+        }
+        let along = end - start;
+        // As the penalty force does it, limits included.
+        let alpha = ((particle.position - start).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
+        let on_it = (start + alpha * along) - particle.position == Vec2::zeros();
+        let at_end = particle.position == start || particle.position == end;
+        let all_fixed = particle.fixed && fixed(edge.first) && fixed(edge.second);
+        if on_it && !at_end && !all_fixed && rule.touches(particle.radius + edge.radius) {
+            rule.report(tag, report, || format!("particle {number} starts exactly on edge {edge_number}"));
+        }
+    }
+}
+
+fn particles_on_half_planes(parts: &Parts<'_, '_>, rule: &ContactRule, report: &mut Report) {
+    let planes = parts.half_planes.iter().enumerate();
+    let pairs = planes.flat_map(|plane| parts.particles.iter().enumerate().map(move |particle| (plane, particle)));
+    for ((plane_number, plane), (number, particle)) in pairs.take(MOST_PAIRS) {
+        let (Some(plane), Part { tag, value: Some(particle) }) = (plane.value, particle) else { continue };
+        let (toward, normal) = (plane.point - particle.position, plane.normal);
+        let scale = toward.dot(&normal) / normal.dot(&normal);
+        let on_it = scale * normal == Vec2::zeros();
+        let harmless = particle.fixed && !rule.responds;
+        if on_it && !harmless && rule.touches(particle.radius) {
+            rule.report(tag, report, || format!("particle {number} starts exactly on halfplane {plane_number}"));
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! Typed reading of an element's attributes, with a problem for whatever cannot be read.
+//!
+//! Every method that returns nothing has reported why, or knows that somebody else has.
+use std::borrow::Cow;
+use std::ops::Range;
+
+use quick_xml::escape::{EscapeError, unescape};
+
+use super::grammar;
+use super::model::Color;
+use super::numbers::{self, Flaw};
+use super::problem::{Finding, Report, Severity, quote};
+use super::tag::{Attribute, Tag, list};
+use fosssim_num::vector::Vec2;
+
+/// How many objects of a kind there are, for indices that point to them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Count {
+    /// What they are called: `particle`.
+    pub(super) what: &'static str,
+    pub(super) count: usize,
+    /// Whether the number is certain; after broken XML or a misspelt element it is not, and indices are not judged.
+    pub(super) certain: bool,
+}
+
+/// The attributes of one element.
+pub(super) struct Fields<'d, 't, 'r> {
+    tag: &'d Tag<'t>,
+    number: Option<usize>,
+    report: &'r mut Report,
+}
+
+impl<'d, 't, 'r> Fields<'d, 't, 'r> {
+    /// `number` is the element's number among its kind, when there may be several.
+    pub(super) fn new(tag: &'d Tag<'t>, number: Option<usize>, report: &'r mut Report) -> Self {
+        Self { tag, number, report }
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.raw(name).is_some()
+    }
+
+    /// The place of an attribute's value, or of the element when it has no such attribute.
+    pub(super) fn span(&self, name: &str) -> Range<usize> {
+        self.raw(name).map_or_else(|| self.tag.span.clone(), |attribute| attribute.span.clone())
+    }
+
+    /// An error about an attribute's value: `NAME of WHO MESSAGE`.
+    pub(super) fn error(&mut self, name: &str, message: &str, help: impl Into<String>) {
+        self.complain(Severity::Error, name, || (message.to_owned(), help.into()));
+    }
+
+    /// A warning about an attribute's value: `NAME of WHO MESSAGE`.
+    pub(super) fn warning(&mut self, name: &str, message: &str, help: impl Into<String>) {
+        self.complain(Severity::Warning, name, || (message.to_owned(), help.into()));
+    }
+
+    /// An error about an attribute's value, which is shown as written.
+    pub(super) fn bad(&mut self, name: &str, help: impl Into<String>) {
+        let written = self.raw(name).map_or("", |attribute| attribute.value);
+        self.complain(Severity::Error, name, || (format!("is `{}`", quote(written)), help.into()));
+    }
+
+    /// A warning about an attribute's value, which is shown as written.
+    pub(super) fn odd(&mut self, name: &str, help: impl Into<String>) {
+        let written = self.raw(name).map_or("", |attribute| attribute.value);
+        self.complain(Severity::Warning, name, || (format!("is `{}`", quote(written)), help.into()));
+    }
+
+    /// The words are made only if there is room for them.
+    fn complain(&mut self, severity: Severity, name: &str, words: impl FnOnce() -> (String, String)) {
+        let (span, tag, number) = (self.span(name), self.tag, self.number);
+        let finding = || {
+            let (message, help) = words();
+            Finding::new(span, format!("`{name}` of {} {message}", who(tag, number)))
+                .element(tag.rule.name)
+                .attribute(name)
+                .help(help)
+        };
+        match severity {
+            Severity::Error => self.report.error(finding),
+            Severity::Warning => self.report.warning(finding),
+        }
+    }
+
+    /// Whether an attribute is absent or empty.
+    pub(super) fn is_blank(&self, name: &str) -> bool {
+        self.raw(name).is_none_or(|attribute| attribute.value.is_empty())
+    }
+
+    /// The text of a required attribute.
+    pub(super) fn text(&mut self, name: &str, what: &str) -> Option<String> {
+        let attribute = self.required(name, what)?;
+        let text = self.decoded(attribute)?.into_owned();
+        if attribute.value.contains('\n') {
+            self.warning(name, "has a line break, which vanishes", "the original joins lines without a space");
+        }
+        Some(text)
+    }
+
+    /// The text of an optional attribute; the outer `None` means unreadable.
+    pub(super) fn optional_text(&mut self, name: &str) -> Option<Option<String>> {
+        if self.has(name) { self.text(name, "").map(Some) } else { Some(None) }
+    }
+
+    /// One of some names.
+    pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
+        let attribute = self.required(name, &list(&choices.iter().map(|(name, _)| *name).collect::<Vec<_>>()))?;
+        let text = self.decoded(attribute)?;
+        if let Some((_, value)) = choices.iter().find(|(name, _)| *name == text) {
+            return Some(*value);
+        }
+        let names = || choices.iter().map(|(name, _)| *name);
+        let help = match grammar::closest(&text, names()) {
+            Some(meant) => format!("did you mean `{meant}`?"),
+            None => format!("allowed are {}", list(&names().collect::<Vec<_>>())),
+        };
+        self.bad(name, help);
+        None
+    }
+
+    /// A required scalar.
+    pub(super) fn scalar(&mut self, name: &str) -> Option<f64> {
+        let attribute = self.required(name, "a number")?;
+        self.number(attribute)
+    }
+
+    /// A scalar with a default.
+    pub(super) fn scalar_or(&mut self, name: &str, default: f64) -> Option<f64> {
+        match self.raw(name) {
+            Some(attribute) => self.number(attribute),
+            None => Some(default),
+        }
+    }
+
+    /// Two required scalars.
+    pub(super) fn vector(&mut self, x: &str, y: &str) -> Option<Vec2> {
+        let (x, y) = (self.scalar(x), self.scalar(y));
+        Some(Vec2::new(x?, y?))
+    }
+
+    /// A required whole number of 32 bits.
+    pub(super) fn integer(&mut self, name: &str) -> Option<i32> {
+        let attribute = self.required(name, "a whole number")?;
+        let text = self.one_line(attribute)?;
+        match numbers::integer(&text) {
+            Ok(value) => Some(value),
+            Err(flaw) => self.flaw(name, &text, flaw),
+        }
+    }
+
+    /// A required index of an existing object.
+    pub(super) fn index(&mut self, name: &str, of: Count) -> Option<usize> {
+        let written = self.integer(name)?;
+        let index = usize::try_from(written).ok();
+        if index.is_some_and(|index| index < of.count) {
+            return index;
+        }
+        if of.certain || index.is_none() {
+            self.complain(Severity::Error, name, || {
+                let help = match of.count {
+                    0 => format!("there is no {}", of.what),
+                    count => format!("allowed is 0 to {}; numbering starts at 0", count - 1),
+                };
+                (format!("is {written}, which is no {}", of.what), help)
+            });
+        }
+        None
+    }
+
+    /// A required truth value.
+    pub(super) fn boolean(&mut self, name: &str) -> Option<bool> {
+        let attribute = self.required(name, "0 or 1")?;
+        let text = self.one_line(attribute)?;
+        let text = text.trim_ascii();
+        let help = match text.to_ascii_lowercase().as_str() {
+            "0" => return Some(false),
+            "1" => return Some(true),
+            "true" | "yes" => "write `1`",
+            "false" | "no" => "write `0`",
+            _ => "allowed are `0` and `1`",
+        };
+        self.bad(name, help);
+        None
+    }
+
+    /// The colour in `r`, `g` and `b`.
+    pub(super) fn color(&mut self) -> Option<Color> {
+        let mut component = |name: &str| {
+            let value = self.scalar(name)?;
+            if (0.0..=1.0).contains(&value) {
+                return Some(value);
+            }
+            self.bad(name, "allowed is 0 to 1");
+            None
+        };
+        let (red, green, blue) = (component("r"), component("g"), component("b"));
+        Some(Color { red: red?, green: green?, blue: blue? })
+    }
+
+    fn raw(&self, name: &str) -> Option<&'d Attribute<'t>> {
+        self.tag.attributes.iter().find(|attribute| attribute.name == name)
+    }
+
+    /// A required attribute. Its absence is not reported when it may be there, misspelt or unreadable.
+    fn required(&mut self, name: &str, what: &str) -> Option<&'d Attribute<'t>> {
+        let attribute = self.raw(name);
+        if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
+            let (tag, number) = (self.tag, self.number);
+            self.report.error(|| {
+                Finding::new(tag.span.clone(), format!("{} has no `{name}`", who(tag, number)))
+                    .element(tag.rule.name)
+                    .attribute(name)
+                    .help(format!("required: {what}"))
+            });
+        }
+        attribute
+    }
+
+    /// The value as the original sees it: lines joined, references translated.
+    fn decoded(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
+        let joined: Cow<'d, str> = if attribute.value.contains('\n') {
+            attribute.value.replace('\n', "").into()
+        } else {
+            attribute.value.into()
+        };
+        let result = match &joined {
+            Cow::Borrowed(text) => unescape(text),
+            Cow::Owned(text) => unescape(text).map(|text| Cow::Owned(text.into_owned())),
+        };
+        match result {
+            Ok(text) => Some(text),
+            Err(error) => {
+                let message = match error {
+                    EscapeError::UnrecognizedEntity(_, name) => format!("has an unknown entity `&{};`", quote(&name)),
+                    EscapeError::UnterminatedEntity(_) => "has an `&` without `;`".to_owned(),
+                    EscapeError::InvalidCharRef(_) => "has a reference to a character that does not exist".to_owned(),
+                    other => format!("cannot be read: {other}"),
+                };
+                self.error(
+                    attribute.name,
+                    &message,
+                    "known are `&lt;` `&gt;` `&amp;` `&apos;` `&quot;` `&#65;` `&#x41;`",
+                );
+                None
+            }
+        }
+    }
+
+    /// The text of a number, which must not be broken over lines.
+    fn one_line(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
+        let text = self.decoded(attribute)?;
+        if attribute.value.trim_ascii().contains('\n') {
+            let help = format!("the original joins the lines and reads `{}`", quote(&text));
+            self.error(attribute.name, "has a line break inside", help);
+            return None;
+        }
+        Some(text)
+    }
+
+    fn number(&mut self, attribute: &'d Attribute<'t>) -> Option<f64> {
+        let text = self.one_line(attribute)?;
+        match numbers::scalar(&text) {
+            Ok((value, vanished)) => {
+                if vanished {
+                    let message = format!("is `{}`, which becomes zero", quote(&text));
+                    self.warning(attribute.name, &message, "the smallest 64-bit number is 5e-324");
+                }
+                Some(value)
+            }
+            Err(flaw) => self.flaw(attribute.name, &text, flaw),
+        }
+    }
+
+    fn flaw<T>(&mut self, name: &str, text: &str, flaw: Flaw) -> Option<T> {
+        self.complain(Severity::Error, name, || words(text, &flaw));
+        None
+    }
+}
+
+/// `particle 3`, or `integrator`.
+fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
+    match number {
+        Some(number) => format!("{} {number}", tag.rule.name),
+        None => tag.rule.name.to_owned(),
+    }
+}
+
+/// What to say about a bad number: what is wrong, and what to do.
+fn words(text: &str, flaw: &Flaw) -> (String, String) {
+    let text = quote(text.trim_ascii());
+    match flaw {
+        Flaw::Empty => ("is empty".to_owned(), "write a number".to_owned()),
+        Flaw::NoNumber => (format!("is `{text}`, which is no number"), "write a number such as `-1.5e-3`".to_owned()),
+        Flaw::Trailing(prefix) => (
+            format!("is `{text}`, which is more than a number"),
+            format!("the original reads `{}` and ignores the rest", quote(prefix)),
+        ),
+        Flaw::Comma(point) => (format!("is `{text}`, with a decimal comma"), format!("write `{}`", quote(point))),
+        Flaw::NotFinite => (format!("is `{text}`"), "only finite numbers are allowed".to_owned()),
+        Flaw::Overflow => (format!("is `{text}`, too large"), "the largest 64-bit number is 1.8e308".to_owned()),
+        Flaw::NotWhole => (format!("is `{text}`"), "write a whole number".to_owned()),
+        Flaw::TooLarge => (format!("is `{text}`, beyond 32 bits"), "allowed is -2147483648 to 2147483647".to_owned()),
+    }
+}

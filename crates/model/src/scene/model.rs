@@ -1,0 +1,235 @@
+//! The scene as the simulator needs it: plain values, every index valid when it comes from the strict reader.
+use fosssim_num::vector::Vec2;
+
+/// A scene: what is simulated, for how long, by which method, with which collision handling.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Simulated time in seconds.
+    pub duration: f64,
+    /// Time step `dt` in seconds.
+    pub time_step: f64,
+    /// The time integrator.
+    pub integrator: Integrator,
+    /// The collision handling.
+    pub collision: Collision,
+    /// Particles in document order; their position in this list is their index.
+    pub particles: Vec<Particle>,
+    /// Edges in document order.
+    pub edges: Vec<Edge>,
+    /// Half-planes in document order.
+    pub half_planes: Vec<HalfPlane>,
+    /// Forces **in the order in which they act**: springs, simple gravity, gravitation, constant, drag, vortex; each
+    /// kind in document order (simulation.md 2).
+    pub forces: Vec<Force>,
+    /// The text shown in the banner, when the scene has one.
+    pub description: Option<String>,
+    /// What only a display uses.
+    pub display: Display,
+}
+
+impl Scene {
+    /// Number of steps as the original computes it: the 32-bit conversion of `ceil(duration / dt)`; zero, negative
+    /// and unrepresentable quotients give no step (scene-format.md 4).
+    #[must_use]
+    pub fn steps(&self) -> u32 {
+        let quotient = (self.duration / self.time_step).ceil();
+        // Outside the 32-bit range (and for NaN) the processor's conversion gives -2147483648, hence no step.
+        if quotient >= 1.0 && quotient <= f64::from(i32::MAX) {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked just above")]
+            let steps = quotient as u32;
+            steps
+        } else {
+            0
+        }
+    }
+}
+
+/// A time integrator (simulation.md 4).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Integrator {
+    /// `explicit-euler`
+    ExplicitEuler,
+    /// `forward-backward-euler`
+    ForwardBackwardEuler,
+    /// `symplectic-euler`: the same arithmetic and printed name as [`Integrator::ForwardBackwardEuler`].
+    SymplecticEuler,
+    /// `implicit-euler`, by Newton's method.
+    ImplicitEuler,
+    /// `linearized-implicit-euler`
+    LinearizedImplicitEuler,
+}
+
+/// Collision handling (collisions.md).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Collision {
+    /// No handling, records of positions and velocities only.
+    None,
+    /// Impulses on overlap at the end of the step.
+    Simple {
+        /// Coefficient of restitution (`COR`).
+        restitution: f64,
+    },
+    /// A repelling force.
+    Penalty {
+        /// `k`, force per length.
+        stiffness: f64,
+        /// `thickness`, length.
+        thickness: f64,
+    },
+    /// Continuous-time detection, one pass.
+    ContinuousTime {
+        /// Coefficient of restitution (`COR`).
+        restitution: f64,
+    },
+    /// Impulses, impact zones, rigid failsafe, and the penalty force.
+    Hybrid {
+        /// Coefficient of restitution (`COR`).
+        restitution: f64,
+        /// `maxiters`; zero or negative means no detection in the impulse stage.
+        max_iterations: i32,
+        /// `k` of the penalty force.
+        stiffness: f64,
+        /// `thickness` of the penalty force.
+        thickness: f64,
+    },
+}
+
+/// A particle: a disc with a mass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Particle {
+    /// Centre at the start.
+    pub position: Vec2,
+    /// Velocity at the start.
+    pub velocity: Vec2,
+    /// Mass.
+    pub mass: f64,
+    /// Whether forces and responses leave it alone (its own velocity still moves it).
+    pub fixed: bool,
+    /// Radius of the disc.
+    pub radius: f64,
+    /// A name without effect.
+    pub tag: Option<String>,
+}
+
+/// An edge between two particles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// Index of the first endpoint (`i`).
+    pub first: usize,
+    /// Index of the second endpoint (`j`).
+    pub second: usize,
+    /// Half the edge's thickness.
+    pub radius: f64,
+}
+
+/// An infinite obstacle through a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfPlane {
+    /// A point on its boundary.
+    pub point: Vec2,
+    /// Its normal as written, of any length.
+    pub normal: Vec2,
+}
+
+/// A force (simulation.md 3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Force {
+    /// `springforce`
+    Spring {
+        /// Index of the edge it acts on.
+        edge: usize,
+        /// `k`
+        stiffness: f64,
+        /// `l0`
+        rest_length: f64,
+        /// `b`
+        damping: f64,
+    },
+    /// `simplegravity`
+    SimpleGravity {
+        /// `(fx, fy)`
+        acceleration: Vec2,
+    },
+    /// `gravitationalforce`
+    Gravitation {
+        /// `i`
+        first: usize,
+        /// `j`
+        second: usize,
+        /// `G`
+        constant: f64,
+    },
+    /// `constantforce`
+    Constant {
+        /// `(fx, fy)`, on every particle
+        force: Vec2,
+    },
+    /// `dragdamping`
+    Drag {
+        /// `b`
+        coefficient: f64,
+    },
+    /// `vortexforce`
+    Vortex {
+        /// `i`
+        first: usize,
+        /// `j`
+        second: usize,
+        /// `kbs`
+        strength: f64,
+        /// `kvc`
+        coupling: f64,
+    },
+}
+
+/// What only a display uses; kept so that a scene survives being read and written.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Display {
+    /// `maxsimfreq max`, steps per second of wall time.
+    pub max_frequency: Option<f64>,
+    /// `viewport`
+    pub viewport: Option<Viewport>,
+    /// `backgroundcolor`
+    pub background: Option<Color>,
+    /// `scenetag tag`
+    pub tag: Option<String>,
+    /// `particlecolor`: particle and colour, in document order.
+    pub particle_colors: Vec<(usize, Color)>,
+    /// `edgecolor`: edge and colour, in document order.
+    pub edge_colors: Vec<(usize, Color)>,
+    /// `halfplanecolor`: half-plane and colour, in document order.
+    pub half_plane_colors: Vec<(usize, Color)>,
+    /// `particlepath`
+    pub paths: Vec<ParticlePath>,
+}
+
+/// The visible part of the plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viewport {
+    /// Its centre.
+    pub center: Vec2,
+    /// Half its extent; zero or negative means "fit".
+    pub size: f64,
+}
+
+/// A colour, components in [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Color {
+    /// Red.
+    pub red: f64,
+    /// Green.
+    pub green: f64,
+    /// Blue.
+    pub blue: f64,
+}
+
+/// A trail behind a particle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParticlePath {
+    /// The particle.
+    pub particle: usize,
+    /// How long the trail lasts, seconds.
+    pub duration: f64,
+    /// Its colour.
+    pub color: Color,
+}

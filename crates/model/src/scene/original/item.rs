@@ -1,0 +1,103 @@
+//! One element of a repeated kind, with the original's words about its attributes (scene-format.md 5).
+use super::markup::Element;
+use super::{Refusal, values};
+use crate::scene::model::Color;
+use fosssim_num::vector::Vec2;
+
+/// An element, the name that messages give it, and its number among its kind.
+pub(super) struct Item<'e> {
+    element: &'e Element<'e>,
+    kind: &'static str,
+    number: usize,
+    exit_code: u8,
+}
+
+impl<'e> Item<'e> {
+    /// All elements of one name; messages call them `kind`.
+    pub(super) fn all(
+        elements: &'e [Element<'e>],
+        name: &'static str,
+        kind: &'static str,
+    ) -> impl Iterator<Item = Self> {
+        // The original ends with success after a message about a half-plane.
+        let exit_code = u8::from(name != "halfplane");
+        elements
+            .iter()
+            .filter(move |element| element.name == name.as_bytes())
+            .enumerate()
+            .map(move |(number, element)| Self { element, kind, number, exit_code })
+    }
+
+    pub(super) fn number(&self) -> usize {
+        self.number
+    }
+
+    pub(super) fn text(&self, name: &str) -> Option<&[u8]> {
+        self.element.attribute(name)
+    }
+
+    /// An integer; `value of` stands in both messages.
+    pub(super) fn index(&self, name: &str) -> Result<i32, Refusal> {
+        self.required(name, "value of ", "integer", values::integer)
+    }
+
+    /// A scalar; `value of` stands only in the message about a bad one.
+    pub(super) fn numeric(&self, name: &str) -> Result<f64, Refusal> {
+        self.required(name, "", "numeric", values::scalar)
+    }
+
+    /// Two scalars of the sort of [`Item::numeric`].
+    pub(super) fn numerics(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
+        Ok(Vec2::new(self.numeric(x)?, self.numeric(y)?))
+    }
+
+    /// Two scalars called real numbers; `value of` stands in both messages.
+    pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
+        let real = |name| self.required(name, "value of ", "real number", values::scalar);
+        Ok(Vec2::new(real(x)?, real(y)?))
+    }
+
+    pub(super) fn boolean(&self, name: &str) -> Result<bool, Refusal> {
+        self.required(name, "", "boolean", values::boolean)
+    }
+
+    /// An optional scalar whose message lacks `value of`.
+    pub(super) fn radius(&self, default: f64) -> Result<f64, Refusal> {
+        self.optional("radius", default, "", "scalar")
+    }
+
+    pub(super) fn optional(&self, name: &str, default: f64, of: &str, what: &str) -> Result<f64, Refusal> {
+        let Some(text) = self.text(name) else { return Ok(default) };
+        values::scalar(text).ok_or_else(|| self.refusal(of, name, &format!("Value must be {what}. Exiting.")))
+    }
+
+    /// The colour in `r`, `g`, `b`, each checked before the next is read.
+    pub(super) fn color(&self) -> Result<Color, Refusal> {
+        let component = |name: &str| {
+            let value = self.required(name, "value of ", "scalar", values::scalar)?;
+            if (0.0..=1.0).contains(&value) {
+                Ok(value)
+            } else {
+                Err(self.refusal("value of ", name, "Invalid color specified. Valid range is 0...1"))
+            }
+        };
+        Ok(Color { red: component("r")?, green: component("g")?, blue: component("b")? })
+    }
+
+    /// `Failed to parse [value of ]NAME attribute for KIND NUMBER. END`
+    pub(super) fn refusal(&self, of: &str, name: &str, end: &str) -> Refusal {
+        let text = format!("Failed to parse {of}{name} attribute for {} {}. {end}", self.kind, self.number);
+        Refusal::message(text.as_bytes(), self.exit_code)
+    }
+
+    fn required<T>(
+        &self,
+        name: &str,
+        of_missing: &str,
+        what: &str,
+        read: impl Fn(&[u8]) -> Option<T>,
+    ) -> Result<T, Refusal> {
+        let text = self.text(name).ok_or_else(|| self.refusal(of_missing, name, "Exiting."))?;
+        read(text).ok_or_else(|| self.refusal("value of ", name, &format!("Value must be {what}. Exiting.")))
+    }
+}

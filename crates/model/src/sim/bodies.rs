@@ -1,0 +1,68 @@
+//! The scene's constants as one array per attribute.
+//!
+//! Nothing here changes during a simulation. Particles, edges and half-planes keep their document order, which is
+//! the order of every loop over them (simulation.md 1).
+use crate::scene::Scene;
+use fosssim_num::vector::Vec2;
+
+/// Masses, radii, flags, edges and half-planes.
+#[derive(Debug, Clone)]
+pub(super) struct Bodies {
+    /// Mass per particle, as written.
+    pub masses: Vec<f64>,
+    /// Mass per particle as responses see it: infinite for a fixed one (collisions.md 3).
+    pub response_masses: Vec<f64>,
+    /// Radius per particle.
+    pub radii: Vec<f64>,
+    /// Whether a particle is fixed.
+    pub fixed: Vec<bool>,
+    /// First and second endpoint per edge.
+    pub edges: Vec<[usize; 2]>,
+    /// Radius per edge.
+    pub edge_radii: Vec<f64>,
+    /// A boundary point per half-plane.
+    pub points: Vec<Vec2>,
+    /// The normal as written, per half-plane.
+    pub normals: Vec<Vec2>,
+}
+
+impl Bodies {
+    /// Copies the scene's constants.
+    ///
+    /// # Panics
+    /// When an edge or a force names something that the scene does not have; the strict reader refuses such scenes.
+    pub fn new(scene: &Scene) -> Self {
+        let particles = &scene.particles;
+        for (index, edge) in scene.edges.iter().enumerate() {
+            assert!(
+                edge.first < particles.len() && edge.second < particles.len(),
+                "edge {index} has an endpoint that is no particle"
+            );
+        }
+        Self {
+            masses: particles.iter().map(|p| p.mass).collect(),
+            response_masses: particles.iter().map(|p| if p.fixed { f64::INFINITY } else { p.mass }).collect(),
+            radii: particles.iter().map(|p| p.radius).collect(),
+            fixed: particles.iter().map(|p| p.fixed).collect(),
+            edges: scene.edges.iter().map(|e| [e.first, e.second]).collect(),
+            edge_radii: scene.edges.iter().map(|e| e.radius).collect(),
+            points: scene.half_planes.iter().map(|h| h.point).collect(),
+            normals: scene.half_planes.iter().map(|h| h.normal).collect(),
+        }
+    }
+
+    /// Number of particles N.
+    pub fn particles(&self) -> usize {
+        self.masses.len()
+    }
+
+    /// Writes +0 into both entries of every fixed particle of an array in trace order.
+    pub fn zero_fixed(&self, array: &mut [f64]) {
+        for (index, &fixed) in self.fixed.iter().enumerate() {
+            if fixed {
+                array[2 * index] = 0.0;
+                array[2 * index + 1] = 0.0;
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Collision handling: detection per pair type, responses, impact zones (collisions.md).
+//!
+//! One file per pair type holds its detection and its responses; `pass` runs over all pairs; `simple`,
+//! `continuous_time` and `hybrid` are the three handlers, of which `hybrid` uses `zones` and `failsafe`. Nothing is
+//! pruned: every pair is looked at in every pass, also two fixed particles (collisions.md 1).
+mod continuous_time;
+mod failsafe;
+mod hybrid;
+mod lanes;
+mod motion;
+mod particle_edge;
+mod particle_half_plane;
+mod particle_particle;
+mod pass;
+mod response;
+mod simple;
+mod zones;
+
+use super::{
+    bodies::Bodies,
+    observer::Observer,
+    simulation::{RootSearch, SearchCounts, State, StepError},
+};
+use crate::scene::{Collision, Scene};
+use hybrid::HybridScratch;
+pub use motion::{PairMotion, PointMotion};
+use pass::Detector;
+use response::Law;
+
+/// The scene's collision handling with its scratch memory.
+#[derive(Debug, Clone)]
+pub(super) struct Handler {
+    kind: Collision,
+    law: Law,
+    detector: Detector,
+    hybrid: HybridScratch,
+}
+
+impl Handler {
+    /// Sets the scene's handling up.
+    pub fn new(scene: &Scene, search: RootSearch) -> Self {
+        let restitution = match scene.collision {
+            Collision::Simple { restitution }
+            | Collision::ContinuousTime { restitution }
+            | Collision::Hybrid { restitution, .. } => restitution,
+            Collision::None | Collision::Penalty { .. } => 1.0,
+        };
+        Self {
+            kind: scene.collision,
+            law: Law::new(restitution, scene.time_step),
+            detector: Detector::new(search),
+            hybrid: HybridScratch::default(),
+        }
+    }
+
+    /// Handles the collisions of step `step`, which began at positions `q_start` and whose integration ended in `state`.
+    ///
+    /// # Errors
+    /// [`StepError::RootSearch`]; the state is unspecified then.
+    pub fn handle<O: Observer>(
+        &mut self,
+        bodies: &Bodies,
+        step: u32,
+        q_start: &[f64],
+        state: &mut State,
+        observer: &mut O,
+    ) -> Result<(), StepError> {
+        self.detector.begin_step(step);
+        match self.kind {
+            Collision::None | Collision::Penalty { .. } => Ok(()),
+            Collision::Simple { .. } => {
+                simple::handle(bodies, &self.law, q_start, state, observer);
+                Ok(())
+            }
+            Collision::ContinuousTime { .. } => {
+                continuous_time::handle(bodies, &self.law, &mut self.detector, q_start, state, observer)
+            }
+            Collision::Hybrid { max_iterations, .. } => {
+                let detector = &mut self.detector;
+                hybrid::handle(bodies, &self.law, max_iterations, detector, &mut self.hybrid, q_start, state, observer)
+            }
+        }
+    }
+
+    /// Counts of root searches so far.
+    pub fn counts(&self) -> SearchCounts {
+        self.detector.counts()
+    }
+}

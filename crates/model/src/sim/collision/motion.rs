@@ -1,0 +1,206 @@
+//! One pair on its own: how it moves within a step, and what detection computes from that, bit for bit as a pass does.
+use super::{
+    particle_edge::{self, EdgeMotions},
+    particle_half_plane, particle_particle,
+};
+use crate::{
+    scene::Scene,
+    sim::observer::{Pair, PairKind},
+};
+use fosssim_num::{
+    polynomial::Polynomial,
+    vector::{Vec2, at},
+};
+
+/// How a point moves within a step: on a straight line, at constant speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointMotion {
+    /// Where it is at the start of the step.
+    pub start: Vec2,
+    /// Its displacement in the step.
+    pub shift: Vec2,
+}
+
+impl PointMotion {
+    /// The motion of particle `index` between two arrays of positions in trace order.
+    #[must_use]
+    pub fn between(q_start: &[f64], q_end: &[f64], index: usize) -> Self {
+        let start = at(q_start, index);
+        Self { start, shift: at(q_end, index) - start }
+    }
+
+    /// Where it is at `time`, a fraction of the step.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Vec2 {
+        self.start + time * self.shift
+    }
+}
+
+/// The objects of a pair and how they move within a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PairMotion {
+    /// Two discs.
+    Particles {
+        /// Their centres.
+        centres: [PointMotion; 2],
+        /// Their radii.
+        radii: [f64; 2],
+    },
+    /// A disc and an edge.
+    Edge {
+        /// The disc's centre.
+        centre: PointMotion,
+        /// The edge's endpoints.
+        ends: [PointMotion; 2],
+        /// The radii of the disc and of the edge.
+        radii: [f64; 2],
+    },
+    /// A disc and a half-plane.
+    HalfPlane {
+        /// The disc's centre.
+        centre: PointMotion,
+        /// The disc's radius.
+        radius: f64,
+        /// A point on the half-plane's boundary.
+        point: Vec2,
+        /// Its normal as written, of any length.
+        normal: Vec2,
+    },
+}
+
+impl PairMotion {
+    /// The motion of a scene's pair between two arrays of positions in trace order.
+    ///
+    /// # Panics
+    /// When the scene or an array has no such object.
+    #[must_use]
+    pub fn between(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        let point = |index| PointMotion::between(q_start, q_end, index);
+        let radius = scene.particles[first].radius;
+        match pair.kind {
+            PairKind::ParticleParticle => Self::Particles {
+                centres: [point(first), point(second)],
+                radii: [radius, scene.particles[second].radius],
+            },
+            PairKind::ParticleEdge => {
+                let edge = &scene.edges[second];
+                let ends = [point(edge.first), point(edge.second)];
+                Self::Edge { centre: point(first), ends, radii: [radius, edge.radius] }
+            }
+            PairKind::ParticleHalfPlane => {
+                let half_plane = &scene.half_planes[second];
+                Self::HalfPlane { centre: point(first), radius, point: half_plane.point, normal: half_plane.normal }
+            }
+        }
+    }
+
+    /// What the second object is.
+    #[must_use]
+    pub const fn kind(&self) -> PairKind {
+        match self {
+            Self::Particles { .. } => PairKind::ParticleParticle,
+            Self::Edge { .. } => PairKind::ParticleEdge,
+            Self::HalfPlane { .. } => PairKind::ParticleHalfPlane,
+        }
+    }
+
+    /// The detection polynomials in the order of the trace, nothing dropped (collisions.md 2).
+    #[must_use]
+    pub fn polynomials(&self) -> Vec<Polynomial> {
+        match *self {
+            Self::Particles { centres: [one, two], radii } => {
+                particle_particle::polynomials(one.start, one.shift, two.start, two.shift, radii[0] + radii[1]).to_vec()
+            }
+            Self::Edge { centre, ends: [first, second], radii } => {
+                let both = |v: Vec2| [v; 2];
+                let edges =
+                    EdgeMotions::new(both(first.start), both(first.shift), both(second.start), both(second.shift));
+                let mut polynomials = Default::default();
+                let sums = [radii[0] + radii[1]; 2];
+                particle_edge::coefficients(centre.start, centre.shift, &edges, sums).write(&mut polynomials);
+                polynomials[0].to_vec()
+            }
+            Self::HalfPlane { centre, radius, point, normal } => {
+                let squared = normal.dot(&normal);
+                particle_half_plane::polynomials(centre.start, centre.shift, radius, point, normal, squared).to_vec()
+            }
+        }
+    }
+
+    /// The contact normal at `time`, from the first object to the second, not normalised. `None` where it is zero between
+    /// a particle and an edge, which is no hit.
+    #[must_use]
+    pub fn normal(&self, time: f64) -> Option<Vec2> {
+        match *self {
+            Self::Particles { centres: [one, two], .. } => {
+                Some(particle_particle::normal(one.start, one.shift, two.start, two.shift, time))
+            }
+            Self::Edge { centre, ends: [first, second], .. } => {
+                let points = [centre, first, second];
+                particle_edge::normal(points.map(|point| point.start), points.map(|point| point.shift), time)
+            }
+            Self::HalfPlane { centre, point, normal, .. } => {
+                let squared = normal.dot(&normal);
+                Some(particle_half_plane::normal(centre.start, centre.shift, point, normal, squared, time))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scene::original,
+        sim::{Decision, Detection, Observer, RootSearch, Simulation},
+    };
+
+    const SCENE: &str = r#"<scene>
+        <duration time="2"/><integrator type="explicit-euler" dt="0.1"/>
+        <collision type="continuous-time" COR="1"/>
+        <particle m="1" px="0.1" py="1.3" vx="0.7" vy="-2.1" fixed="0" radius="0.11"/>
+        <particle m="1" px="-1.7" py="0.3" vx="0.3" vy="0.5" fixed="0" radius="0.13"/>
+        <particle m="1" px="1.9" py="-0.4" vx="-0.2" vy="0.9" fixed="0" radius="0.17"/>
+        <particle m="1" px="0.7" py="2.4" vx="-0.2" vy="-1.9" fixed="0" radius="0.17"/>
+        <edge i="1" j="2" radius="0.07"/>
+        <halfplane px="0.2" py="-1.1" nx="0.3" ny="1.7"/>
+    </scene>"#;
+
+    /// Compares what a pass says of each pair with the pair on its own.
+    struct Compare<'a> {
+        scene: &'a Scene,
+        calls: usize,
+        hits: usize,
+    }
+
+    impl Observer for Compare<'_> {
+        fn detection(&mut self, detection: &Detection<'_>) {
+            let motion = PairMotion::between(self.scene, detection.pair, detection.q_start, detection.q_end);
+            assert_eq!(motion.kind(), detection.pair.kind);
+            let own = motion.polynomials();
+            assert_eq!(own.len(), detection.polynomials.len());
+            let bits = |p: &Polynomial| p.coefficients().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+            for (own, logged) in own.iter().zip(detection.polynomials) {
+                assert_eq!(bits(&Polynomial::trimmed(own.coefficients())), bits(logged), "{:?}", detection.pair);
+            }
+            if let Decision::Hit { time, normal } = detection.decision {
+                assert_eq!(motion.normal(time), Some(normal), "{:?}", detection.pair);
+                self.hits += 1;
+            }
+            self.calls += 1;
+        }
+    }
+
+    #[test]
+    fn a_pair_on_its_own_is_what_a_pass_computes() {
+        let scene = original::read(SCENE.as_bytes()).unwrap().scene;
+        let mut compare = Compare { scene: &scene, calls: 0, hits: 0 };
+        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        for _ in 0..scene.steps() {
+            simulation.step(&mut compare).unwrap();
+        }
+        assert_eq!(compare.calls, 20 * (6 + 2 + 4));
+        assert!(compare.hits >= 3, "{} hits", compare.hits);
+    }
+}

@@ -1,0 +1,262 @@
+//! The detection polynomials of particle-edge pairs, two edges at a time (collisions.md 2).
+use super::super::lanes::{Lanes, Lanes2};
+use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+
+/// What the polynomials of two edges with every particle share: their motion, and the products that hold no particle.
+///
+/// Every value is computed by the operations that the formulas prescribe, so it does not matter how often it is used.
+/// `x23` is computed and not taken as `-x32`: where they vanish their zeros have the same sign.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct EdgeMotions {
+    x2: Lanes2,
+    d2: Lanes2,
+    x3: Lanes2,
+    d3: Lanes2,
+    x32: Lanes2,
+    d32: Lanes2,
+    x23: Lanes2,
+    d23: Lanes2,
+    /// `dot(x32, x32)`
+    g: Lanes,
+    /// `dot(d32, x32)`
+    h: Lanes,
+    /// `dot(d32, d32)`
+    i: Lanes,
+}
+
+impl EdgeMotions {
+    /// The motions of two edges whose endpoints start at `x2`, `x3` and move by `d2`, `d3` in the step.
+    #[inline]
+    pub fn new(x2: [Vec2; 2], d2: [Vec2; 2], x3: [Vec2; 2], d3: [Vec2; 2]) -> Self {
+        let [x2, d2, x3, d3] = [x2, d2, x3, d3].map(Lanes2::new);
+        let (x32, d32) = (x3 - x2, d3 - d2);
+        let (g, h, i) = (x32.dot(x32), d32.dot(x32), d32.dot(d32));
+        Self { x2, d2, x3, d3, x32, d32, x23: x2 - x3, d23: d2 - d3, g, h, i }
+    }
+}
+
+/// The coefficients of two particle-edge pairs before the removal of small leading ones, highest power first.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Coefficients {
+    distance: [Lanes; 5],
+    beyond_first: [Lanes; 3],
+    before_second: [Lanes; 3],
+    approach: [Lanes; 6],
+}
+
+impl Coefficients {
+    /// Writes the four polynomials of both pairs, untrimmed: "closer than the radii to the line", "beyond the first end",
+    /// "before the second end" and "approaching".
+    #[inline]
+    pub fn write(&self, polynomials: &mut [[Polynomial; 4]; 2]) {
+        for (lane, [distance, beyond_first, before_second, approach]) in polynomials.iter_mut().enumerate() {
+            *distance = Polynomial::untrimmed(&self.distance.map(|c| c.0[lane]));
+            *beyond_first = Polynomial::untrimmed(&self.beyond_first.map(|c| c.0[lane]));
+            *before_second = Polynomial::untrimmed(&self.before_second.map(|c| c.0[lane]));
+            *approach = Polynomial::untrimmed(&self.approach.map(|c| c.0[lane]));
+        }
+    }
+}
+
+/// The coefficients for each of two edges with a disc that starts at `x1` and moves by `d1` in the step, and whose radius
+/// and the edge's add up to `radii`. Letters are those of collisions.md 2.
+///
+/// The t^3 coefficient of the last one is mathematically wrong (`g` where `h` belongs); it is the formula that every
+/// student was given.
+#[inline]
+#[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
+pub(in super::super) fn coefficients(x1: Vec2, d1: Vec2, edges: &EdgeMotions, radii: [f64; 2]) -> Coefficients {
+    let EdgeMotions { x2, d2, x3, d3, x32, d32, x23, d23, g, h, i } = *edges;
+    let (x1, d1, r) = (Lanes2::both(x1), Lanes2::both(d1), Lanes(radii));
+    let s = r * r;
+    let (x12, x21, x13) = (x1 - x2, x2 - x1, x1 - x3);
+    let (d12, d21, d13) = (d1 - d2, d2 - d1, d1 - d3);
+
+    let a = x12.dot(x32);
+    let b = x12.dot(d32) + d12.dot(x32);
+    let c = d12.dot(d32);
+    let d = x21.dot(x21);
+    let e = d21.dot(x21);
+    let f = d21.dot(d21);
+    let distance = [
+        c * c - f * i,
+        2.0 * b * c - 2.0 * e * i - 2.0 * f * h,
+        2.0 * c * a + b * b - d * i - f * g - 4.0 * e * h + s * i,
+        2.0 * a * b - 2.0 * d * h - 2.0 * e * g + 2.0 * s * h,
+        a * a - d * g + s * g,
+    ];
+    let before_second = [d13.dot(d23), d13.dot(x23) + x13.dot(d23), x13.dot(x23)];
+    // Products are commutative bit for bit, so `dot(x32, d32)` is `h` from above.
+    let approach = approach([g, h, i, f, e, a, b, c], d32.dot(x21) + d21.dot(x32), d32.dot(d21));
+    Coefficients { distance, beyond_first: [c, b, a], before_second, approach }
+}
+
+/// The coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`.
+#[inline]
+#[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
+fn approach([a, b, c, d, e, f, g, h]: [Lanes; 8], i: Lanes, j: Lanes) -> [Lanes; 6] {
+    let k = a * f;
+    let l = a * g + 2.0 * b * f;
+    let m = a * h + 2.0 * b * g + c * f;
+    let n = c * g + 2.0 * b * h;
+    let o = c * h;
+    let p = b;
+    let q = c;
+    [
+        -h * h * q - c * c * d - 2.0 * o * j,
+        -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,
+        -2.0 * g * h * p
+            - 2.0 * f * g * q
+            - g * g * q
+            - 2.0 * a * c * d
+            - 4.0 * b * b * d
+            - 4.0 * b * c * e
+            - n * i
+            - 2.0 * m * j,
+        -2.0 * f * h * p
+            - g * g * p
+            - 2.0 * f * g * q
+            - 4.0 * a * b * d
+            - 2.0 * a * c * e
+            - 4.0 * b * b * e
+            - m * i
+            - 2.0 * l * j,
+        -2.0 * f * g * p - f * f * q - a * a * d - 4.0 * a * b * e - l * i - 2.0 * k * j,
+        -f * f * p - a * a * e - k * i,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::samples::Numbers;
+
+    fn vector((x, y): (f64, f64)) -> Vec2 {
+        Vec2::new(x, y)
+    }
+
+    fn polynomials(x1: Vec2, d1: Vec2, edges: &EdgeMotions, radii: [f64; 2]) -> [[Polynomial; 4]; 2] {
+        let mut polynomials = Default::default();
+        coefficients(x1, d1, edges, radii).write(&mut polynomials);
+        polynomials.as_flattened_mut().iter_mut().for_each(Polynomial::trim);
+        polynomials
+    }
+
+    /// Sharing values and filling lanes change no bit: the formulas of the specification, parenthesised in full.
+    #[test]
+    fn shared_values_are_those_of_the_formulas() {
+        let mut numbers = Numbers(3);
+        for round in 0..2000 {
+            let [x1, d1, x2, d2, mut x3, mut d3] = std::array::from_fn(|_| vector(numbers.pair()));
+            if round % 4 == 0 {
+                d3 = d2;
+            }
+            if round % 16 == 0 {
+                x3 = Vec2::new(x2.x, x3.y);
+            }
+            let r = numbers.next().abs();
+            let s = r * r;
+            let (x12, x32, x21, x13, x23) = (x1 - x2, x3 - x2, x2 - x1, x1 - x3, x2 - x3);
+            let (d12, d32, d21, d13, d23) = (d1 - d2, d3 - d2, d2 - d1, d1 - d3, d2 - d3);
+            let a = x12.dot(&x32);
+            let b = x12.dot(&d32) + d12.dot(&x32);
+            let c = d12.dot(&d32);
+            let d = x21.dot(&x21);
+            let e = d21.dot(&x21);
+            let f = d21.dot(&d21);
+            let g = x32.dot(&x32);
+            let h = d32.dot(&x32);
+            let i = d32.dot(&d32);
+            let distance = [
+                (c * c) - (f * i),
+                ((((2.0 * b) * c) - ((2.0 * e) * i)) - ((2.0 * f) * h)),
+                (((((((2.0 * c) * a) + (b * b)) - (d * i)) - (f * g)) - ((4.0 * e) * h)) + (s * i)),
+                (((((2.0 * a) * b) - ((2.0 * d) * h)) - ((2.0 * e) * g)) + ((2.0 * s) * h)),
+                (((a * a) - (d * g)) + (s * g)),
+            ];
+            let ends = [[c, b, a], [d13.dot(&d23), d13.dot(&x23) + x13.dot(&d23), x13.dot(&x23)]];
+            let approach: [f64; 6] = {
+                let a = x32.dot(&x32);
+                let b = x32.dot(&d32);
+                let c = d32.dot(&d32);
+                let d = d21.dot(&d21);
+                let e = d21.dot(&x21);
+                let f = x12.dot(&x32);
+                let g = x12.dot(&d32) + d12.dot(&x32);
+                let h = d12.dot(&d32);
+                let i = d32.dot(&x21) + d21.dot(&x32);
+                let j = d32.dot(&d21);
+                let k = a * f;
+                let l = (a * g) + ((2.0 * b) * f);
+                let m = ((a * h) + ((2.0 * b) * g)) + (c * f);
+                let n = (c * g) + ((2.0 * b) * h);
+                let o = c * h;
+                let (p, q) = (b, c);
+                let terms: [&[f64]; 6] = [
+                    &[((-h) * h) * q, (c * c) * d, (2.0 * o) * j],
+                    &[((-h) * h) * p, ((2.0 * g) * h) * q, ((4.0 * b) * c) * d, (c * c) * e, o * i, (2.0 * n) * j],
+                    &[
+                        ((-2.0 * g) * h) * p,
+                        ((2.0 * f) * g) * q,
+                        (g * g) * q,
+                        ((2.0 * a) * c) * d,
+                        ((4.0 * b) * b) * d,
+                        ((4.0 * b) * c) * e,
+                        n * i,
+                        (2.0 * m) * j,
+                    ],
+                    &[
+                        ((-2.0 * f) * h) * p,
+                        (g * g) * p,
+                        ((2.0 * f) * g) * q,
+                        ((4.0 * a) * b) * d,
+                        ((2.0 * a) * c) * e,
+                        ((4.0 * b) * b) * e,
+                        m * i,
+                        (2.0 * l) * j,
+                    ],
+                    &[((-2.0 * f) * g) * p, (f * f) * q, (a * a) * d, ((4.0 * a) * b) * e, l * i, (2.0 * k) * j],
+                    &[((-f) * f) * p, (a * a) * e, k * i],
+                ];
+                terms.map(|terms| terms[1..].iter().fold(terms[0], |sum, term| sum - term))
+            };
+            let expected = [
+                Polynomial::trimmed(&distance),
+                Polynomial::trimmed(&ends[0]),
+                Polynomial::trimmed(&ends[1]),
+                Polynomial::trimmed(&approach),
+            ];
+            let (mut first, mut second) = ([x2, d2, x3, d3], [x3, d1, x1, d3]);
+            for lane in 0..2 {
+                let radii = if lane == 0 { [r, 0.5] } else { [0.5, r] };
+                let edges = EdgeMotions::new(
+                    [first[0], second[0]],
+                    [first[1], second[1]],
+                    [first[2], second[2]],
+                    [first[3], second[3]],
+                );
+                for (actual, expected) in polynomials(x1, d1, &edges, radii)[lane].iter().zip(&expected) {
+                    let bits = |p: &Polynomial| p.coefficients().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+                    assert_eq!(bits(actual), bits(expected), "lane {lane}");
+                }
+                std::mem::swap(&mut first, &mut second);
+            }
+        }
+    }
+
+    /// On an edge that only translates the polynomials are those of the exact definition.
+    #[test]
+    fn a_translating_edge_gives_the_exact_polynomials() {
+        let [x1, x2, x3] = [(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)].map(vector);
+        let [d1, d2, d3] = [(0.0, -0.5), (0.0, 0.5), (0.0, 0.5)].map(vector);
+        let edges = EdgeMotions::new([x2; 2], [d2; 2], [x3; 2], [d3; 2]);
+        let [distance, first, second, approach] = polynomials(x1, d1, &edges, [0.25; 2])[0];
+        // The gap along y is 1 - t and the squared length 4: 4 (1/16 - (1 - t)^2).
+        assert_eq!(distance.coefficients(), [-4.0, 8.0, -3.75]);
+        // With no relative motion along the edge both ends stay at distance 1 of 2, times the length.
+        assert_eq!(first.coefficients(), [2.0]);
+        assert_eq!(second.coefficients(), [2.0]);
+        assert_eq!(approach.coefficients().len(), 2);
+        assert!(approach.evaluate(0.0) > 0.0 && approach.evaluate(1.0) == 0.0);
+    }
+}

@@ -1,0 +1,134 @@
+//! Two particles: detection and responses (collisions.md 2, 3, 6).
+use super::response::{Change, Response, Setting};
+use crate::sim::bodies::Bodies;
+use fosssim_num::{
+    polynomial::Polynomial,
+    vector::{Vec2, at, length, unit},
+};
+
+/// The two polynomials, untrimmed, of discs that start at `x` and move by `d` in the step: "closer than `radii`" and "approaching".
+/// Time is a fraction of the step.
+#[inline]
+pub(super) fn polynomials(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, radii: f64) -> [Polynomial; 2] {
+    let d = d2 - d1;
+    let x = x2 - x1;
+    let e = d1 - d2;
+    // `e` is `-d`, so `dot(e, e)` is `dot(d, d)` bit for bit; of `dot(e, x)` a zero's sign may differ.
+    let squared = d.dot(&d);
+    [
+        Polynomial::untrimmed(&[-squared, -2.0 * x.dot(&d), radii * radii - x.dot(&x)]),
+        Polynomial::untrimmed(&[-squared, e.dot(&x)]),
+    ]
+}
+
+/// The contact normal at time `t`, from the first to the second centre.
+#[inline]
+pub(super) fn normal(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, t: f64) -> Vec2 {
+    (x2 + t * d2) - (x1 + t * d1)
+}
+
+/// The response along normal `n`, from the mean velocities of the step.
+pub(super) fn response(setting: &Setting<'_>, i: usize, j: usize, n: Vec2) -> Response {
+    let Setting { bodies, law, q_start, q_end } = *setting;
+    let v1 = law.mean_velocity(q_start, q_end, i);
+    let v2 = law.mean_velocity(q_start, q_end, j);
+    exchange(bodies, law.factor, law.time_step, i, j, v2 - v1, unit(n))
+}
+
+/// The simple detection: the vector between the centres when they overlap and approach.
+#[inline]
+pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, j: usize) -> Option<Vec2> {
+    let n = at(x, j) - at(x, i);
+    (length(n) < bodies.radii[i] + bodies.radii[j] && (at(v, i) - at(v, j)).dot(&n) > 0.0).then_some(n)
+}
+
+/// The simple response along normal `n`, from the velocities `v`; positions stay.
+pub(super) fn simple_response(bodies: &Bodies, factor: f64, v: &[f64], i: usize, j: usize, n: Vec2) -> Response {
+    exchange(bodies, factor, 0.0, i, j, at(v, j) - at(v, i), unit(n))
+}
+
+/// The exchange of momentum along the unit vector `u` for relative velocity `relative` (second minus first).
+fn exchange(bodies: &Bodies, factor: f64, dt: f64, i: usize, j: usize, relative: Vec2, u: Vec2) -> Response {
+    let (m1, m2) = (bodies.response_masses[i], bodies.response_masses[j]);
+    let numerator = (2.0 * factor) * relative.dot(&u);
+    let change = |particle: usize, denominator: f64| {
+        (!bodies.fixed[particle]).then(|| Change {
+            particle,
+            velocity: (numerator / denominator) * u,
+            position: ((dt * numerator) / denominator) * u,
+        })
+    };
+    Response { gain: change(i, 1.0 + m1 / m2), loss: [change(j, m2 / m1 + 1.0), None] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{
+        collision::response::Law,
+        samples::{Numbers, fixed, particle, scene},
+    };
+
+    #[test]
+    fn equal_masses_swap_their_velocities() {
+        let q_start = [0.0, 0.0, 1.0, 0.0];
+        let q_end = [0.5, 0.0, 0.5, 0.0];
+        let scene =
+            scene(vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), particle((1.0, 0.0), (-1.0, 0.0), 2.0, 0.1)]);
+        let bodies = Bodies::new(&scene);
+        let setting = Setting { bodies: &bodies, law: &Law::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
+        let (mut q, mut v) = (q_end, [1.0, 0.0, -1.0, 0.0]);
+        response(&setting, 0, 1, Vec2::new(0.2, 0.0)).apply(&mut q, &mut v);
+        assert_eq!(v, [-1.0, 0.0, 1.0, 0.0]);
+        assert_eq!(q, [-0.5, 0.0, 1.5, 0.0]);
+    }
+
+    #[test]
+    fn a_fixed_particle_stays_and_the_other_bounces() {
+        let q_start = [0.0, 0.0, 1.0, 0.0];
+        let q_end = [0.5, 0.0, 1.0, 0.0];
+        let scene =
+            scene(vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fixed(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1))]);
+        let bodies = Bodies::new(&scene);
+        let setting = Setting { bodies: &bodies, law: &Law::new(0.0, 0.5), q_start: &q_start, q_end: &q_end };
+        let (mut q, mut v) = (q_end, [1.0, 0.0, 0.0, 0.0]);
+        response(&setting, 0, 1, Vec2::new(0.2, 0.0)).apply(&mut q, &mut v);
+        assert_eq!((v, q), ([0.0; 4], [0.0, 0.0, 1.0, 0.0]));
+    }
+
+    /// Momentum is conserved, and with restitution 1 so is the kinetic energy.
+    #[test]
+    fn impacts_conserve_momentum_and_energy() {
+        let mut numbers = Numbers(7);
+        for _ in 0..1000 {
+            let masses = [1.5 + numbers.next(), 1.5 + numbers.next()];
+            let (v1, v2, n) = (numbers.pair(), numbers.pair(), numbers.pair());
+            let scene = scene(vec![particle((0.0, 0.0), v1, masses[0], 0.1), particle((1.0, 0.0), v2, masses[1], 0.1)]);
+            let bodies = Bodies::new(&scene);
+            let q_start = [0.0, 0.0, 1.0, 0.0];
+            let v = [v1.0, v1.1, v2.0, v2.1];
+            let q_end: [f64; 4] = std::array::from_fn(|k| q_start[k] + 0.5 * v[k]);
+            let setting = Setting { bodies: &bodies, law: &Law::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
+            let (mut q, mut after) = (q_end, v);
+            response(&setting, 0, 1, Vec2::new(n.0, n.1)).apply(&mut q, &mut after);
+            let momentum = |v: &[f64; 4], axis: usize| masses[0] * v[axis] + masses[1] * v[axis + 2];
+            let energy =
+                |v: &[f64; 4]| masses[0] * (v[0] * v[0] + v[1] * v[1]) + masses[1] * (v[2] * v[2] + v[3] * v[3]);
+            for axis in 0..2 {
+                assert!((momentum(&v, axis) - momentum(&after, axis)).abs() < 1e-13);
+            }
+            assert!((energy(&v) - energy(&after)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn overlap_needs_approach() {
+        let scene =
+            scene(vec![particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.5), particle((0.75, 0.0), (0.0, 0.0), 1.0, 0.5)]);
+        let bodies = Bodies::new(&scene);
+        let x = [0.0, 0.0, 0.75, 0.0];
+        assert_eq!(overlap(&bodies, &x, &[1.0, 0.0, 0.0, 0.0], 0, 1), Some(Vec2::new(0.75, 0.0)));
+        assert_eq!(overlap(&bodies, &x, &[-1.0, 0.0, 0.0, 0.0], 0, 1), None);
+        assert_eq!(overlap(&bodies, &[0.0, 0.0, 1.0, 0.0], &[1.0, 0.0, 0.0, 0.0], 0, 1), None);
+    }
+}

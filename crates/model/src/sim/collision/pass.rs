@@ -1,0 +1,283 @@
+//! One detection pass of continuous-time detection over all pairs (collisions.md 1, 2).
+//!
+//! The pass computes the polynomials of every pair, tells them to the observer, and searches their roots where no
+//! certificate excludes an impact within the step.
+use super::{
+    super::{
+        bodies::Bodies,
+        observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Time},
+        simulation::{RootSearch, SearchCounts, StepError},
+    },
+    particle_edge::{self, EdgeMotions},
+    particle_half_plane, particle_particle,
+};
+use fosssim_num::{
+    certificate::excludes_unit_interval,
+    first_time::first_time,
+    polynomial::Polynomial,
+    vector::{Vec2, at, put},
+};
+
+/// What a pass does about a hit, before it looks at the next pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reaction {
+    /// The end positions are as before.
+    Kept,
+    /// The pair's particles were moved.
+    Moved,
+}
+
+/// Runs detection passes; owns the values that a pass shares between pairs.
+#[derive(Debug, Clone)]
+pub(super) struct Detector {
+    search: RootSearch,
+    counts: SearchCounts,
+    step: u32,
+    passes: u32,
+    displacements: Vec<f64>,
+    /// The motions of the edges, block by block.
+    edges: Vec<EdgeMotions>,
+}
+
+impl Detector {
+    /// A detector that has done nothing yet.
+    pub fn new(search: RootSearch) -> Self {
+        Self {
+            search,
+            counts: SearchCounts::default(),
+            step: 0,
+            passes: 0,
+            displacements: Vec::new(),
+            edges: Vec::new(),
+        }
+    }
+
+    /// Starts counting passes anew.
+    pub fn begin_step(&mut self, step: u32) {
+        self.step = step;
+        self.passes = 0;
+    }
+
+    /// Number of passes in this step so far, hence the index of the next one.
+    pub fn passes(&self) -> u32 {
+        self.passes
+    }
+
+    /// Counts of root searches, over all steps.
+    pub fn counts(&self) -> SearchCounts {
+        self.counts
+    }
+
+    /// Looks at every pair on the way from `q_start` to `q_end`. On a hit `react` is called, with the end positions,
+    /// before the next pair is looked at.
+    ///
+    /// # Errors
+    /// [`StepError::RootSearch`] for a pair whose search would never end.
+    pub fn run<O: Observer>(
+        &mut self,
+        bodies: &Bodies,
+        pass: Pass,
+        q_start: &[f64],
+        q_end: &mut [f64],
+        observer: &mut O,
+        react: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    ) -> Result<(), StepError> {
+        observer.begin_pass(pass);
+        self.passes += 1;
+        self.prepare(bodies, q_start, q_end);
+        let mut way = Way { bodies, q_start, q_end, observer, react, hits: 0 };
+        for i in 0..bodies.particles() {
+            self.particles(i, &mut way)?;
+            self.edges(i, &mut way)?;
+            self.half_planes(i, &mut way)?;
+        }
+        let hits = way.hits;
+        observer.end_pass(pass, hits);
+        Ok(())
+    }
+
+    /// Looks at particle `i` and all later particles.
+    #[inline]
+    fn particles<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    where
+        R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    {
+        let Way { bodies, q_start, .. } = *way;
+        let x1 = at(q_start, i);
+        let mut d1 = at(&self.displacements, i);
+        for j in i + 1..bodies.particles() {
+            let (x2, d2) = (at(q_start, j), at(&self.displacements, j));
+            let mut polynomials = particle_particle::polynomials(x1, d1, x2, d2, bodies.radii[i] + bodies.radii[j]);
+            let normal = |t| Some(particle_particle::normal(x1, d1, x2, d2, t));
+            if self.look(pair(PairKind::ParticleParticle, i, j), &mut polynomials, normal, way)? == Reaction::Moved {
+                d1 = at(&self.displacements, i);
+            }
+        }
+        Ok(())
+    }
+
+    /// Looks at particle `i` and all edges that it is no end of.
+    #[inline]
+    fn edges<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    where
+        R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    {
+        let Way { bodies, q_start, .. } = *way;
+        let x1 = at(q_start, i);
+        let mut d1 = at(&self.displacements, i);
+        let mut polynomials = Default::default();
+        for (block, ends) in bodies.edges.chunks(LANES).enumerate() {
+            let radii = both(block, |edge| bodies.radii[i] + bodies.edge_radii[edge], bodies.edges.len());
+            particle_edge::coefficients(x1, d1, &self.edges[block], radii).write(&mut polynomials);
+            for (lane, &ends) in ends.iter().enumerate() {
+                if ends.contains(&i) {
+                    continue;
+                }
+                let pair = pair(PairKind::ParticleEdge, i, LANES * block + lane);
+                let particles = [i, ends[0], ends[1]];
+                let d = particles.map(|particle| at(&self.displacements, particle));
+                let normal = |t| particle_edge::normal(particles.map(|particle| at(q_start, particle)), d, t);
+                if self.look(pair, &mut polynomials[lane], normal, way)? == Reaction::Moved {
+                    d1 = at(&self.displacements, i);
+                    particle_edge::coefficients(x1, d1, &self.edges[block], radii).write(&mut polynomials);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Looks at particle `i` and all half-planes.
+    #[inline]
+    fn half_planes<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    where
+        R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    {
+        let Way { bodies, q_start, .. } = *way;
+        let x = at(q_start, i);
+        let mut d = at(&self.displacements, i);
+        for (h, (&point, &q)) in bodies.points.iter().zip(&bodies.normals).enumerate() {
+            let squared = q.dot(&q);
+            let mut polynomials = particle_half_plane::polynomials(x, d, bodies.radii[i], point, q, squared);
+            let normal = |t| Some(particle_half_plane::normal(x, d, point, q, squared, t));
+            if self.look(pair(PairKind::ParticleHalfPlane, i, h), &mut polynomials, normal, way)? == Reaction::Moved {
+                d = at(&self.displacements, i);
+            }
+        }
+        Ok(())
+    }
+
+    /// Trims a pair's polynomials, decides about it, tells the observer and has a hit answered; `normal` gives the contact normal at a time, or
+    /// none when it is zero.
+    #[inline]
+    fn look<O: Observer, R>(
+        &mut self,
+        pair: Pair,
+        polynomials: &mut [Polynomial],
+        normal: impl FnOnce(f64) -> Option<Vec2>,
+        way: &mut Way<'_, O, R>,
+    ) -> Result<Reaction, StepError>
+    where
+        R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+    {
+        polynomials.iter_mut().for_each(Polynomial::trim);
+        way.observer.solve(pair, way.q_start, way.q_end, polynomials);
+        let decision = match self.time(pair, polynomials)? {
+            Time::Found(time) if time <= 1.0 => match normal(time) {
+                Some(normal) => Decision::Hit { time, normal },
+                None => Decision::Miss { time: Time::Found(time) },
+            },
+            time => Decision::Miss { time },
+        };
+        let Way { bodies, q_start, ref q_end, ref mut observer, .. } = *way;
+        let decision = observer.decide(pair, decision);
+        observer.detection(&Detection { pair, polynomials, decision, q_start, q_end });
+        let Decision::Hit { time, normal } = decision else { return Ok(Reaction::Kept) };
+        way.hits += 1;
+        let reaction = (way.react)(way.observer, &Impulse { pair, normal, time }, way.q_end);
+        if reaction == Reaction::Moved {
+            self.refresh(bodies, pair, q_start, way.q_end);
+        }
+        Ok(reaction)
+    }
+
+    /// The time of impact as far as it has to be known.
+    #[inline]
+    fn time(&mut self, pair: Pair, polynomials: &[Polynomial]) -> Result<Time, StepError> {
+        self.counts.calls += 1;
+        let excluded = self.search != RootSearch::Always && excludes_unit_interval(polynomials);
+        if excluded {
+            self.counts.excluded += 1;
+            if self.search == RootSearch::WhereNeeded {
+                return Ok(Time::Excluded);
+            }
+        }
+        self.counts.searched += 1;
+        let time = first_time(polynomials).map_err(|_| StepError::RootSearch { step: self.step, pair })?;
+        if excluded && time <= 1.0 {
+            self.counts.disagreements += 1;
+        }
+        Ok(Time::Found(time))
+    }
+
+    /// Fills the shared values.
+    fn prepare(&mut self, bodies: &Bodies, q_start: &[f64], q_end: &[f64]) {
+        self.displacements.clear();
+        self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
+        self.edges.clear();
+        let blocks = 0..bodies.edges.len().div_ceil(LANES);
+        let displacements = &self.displacements;
+        self.edges.extend(blocks.map(|block| motions(bodies, block, q_start, displacements)));
+    }
+
+    /// Fills the shared values of a pair's particles again, and those of all edges at them.
+    #[cold]
+    fn refresh(&mut self, bodies: &Bodies, pair: Pair, q_start: &[f64], q_end: &[f64]) {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        let moved = match pair.kind {
+            PairKind::ParticleParticle => [first, second, second],
+            PairKind::ParticleEdge => [first, bodies.edges[second][0], bodies.edges[second][1]],
+            PairKind::ParticleHalfPlane => [first; 3],
+        };
+        for particle in moved {
+            put(&mut self.displacements, particle, at(q_end, particle) - at(q_start, particle));
+        }
+        for (block, ends) in bodies.edges.chunks(LANES).enumerate() {
+            if ends.as_flattened().iter().any(|end| moved.contains(end)) {
+                self.edges[block] = motions(bodies, block, q_start, &self.displacements);
+            }
+        }
+    }
+}
+
+/// What a pass is about: the scene, the way of the step, who listens and who answers hits.
+struct Way<'a, O, R> {
+    bodies: &'a Bodies,
+    q_start: &'a [f64],
+    q_end: &'a mut [f64],
+    observer: &'a mut O,
+    react: R,
+    hits: usize,
+}
+
+/// Edges are looked at in blocks of so many.
+const LANES: usize = 2;
+
+/// A value of each edge in a block; a last block of one edge holds it twice.
+#[inline]
+fn both<T>(block: usize, value: impl Fn(usize) -> T, edges: usize) -> [T; LANES] {
+    [value(LANES * block), value((LANES * block + 1).min(edges - 1))]
+}
+
+/// The motions of the edges in a block.
+#[inline]
+fn motions(bodies: &Bodies, block: usize, q_start: &[f64], displacements: &[f64]) -> EdgeMotions {
+    let of = |array: &[f64], end: usize| both(block, |edge| at(array, bodies.edges[edge][end]), bodies.edges.len());
+    EdgeMotions::new(of(q_start, 0), of(displacements, 0), of(q_start, 1), of(displacements, 1))
+}
+
+/// Names a pair.
+#[inline]
+pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
+    #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
+    Pair { kind, first: first as u32, second: second as u32 }
+}

@@ -1,0 +1,109 @@
+//! What a collision changes: the law of impact and the changes that a response makes (collisions.md 3, 6).
+use super::super::bodies::Bodies;
+use fosssim_num::vector::{Vec2, at, put};
+
+/// The constants of every response of a scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Law {
+    /// The time step `dt`.
+    pub time_step: f64,
+    /// `1/dt`, by which displacements become mean velocities.
+    pub rate: f64,
+    /// `f = (1 + COR)/2`: 1 keeps the energy, 1/2 loses all of the approach.
+    pub factor: f64,
+}
+
+impl Law {
+    /// The law for a coefficient of restitution and a time step.
+    pub fn new(restitution: f64, time_step: f64) -> Self {
+        Self { time_step, rate: 1.0 / time_step, factor: (1.0 + restitution) / 2.0 }
+    }
+
+    /// The mean velocity of a particle over the step, `(1/dt) (q_end - q_start)`. Responses of continuous-time
+    /// detection use this and not the velocity of the state.
+    #[inline]
+    pub fn mean_velocity(&self, q_start: &[f64], q_end: &[f64], particle: usize) -> Vec2 {
+        self.rate * (at(q_end, particle) - at(q_start, particle))
+    }
+}
+
+/// Where a response takes its input from.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Setting<'a> {
+    /// The scene's constants.
+    pub bodies: &'a Bodies,
+    /// The law of impact.
+    pub law: &'a Law,
+    /// Positions at the start of the step.
+    pub q_start: &'a [f64],
+    /// Positions at the end of the step, before this response (hybrid: before all responses of the round).
+    pub q_end: &'a [f64],
+}
+
+/// The change of one particle's velocity and end position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Change {
+    /// The particle.
+    pub particle: usize,
+    /// Of the velocity.
+    pub velocity: Vec2,
+    /// Of the position at the end of the step; `simple` leaves it out.
+    pub position: Vec2,
+}
+
+/// A response: what the first object gains and what the others lose. `None` where a particle is fixed or there is none.
+///
+/// The two are kept apart because the original adds one and subtracts the other, which shows in the sign of a NaN.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Response {
+    /// Added to the first particle.
+    pub gain: Option<Change>,
+    /// Subtracted, in this order.
+    pub loss: [Option<Change>; 2],
+}
+
+impl Response {
+    /// Changes velocities and end positions.
+    pub fn apply(&self, q: &mut [f64], v: &mut [f64]) {
+        if let Some(change) = self.gain {
+            put(q, change.particle, at(q, change.particle) + change.position);
+        }
+        for change in self.loss.iter().flatten() {
+            put(q, change.particle, at(q, change.particle) - change.position);
+        }
+        self.apply_velocities(v);
+    }
+
+    /// Changes velocities only (`simple`).
+    pub fn apply_velocities(&self, v: &mut [f64]) {
+        if let Some(change) = self.gain {
+            put(v, change.particle, at(v, change.particle) + change.velocity);
+        }
+        for change in self.loss.iter().flatten() {
+            put(v, change.particle, at(v, change.particle) - change.velocity);
+        }
+    }
+}
+
+/// `alpha` clamped to [0, 1] by the original's comparisons: NaN becomes 0, and so does -0.
+#[inline]
+pub(super) fn clamp(alpha: f64) -> f64 {
+    let alpha = if 0.0 < alpha { alpha } else { 0.0 };
+    if alpha < 1.0 { alpha } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clamping_turns_nan_into_zero() {
+        assert_eq!([clamp(f64::NAN), clamp(-1.0), clamp(0.25), clamp(7.0)], [0.0, 0.0, 0.25, 1.0]);
+    }
+
+    #[test]
+    fn the_factor_is_half_of_one_plus_restitution() {
+        let law = Law::new(0.5, 0.25);
+        assert_eq!((law.factor, law.rate), (0.75, 4.0));
+    }
+}

@@ -1,0 +1,69 @@
+//! Newtonian attraction of two particles (simulation.md 3, gravitationalforce).
+use super::{add, subtract};
+use crate::sim::integrators::{Block, Matrix};
+use fosssim_num::vector::{at, length, over};
+
+/// Adds `G m m' / r^2` along the line from the first to the second (NaN when they coincide).
+pub(super) fn add_gradient(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], gradient: &mut [f64]) {
+    let d = at(x, b) - at(x, a);
+    let r = length(d);
+    let n = over(d, r);
+    let s = constant * masses[b] * masses[a] / (r * r);
+    subtract(gradient, a, s * n);
+    add(gradient, b, s * n);
+}
+
+/// Adds the position Hessian `G m m' / r^3 (I - 3 n nT)`.
+pub(super) fn add_position_hessian(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], matrix: &mut Matrix) {
+    let d = at(x, b) - at(x, a);
+    let r = length(d);
+    let n = over(d, r);
+    let n = [n.x, n.y];
+    let s = constant * masses[b] * masses[a] / (r * r * r);
+    let mut block: Block = [[0.0; 2]; 2];
+    for row in 0..2 {
+        for column in 0..2 {
+            let identity = if row == column { 1.0 } else { 0.0 };
+            block[row][column] = (identity - (3.0 * n[row]) * n[column]) * s;
+        }
+    }
+    matrix.add_block(a, a, &block);
+    matrix.add_block(b, b, &block);
+    matrix.subtract_block(a, b, &block);
+    matrix.subtract_block(b, a, &block);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hessian_is_the_derivative_of_the_gradient() {
+        let masses = [2.0, 3.0];
+        let x = [0.1, -0.2, 1.3, 0.9];
+        let gradient = |x: &[f64]| {
+            let mut gradient = [0.0; 4];
+            add_gradient(&masses, [0, 1], 0.7, x, &mut gradient);
+            gradient
+        };
+        let mut hessian = Matrix::new(2);
+        add_position_hessian(&masses, [0, 1], 0.7, &x, &mut hessian);
+        let h = 1e-6;
+        for column in 0..4 {
+            let (mut up, mut down) = (x, x);
+            up[column] += h;
+            down[column] -= h;
+            for row in 0..4 {
+                let difference = (gradient(&up)[row] - gradient(&down)[row]) / (2.0 * h);
+                assert!((hessian.get(row, column) - difference).abs() < 1e-8, "{row} {column}");
+            }
+        }
+    }
+
+    #[test]
+    fn particles_attract_each_other() {
+        let mut gradient = [0.0; 4];
+        add_gradient(&[1.0, 4.0], [0, 1], 1.0, &[0.0, 0.0, 2.0, 0.0], &mut gradient);
+        assert_eq!(gradient, [-1.0, 0.0, 1.0, 0.0]);
+    }
+}

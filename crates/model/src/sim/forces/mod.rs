@@ -1,0 +1,110 @@
+//! The forces: gradients of their potentials, and the Hessians that the implicit integrators need.
+//!
+//! One file per kind; this one holds the order in which they act and the dispatch over the closed set. All gradients
+//! are accumulated into one array that starts at +0; the penalty force comes last (simulation.md 2, 3). Forces know
+//! nothing of fixed particles: the integrators set their entries to zero.
+mod constant;
+mod drag;
+mod gravitation;
+mod gravity;
+mod penalty;
+mod spring;
+mod vortex;
+
+use super::{bodies::Bodies, integrators::Matrix};
+use crate::scene::{Collision, Force, Scene};
+use fosssim_num::vector::{Vec2, at, put};
+use penalty::Penalty;
+
+/// All forces of a scene in acting order.
+#[derive(Debug, Clone)]
+pub(super) struct Forces {
+    list: Vec<Force>,
+    penalty: Option<Penalty>,
+}
+
+impl Forces {
+    /// Takes the scene's forces, and the penalty force of `penalty` and `hybrid` handling (even when its stiffness or
+    /// thickness is 0).
+    pub fn new(scene: &Scene) -> Self {
+        let penalty = match scene.collision {
+            Collision::Penalty { stiffness, thickness } | Collision::Hybrid { stiffness, thickness, .. } => {
+                Some(Penalty { stiffness, thickness })
+            }
+            Collision::None | Collision::Simple { .. } | Collision::ContinuousTime { .. } => None,
+        };
+        Self { list: scene.forces.clone(), penalty }
+    }
+
+    /// Whether every force has the Hessians that implicit integrators need; a vortex force has none.
+    pub fn have_hessians(&self) -> bool {
+        !self.list.iter().any(|force| matches!(force, Force::Vortex { .. }))
+    }
+
+    /// Fills `gradient` (2N) with dU/dx of all forces at positions `x` and velocities `v`.
+    pub fn gradient(&self, bodies: &Bodies, x: &[f64], v: &[f64], gradient: &mut [f64]) {
+        gradient.fill(0.0);
+        for force in &self.list {
+            match *force {
+                Force::Spring { edge, stiffness, rest_length, damping } => {
+                    spring::add_gradient(bodies.edges[edge], stiffness, rest_length, damping, x, v, gradient);
+                }
+                Force::SimpleGravity { acceleration } => gravity::add_gradient(&bodies.masses, acceleration, gradient),
+                Force::Gravitation { first, second, constant } => {
+                    gravitation::add_gradient(&bodies.masses, [first, second], constant, x, gradient);
+                }
+                Force::Constant { force } => constant::add_gradient(force, gradient),
+                Force::Drag { coefficient } => drag::add_gradient(coefficient, v, gradient),
+                Force::Vortex { first, second, strength, coupling } => {
+                    vortex::add_gradient([first, second], strength, coupling, x, v, gradient);
+                }
+            }
+        }
+        if let Some(penalty) = self.penalty {
+            penalty.add_gradient(bodies, x, gradient);
+        }
+    }
+
+    /// Adds all d2U/dx2 to `matrix`. The penalty force counts as having none (simulation.md 3).
+    pub fn add_position_hessians(&self, bodies: &Bodies, x: &[f64], v: &[f64], matrix: &mut Matrix) {
+        for force in &self.list {
+            match *force {
+                Force::Spring { edge, stiffness, rest_length, damping } => {
+                    spring::add_position_hessian(bodies.edges[edge], stiffness, rest_length, damping, x, v, matrix);
+                }
+                Force::Gravitation { first, second, constant } => {
+                    gravitation::add_position_hessian(&bodies.masses, [first, second], constant, x, matrix);
+                }
+                Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } | Force::Vortex { .. } => {}
+            }
+        }
+    }
+
+    /// Adds the velocity analogues of the Hessians to `matrix`.
+    pub fn add_velocity_hessians(&self, bodies: &Bodies, x: &[f64], matrix: &mut Matrix) {
+        for force in &self.list {
+            match *force {
+                Force::Spring { edge, damping, .. } => {
+                    spring::add_velocity_hessian(bodies.edges[edge], damping, x, matrix);
+                }
+                Force::Drag { coefficient } => drag::add_velocity_hessian(coefficient, matrix),
+                Force::SimpleGravity { .. }
+                | Force::Gravitation { .. }
+                | Force::Constant { .. }
+                | Force::Vortex { .. } => {}
+            }
+        }
+    }
+}
+
+/// `array[index] += v`.
+#[inline]
+fn add(array: &mut [f64], index: usize, v: Vec2) {
+    put(array, index, at(array, index) + v);
+}
+
+/// `array[index] -= v`.
+#[inline]
+fn subtract(array: &mut [f64], index: usize, v: Vec2) {
+    put(array, index, at(array, index) - v);
+}

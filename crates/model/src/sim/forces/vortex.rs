@@ -1,0 +1,37 @@
+//! Two particles that drive each other round (simulation.md 3, vortexforce).
+//!
+//! Its Hessians are not defined; `Simulation::step` refuses it with an implicit integrator (scene-format.md 6).
+use super::{add, subtract};
+use fosssim_num::vector::{Vec2, at, length, over};
+
+/// Adds the gradient. `strength` is `kbs`, `coupling` is `kvc`.
+pub(super) fn add_gradient(
+    [a, b]: [usize; 2],
+    strength: f64,
+    coupling: f64,
+    x: &[f64],
+    v: &[f64],
+    gradient: &mut [f64],
+) {
+    let d = at(x, b) - at(x, a);
+    let r = length(d);
+    let n = over(d, r);
+    let along = strength * n;
+    let turned = Vec2::new(-along.y, along.x);
+    let slip = turned - (at(v, b) - at(v, a));
+    let force = coupling * over(slip, r * r);
+    add(gradient, a, force);
+    subtract(gradient, b, force);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn particles_at_rest_are_driven_across_their_line() {
+        let mut gradient = [0.0; 4];
+        add_gradient([0, 1], 2.0, 3.0, &[0.0, 0.0, 1.0, 0.0], &[0.0; 4], &mut gradient);
+        assert_eq!(gradient, [0.0, 6.0, 0.0, -6.0]);
+    }
+}

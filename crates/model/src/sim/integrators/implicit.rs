@@ -1,0 +1,134 @@
+//! implicit-euler by Newton's method (simulation.md 4).
+//!
+//! The original iterates without limit and hangs when Newton's method does not converge; here the step ends with
+//! [`DoesNotConverge`] instead.
+use super::{DoesNotConverge, ImplicitScratch};
+use crate::sim::{bodies::Bodies, forces::Forces, simulation::State};
+use fosssim_num::{
+    linear,
+    tolerances::{NEWTON_ITERATIONS, NEWTON_UPDATE},
+};
+
+/// Iterates until the update of the velocities is small (or NaN), then advances the state by `dx`, `dv`.
+///
+/// An iteration depends on `dv` alone, so a `dv` that comes back exactly proves an endless cycle: one is remembered at
+/// each power of two of the count (Brent's method).
+pub(super) fn advance(
+    bodies: &Bodies,
+    forces: &Forces,
+    h: f64,
+    rhs: &mut [f64],
+    scratch: &mut ImplicitScratch,
+    state: &mut State,
+) -> Result<(), DoesNotConverge> {
+    let ImplicitScratch { matrix, workspace, x, v, dx, dv, earlier } = scratch;
+    let entries = rhs.len();
+    for (dx, velocity) in dx.iter_mut().zip(&state.velocities) {
+        *dx = h * velocity;
+    }
+    dv.fill(0.0);
+    // Opaque, because a compiler may turn the product into a sign flip of the product with `h` (see `Stepper::new`).
+    let minus_h = std::hint::black_box(-h);
+    let mut update = f64::INFINITY;
+    let mut iteration = 0_u32;
+    while update >= NEWTON_UPDATE {
+        if iteration == NEWTON_ITERATIONS {
+            return Err(DoesNotConverge);
+        }
+        if iteration.is_power_of_two() {
+            earlier.copy_from_slice(dv);
+        } else if iteration > 1 && same_bits(earlier, dv) {
+            return Err(DoesNotConverge);
+        }
+        iteration += 1;
+        for k in 0..entries {
+            x[k] = state.positions[k] + dx[k];
+            v[k] = state.velocities[k] + dv[k];
+        }
+        forces.gradient(bodies, x, v, rhs);
+        for k in 0..entries {
+            rhs[k] *= minus_h;
+            rhs[k] += -(bodies.masses[k / 2] * dv[k]);
+        }
+        bodies.zero_fixed(rhs);
+        matrix.assemble(bodies, forces, h, x, v);
+        linear::solve(matrix.entries_mut(), rhs, workspace);
+        for k in 0..entries {
+            dv[k] += rhs[k];
+            dx[k] = h * (state.velocities[k] + dv[k]);
+        }
+        update = norm_by_halves(rhs);
+    }
+    for k in 0..entries {
+        state.positions[k] += dx[k];
+        state.velocities[k] += dv[k];
+    }
+    Ok(())
+}
+
+fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}
+
+/// The Euclidean norm, with the squares of even and of odd entries summed apart.
+fn norm_by_halves(d: &[f64]) -> f64 {
+    let mut pairs = d.chunks_exact(2);
+    let Some(first) = pairs.next() else { return 0.0 };
+    let (mut even, mut odd) = (first[0] * first[0], first[1] * first[1]);
+    for pair in pairs {
+        even += pair[0] * pair[0];
+        odd += pair[1] * pair[1];
+    }
+    (even + odd).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scene::{Collision, Force, Integrator},
+        sim::{
+            RootSearch, Simulation, StepError,
+            samples::{edge, particle, scene},
+        },
+    };
+
+    #[test]
+    fn the_norm_adds_even_and_odd_squares() {
+        assert_eq!(norm_by_halves(&[1.0, 4.0, 2.0, 2.0]), 5.0);
+        assert_eq!(norm_by_halves(&[]), 0.0);
+    }
+
+    /// The end state satisfies the implicit equations `v' = v - h g(x', v') / m` and `x' = x + h v'`.
+    #[test]
+    fn a_step_solves_the_implicit_equations() {
+        let mut scene =
+            scene(vec![particle((0.0, 0.0), (1.0, 0.5), 2.0, 0.1), particle((1.0, 0.25), (-0.5, 0.75), 1.0, 0.1)]);
+        scene.integrator = Integrator::ImplicitEuler;
+        scene.edges.push(edge(0, 1, 0.01));
+        scene.forces.push(Force::Spring { edge: 0, stiffness: 2.0, rest_length: 0.8, damping: 0.3 });
+        let mut simulation = Simulation::new(&scene, RootSearch::default());
+        let before = simulation.state().clone();
+        simulation.step(&mut ()).expect("Newton's method converges");
+        let after = simulation.state();
+        let mut gradient = vec![0.0; 4];
+        let (bodies, forces) = (Bodies::new(&scene), Forces::new(&scene));
+        forces.gradient(&bodies, &after.positions, &after.velocities, &mut gradient);
+        for (k, gradient) in gradient.iter().enumerate() {
+            let velocity = before.velocities[k] - 0.5 * gradient / bodies.masses[k / 2];
+            assert!((after.velocities[k] - velocity).abs() < 1e-8, "{k}");
+            assert!((after.positions[k] - (before.positions[k] + 0.5 * after.velocities[k])).abs() < 1e-12, "{k}");
+        }
+    }
+
+    /// The penalty force has no Hessian: inside the layer the iterates jump in and out for ever.
+    #[test]
+    fn an_endless_iteration_is_an_error() {
+        let mut scene =
+            scene(vec![particle((0.0, 0.0), (1.0, 0.0), 1.0, 0.1), particle((1.25, 0.0), (-1.0, 0.0), 1.0, 0.1)]);
+        scene.integrator = Integrator::ImplicitEuler;
+        scene.collision = Collision::Penalty { stiffness: 1000.0, thickness: 0.1 };
+        let mut simulation = Simulation::new(&scene, RootSearch::default());
+        assert_eq!(simulation.step(&mut ()), Err(StepError::Newton { step: 1 }));
+    }
+}

@@ -1,0 +1,36 @@
+//! linearized-implicit-euler (simulation.md 4): one linear solve per step.
+use super::{ImplicitScratch, add_scaled};
+use crate::sim::{bodies::Bodies, forces::Forces, simulation::State};
+use fosssim_num::linear;
+
+/// Solves `A d = -h g` at `(x + h v, v)`, then `v += d`, `x += h v`. `minus_one` is an opaque -1.
+pub(super) fn advance(
+    bodies: &Bodies,
+    forces: &Forces,
+    h: f64,
+    minus_one: f64,
+    rhs: &mut [f64],
+    scratch: &mut ImplicitScratch,
+    state: &mut State,
+) {
+    let ImplicitScratch { matrix, workspace, x, v, .. } = scratch;
+    for (k, x) in x.iter_mut().enumerate() {
+        *x = state.positions[k] + h * state.velocities[k];
+    }
+    for (v, velocity) in v.iter_mut().zip(&state.velocities) {
+        // Adding zero turns a -0 into +0, as the original does.
+        *v = velocity + 0.0;
+    }
+    forces.gradient(bodies, x, v, rhs);
+    for entry in rhs.iter_mut() {
+        *entry *= minus_one;
+        *entry *= h;
+    }
+    bodies.zero_fixed(rhs);
+    matrix.assemble(bodies, forces, h, x, v);
+    linear::solve(matrix.entries_mut(), rhs, workspace);
+    for (velocity, d) in state.velocities.iter_mut().zip(rhs.iter()) {
+        *velocity += d;
+    }
+    add_scaled(&mut state.positions, h, &state.velocities);
+}

@@ -1,0 +1,126 @@
+//! The time integrators (simulation.md 4): one file per method, and the dense system of the implicit ones.
+//!
+//! An integrator turns positions and velocities at the start of a step into those at its end. Fixed particles feel no
+//! force, but their own velocity moves them.
+mod explicit;
+mod implicit;
+mod linearized;
+mod symplectic;
+mod system;
+
+use super::{bodies::Bodies, forces::Forces, simulation::State};
+use crate::scene::{Integrator, Scene};
+use fosssim_num::linear::Workspace;
+pub(super) use system::{Block, Matrix};
+
+/// The update's norm stays above the bound after too many iterations, or the iterates repeat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct DoesNotConverge;
+
+/// The scene's integrator with its scratch arrays.
+#[derive(Debug, Clone)]
+pub(super) struct Stepper {
+    kind: Integrator,
+    time_step: f64,
+    /// Minus one, opaque to the compiler: see [`Stepper::new`].
+    minus_one: f64,
+    gradient: Vec<f64>,
+    implicit: Option<Box<ImplicitScratch>>,
+}
+
+/// What the implicit methods need on top: memory of size (2N)^2.
+#[derive(Debug, Clone)]
+struct ImplicitScratch {
+    matrix: Matrix,
+    workspace: Workspace,
+    x: Vec<f64>,
+    v: Vec<f64>,
+    dx: Vec<f64>,
+    dv: Vec<f64>,
+    earlier: Vec<f64>,
+}
+
+impl Stepper {
+    /// Sets the scene's integrator up.
+    pub fn new(scene: &Scene) -> Self {
+        let entries = 2 * scene.particles.len();
+        let implicit = match scene.integrator {
+            Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler => Some(Box::new(ImplicitScratch {
+                matrix: Matrix::new(scene.particles.len()),
+                workspace: Workspace::default(),
+                x: vec![0.0; entries],
+                v: vec![0.0; entries],
+                dx: vec![0.0; entries],
+                dv: vec![0.0; entries],
+                earlier: vec![0.0; entries],
+            })),
+            Integrator::ExplicitEuler | Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler => None,
+        };
+        Self {
+            kind: scene.integrator,
+            time_step: scene.time_step,
+            // The factor of `F = -1 * g` is a multiplication. A compiler that knows it makes it a sign flip, which
+            // differs for NaN: the sign that the original shows for a NaN residual would be the other one.
+            minus_one: std::hint::black_box(-1.0),
+            gradient: vec![0.0; entries],
+            implicit,
+        }
+    }
+
+    /// Whether the method needs the Hessians of the forces.
+    pub fn is_implicit(&self) -> bool {
+        self.implicit.is_some()
+    }
+
+    /// Advances `state` by one time step.
+    ///
+    /// # Errors
+    /// [`DoesNotConverge`] from Newton's method of implicit-euler; the state is unchanged then.
+    pub fn advance(&mut self, bodies: &Bodies, forces: &Forces, state: &mut State) -> Result<(), DoesNotConverge> {
+        match (self.kind, self.implicit.as_deref_mut()) {
+            (Integrator::ImplicitEuler, Some(scratch)) => {
+                implicit::advance(bodies, forces, self.time_step, &mut self.gradient, scratch, state)?;
+            }
+            (Integrator::LinearizedImplicitEuler, Some(scratch)) => {
+                let rhs = &mut self.gradient;
+                linearized::advance(bodies, forces, self.time_step, self.minus_one, rhs, scratch, state);
+            }
+            (Integrator::ExplicitEuler, _) => {
+                self.force(bodies, forces, state);
+                explicit::advance(bodies, self.time_step, &self.gradient, state);
+            }
+            (Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler, _) => {
+                self.force(bodies, forces, state);
+                symplectic::advance(bodies, self.time_step, &self.gradient, state);
+            }
+            (Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler, None) => {
+                unreachable!("the implicit methods are set up with their scratch")
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces the gradient array by the forces `-1 * g` at the current state, zero for fixed particles.
+    fn force(&mut self, bodies: &Bodies, forces: &Forces, state: &State) {
+        forces.gradient(bodies, &state.positions, &state.velocities, &mut self.gradient);
+        for entry in &mut self.gradient {
+            *entry *= self.minus_one;
+        }
+        bodies.zero_fixed(&mut self.gradient);
+    }
+}
+
+/// `target += scale * source`, entry by entry.
+fn add_scaled(target: &mut [f64], scale: f64, source: &[f64]) {
+    for (target, source) in target.iter_mut().zip(source) {
+        *target += scale * source;
+    }
+}
+
+/// `target += scale * (force / mass)`, entry by entry; the quotient is rounded first.
+fn add_scaled_accelerations(target: &mut [f64], scale: f64, force: &[f64], masses: &[f64]) {
+    for ((target, force), &mass) in target.chunks_exact_mut(2).zip(force.chunks_exact(2)).zip(masses) {
+        target[0] += scale * (force[0] / mass);
+        target[1] += scale * (force[1] / mass);
+    }
+}

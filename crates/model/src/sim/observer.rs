@@ -1,0 +1,279 @@
+//! What the simulator tells while it computes: every detection call, pass, impulse and zone.
+use super::simulation::State;
+use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+
+/// Hears what happens inside a step. Every method does nothing by default.
+///
+/// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`,
+/// a `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that
+/// caused it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronise` (continuous-time:
+/// at the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part:
+/// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last
+/// `end_step`.
+///
+/// Three methods may steer what they hear: `solve`, `decide` and `synchronise`. By default they change nothing.
+pub trait Observer {
+    /// A step begins; steps count from 1.
+    fn begin_step(&mut self, _step: u32) {}
+    /// A detection pass begins.
+    fn begin_pass(&mut self, _pass: Pass) {}
+    /// The polynomials of a pair, trimmed, are about to be searched for a time of impact. An observer may put others in
+    /// their place; search, decision and `detection` then go by those. Not called by `simple`, which has none.
+    fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
+    /// The decision about a pair. The step goes on with the one that is returned.
+    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
+        decision
+    }
+    /// A pair was looked at.
+    fn detection(&mut self, _detection: &Detection<'_>) {}
+    /// The pass is over; `hits` pairs collide.
+    fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
+    /// A response was applied.
+    fn impulse(&mut self, _impulse: &Impulse) {}
+    /// The synchronisation point: the state that the mid record holds. What is written here is what the step goes on
+    /// with; the geometric part of `hybrid` starts from the values that the answer names.
+    fn synchronise(&mut self, _state: &mut State) -> Resume {
+        Resume::Own
+    }
+    /// Impact zones after the merge of geometric round `round` (0: before the first failsafe).
+    fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
+    /// The rigid failsafe is about to move this zone.
+    fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {}
+    /// The step is over, with this state.
+    fn end_step(&mut self, _step: u32, _state: &State) {}
+}
+
+/// The observer that hears nothing.
+impl Observer for () {}
+
+/// An observer that is lent hears the same.
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn begin_step(&mut self, step: u32) {
+        (**self).begin_step(step);
+    }
+    fn begin_pass(&mut self, pass: Pass) {
+        (**self).begin_pass(pass);
+    }
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+        (**self).solve(pair, q_start, q_end, polynomials);
+    }
+    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        (**self).decide(pair, decision)
+    }
+    fn detection(&mut self, detection: &Detection<'_>) {
+        (**self).detection(detection);
+    }
+    fn end_pass(&mut self, pass: Pass, hits: usize) {
+        (**self).end_pass(pass, hits);
+    }
+    fn impulse(&mut self, impulse: &Impulse) {
+        (**self).impulse(impulse);
+    }
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        (**self).synchronise(state)
+    }
+    fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
+        (**self).zones(round, zones);
+    }
+    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+        (**self).failsafe(round, zone);
+    }
+    fn end_step(&mut self, step: u32, state: &State) {
+        (**self).end_step(step, state);
+    }
+}
+
+/// Two observers hear the same, the first one first; what it puts in place the second one sees. The geometric part
+/// starts from the synchronised state if one of them says so.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    fn begin_step(&mut self, step: u32) {
+        self.0.begin_step(step);
+        self.1.begin_step(step);
+    }
+    fn begin_pass(&mut self, pass: Pass) {
+        self.0.begin_pass(pass);
+        self.1.begin_pass(pass);
+    }
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+        self.0.solve(pair, q_start, q_end, polynomials);
+        self.1.solve(pair, q_start, q_end, polynomials);
+    }
+    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        let decision = self.0.decide(pair, decision);
+        self.1.decide(pair, decision)
+    }
+    fn detection(&mut self, detection: &Detection<'_>) {
+        self.0.detection(detection);
+        self.1.detection(detection);
+    }
+    fn end_pass(&mut self, pass: Pass, hits: usize) {
+        self.0.end_pass(pass, hits);
+        self.1.end_pass(pass, hits);
+    }
+    fn impulse(&mut self, impulse: &Impulse) {
+        self.0.impulse(impulse);
+        self.1.impulse(impulse);
+    }
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        let first = self.0.synchronise(state);
+        match self.1.synchronise(state) {
+            Resume::Own => first,
+            Resume::Synchronised => Resume::Synchronised,
+        }
+    }
+    fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
+        self.0.zones(round, zones);
+        self.1.zones(round, zones);
+    }
+    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+        self.0.failsafe(round, zone);
+        self.1.failsafe(round, zone);
+    }
+    fn end_step(&mut self, step: u32, state: &State) {
+        self.0.end_step(step, state);
+        self.1.end_step(step, state);
+    }
+}
+
+/// What the geometric part of `hybrid` starts from, after the synchronisation point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resume {
+    /// The simulator's own values, as the original grades (collisions.md 5.4).
+    Own,
+    /// The state that the observer left.
+    Synchronised,
+}
+
+/// The kind of a pair; the numbers are those of the trace format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PairKind {
+    /// Two particles (0).
+    ParticleParticle,
+    /// A particle and an edge (1).
+    ParticleEdge,
+    /// A particle and a half-plane (2).
+    ParticleHalfPlane,
+}
+
+impl PairKind {
+    /// How many polynomials a detection call of this kind logs: 2, 4, 2.
+    #[must_use]
+    pub const fn polynomials(self) -> usize {
+        match self {
+            Self::ParticleEdge => 4,
+            Self::ParticleParticle | Self::ParticleHalfPlane => 2,
+        }
+    }
+
+    /// The number that a trace writes.
+    #[must_use]
+    pub const fn code(self) -> i32 {
+        match self {
+            Self::ParticleParticle => 0,
+            Self::ParticleEdge => 1,
+            Self::ParticleHalfPlane => 2,
+        }
+    }
+}
+
+/// Two objects that detection looks at: a particle, and a particle, edge or half-plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pair {
+    /// What the second object is.
+    pub kind: PairKind,
+    /// Index of the particle.
+    pub first: u32,
+    /// Index of the second object among its kind.
+    pub second: u32,
+}
+
+/// One detection pass over all pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pass {
+    /// Which part of the handling asks.
+    pub stage: Stage,
+    /// Number of the pass within the step, from 0.
+    pub index: u32,
+}
+
+/// The part of collision handling that a detection pass belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// The only pass of `simple`.
+    Simple,
+    /// The only pass of `continuous-time`.
+    ContinuousTime,
+    /// An impulse round of `hybrid`, from 0.
+    Impulses {
+        /// The round.
+        round: u32,
+    },
+    /// A pass of the geometric part of `hybrid`: 0 is the one that builds the first zones.
+    Geometric {
+        /// The round.
+        round: u32,
+    },
+}
+
+/// What one detection call saw and decided.
+#[derive(Debug, Clone, Copy)]
+pub struct Detection<'a> {
+    /// The pair.
+    pub pair: Pair,
+    /// The polynomials as logged, in the order of the trace; empty for `simple`.
+    pub polynomials: &'a [Polynomial],
+    /// The decision.
+    pub decision: Decision,
+    /// Positions at the start of the step, 2N.
+    pub q_start: &'a [f64],
+    /// Positions at the end of the step as this pass sees them, 2N.
+    pub q_end: &'a [f64],
+}
+
+/// How a detection call ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Decision {
+    /// They collide at `time` (fraction of the step) with contact normal `normal`, from the first object to the second.
+    Hit {
+        /// Time of impact in [0, 1]; 0 for `simple`.
+        time: f64,
+        /// Contact normal, not normalised.
+        normal: Vec2,
+    },
+    /// They do not collide within the step.
+    Miss {
+        /// What is known of the time.
+        time: Time,
+    },
+}
+
+/// What is known of the time of a pair that does not collide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Time {
+    /// Nothing was searched: a certificate proves that it is not within the step.
+    Excluded,
+    /// The search gave this time (greater than 1, infinite; or at most 1 with a zero normal).
+    Found(f64),
+    /// `simple` knows no times.
+    None,
+}
+
+/// An applied response; in `simple` and `continuous-time` also what the trace logs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impulse {
+    /// The pair.
+    pub pair: Pair,
+    /// Contact normal, not normalised.
+    pub normal: Vec2,
+    /// Time of impact as a fraction of the step.
+    pub time: f64,
+}
+
+/// An impact zone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Zone<'a> {
+    /// Its particles, ascending.
+    pub particles: &'a [u32],
+    /// Whether a half-plane is part of it.
+    pub half_plane: bool,
+}

@@ -1,0 +1,407 @@
+//! The simulation: a state and the step that advances it.
+use super::{
+    bodies::Bodies,
+    collision::Handler,
+    forces::Forces,
+    integrators::{DoesNotConverge, Stepper},
+    observer::{Observer, Pair},
+};
+use crate::scene::Scene;
+
+/// Positions and velocities in trace order (`x0, y0, x1, y1, ...`), 2N each.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct State {
+    /// Positions.
+    pub positions: Vec<f64>,
+    /// Velocities.
+    pub velocities: Vec<f64>,
+}
+
+/// Whether a certificate may stand in for a root search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum RootSearch {
+    /// Search only where no certificate excludes an impact. The traces are the same.
+    #[default]
+    WhereNeeded,
+    /// Always search.
+    Always,
+    /// Search always, ask the certificate too, and count where they disagree.
+    Audit,
+}
+
+/// Counts of the root searches so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SearchCounts {
+    /// Detection calls.
+    pub calls: u64,
+    /// Calls whose roots were searched.
+    pub searched: u64,
+    /// Calls excluded by a certificate.
+    pub excluded: u64,
+    /// Audit only: a certificate excluded an impact that the root finder found. Must stay zero.
+    pub disagreements: u64,
+}
+
+/// Why a step has no result. The original hangs or goes on with garbage here.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// The root search of a pair would never end: its polynomials hold values that are not finite.
+    #[error("step {step}: the root search of this pair does not terminate")]
+    RootSearch {
+        /// The step, from 1.
+        step: u32,
+        /// The pair.
+        pair: Pair,
+    },
+    /// Newton's method of implicit-euler does not converge (or cycles).
+    #[error("step {step}: Newton's method does not converge")]
+    Newton {
+        /// The step, from 1.
+        step: u32,
+    },
+    /// A vortex force has no Hessian, which implicit integrators need (scene-format.md 6).
+    #[error("step {step}: vortexforce has no Hessian, so it can't be used with an implicit integrator")]
+    VortexHessian {
+        /// The step, from 1.
+        step: u32,
+    },
+}
+
+/// The reference simulator of one scene.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    bodies: Bodies,
+    forces: Forces,
+    stepper: Stepper,
+    handler: Handler,
+    q_start: Vec<f64>,
+    state: State,
+    steps_done: u32,
+}
+
+impl Simulation {
+    /// Sets the scene up at its initial state.
+    ///
+    /// # Panics
+    /// When an edge names a particle that does not exist; the strict reader refuses such scenes.
+    #[must_use]
+    pub fn new(scene: &Scene, root_search: RootSearch) -> Self {
+        let mut state = State::default();
+        for particle in &scene.particles {
+            state.positions.extend([particle.position.x, particle.position.y]);
+            state.velocities.extend([particle.velocity.x, particle.velocity.y]);
+        }
+        Self {
+            bodies: Bodies::new(scene),
+            forces: Forces::new(scene),
+            stepper: Stepper::new(scene),
+            handler: Handler::new(scene, root_search),
+            q_start: Vec::with_capacity(state.positions.len()),
+            state,
+            steps_done: 0,
+        }
+    }
+
+    /// The current state.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The current state, to be replaced from outside (a submission's own, before a step is judged). Both arrays must
+    /// keep their length 2N.
+    pub fn state_mut(&mut self) -> &mut State {
+        &mut self.state
+    }
+
+    /// Number of steps done; the next one is this plus 1.
+    #[must_use]
+    pub fn steps_done(&self) -> u32 {
+        self.steps_done
+    }
+
+    /// Declares that `steps` steps lie behind (for judging steps out of order).
+    pub fn set_steps_done(&mut self, steps: u32) {
+        self.steps_done = steps;
+    }
+
+    /// Advances the state by one time step and tells `observer` everything (simulation.md 1).
+    ///
+    /// # Errors
+    /// [`StepError`], naming the step. The state is unspecified afterwards, and the step does not count as done.
+    ///
+    /// # Panics
+    /// When the state has other lengths than 2N, or a force names something that the scene does not have.
+    pub fn step<O: Observer>(&mut self, observer: &mut O) -> Result<(), StepError> {
+        let step = self.steps_done + 1;
+        observer.begin_step(step);
+        if self.stepper.is_implicit() && !self.forces.have_hessians() {
+            return Err(StepError::VortexHessian { step });
+        }
+        self.q_start.clone_from(&self.state.positions);
+        self.stepper
+            .advance(&self.bodies, &self.forces, &mut self.state)
+            .map_err(|DoesNotConverge| StepError::Newton { step })?;
+        self.handler.handle(&self.bodies, step, &self.q_start, &mut self.state, observer)?;
+        self.steps_done = step;
+        observer.end_step(step, &self.state);
+        Ok(())
+    }
+
+    /// Counts of root searches, over all steps so far.
+    #[must_use]
+    pub fn search_counts(&self) -> SearchCounts {
+        self.handler.counts()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scene::{Collision, Force, Integrator, Particle},
+        sim::{
+            Decision, Detection, Impulse, PairKind, Pass, Resume, Time, Zone,
+            samples::{edge, fixed, half_plane, particle, scene},
+        },
+    };
+    use fosssim_num::vector::Vec2;
+
+    /// Writes down what it hears; may replace the state at the synchronisation point.
+    #[derive(Default)]
+    struct Log {
+        lines: Vec<String>,
+        polynomials: usize,
+        replacement: Option<State>,
+    }
+
+    impl Observer for Log {
+        fn begin_step(&mut self, step: u32) {
+            self.lines.push(format!("step {step}"));
+        }
+        fn begin_pass(&mut self, pass: Pass) {
+            self.lines.push(format!("pass {} {:?}", pass.index, pass.stage));
+        }
+        fn detection(&mut self, detection: &Detection<'_>) {
+            self.polynomials += detection.polynomials.len();
+            self.lines.push(match detection.decision {
+                Decision::Hit { time, .. } => format!("hit at {time}"),
+                Decision::Miss { time: Time::None } => "no overlap".to_owned(),
+                Decision::Miss { .. } => "miss".to_owned(),
+            });
+        }
+        fn end_pass(&mut self, _pass: Pass, hits: usize) {
+            self.lines.push(format!("{hits} hits"));
+        }
+        fn impulse(&mut self, impulse: &Impulse) {
+            self.lines.push(format!("impulse {} {}", impulse.normal.x, impulse.normal.y));
+        }
+        fn synchronise(&mut self, state: &mut State) -> Resume {
+            self.lines.push("synchronise".to_owned());
+            if let Some(replacement) = &self.replacement {
+                state.clone_from(replacement);
+            }
+            Resume::Own
+        }
+        fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
+            self.lines.push(format!("zones {round} {:?}", zones.iter().map(|z| z.particles).collect::<Vec<_>>()));
+        }
+        fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+            self.lines.push(format!("failsafe {round} {:?}", zone.particles));
+        }
+        fn end_step(&mut self, step: u32, _state: &State) {
+            self.lines.push(format!("end {step}"));
+        }
+    }
+
+    /// The scene of trace-format.md 3: a particle that falls on a half-plane.
+    fn falling(collision: Collision) -> Scene {
+        let mut scene = scene(vec![particle((0.0, 0.5), (0.0, -1.0), 1.0, 0.25)]);
+        scene.half_planes.push(half_plane((0.0, 0.0), (0.0, 1.0)));
+        scene.collision = collision;
+        scene
+    }
+
+    fn hybrid(max_iterations: i32) -> Collision {
+        Collision::Hybrid { restitution: 1.0, max_iterations, stiffness: 0.0, thickness: 0.0 }
+    }
+
+    fn stepped(scene: &Scene, log: &mut Log) -> Simulation {
+        let mut simulation = Simulation::new(scene, RootSearch::default());
+        simulation.step(log).expect("an ordinary step");
+        simulation
+    }
+
+    #[test]
+    fn continuous_time_answers_a_hit_at_once() {
+        let mut log = Log::default();
+        let simulation = stepped(&falling(Collision::ContinuousTime { restitution: 1.0 }), &mut log);
+        assert_eq!(simulation.state().positions, [0.0, 1.0]);
+        assert_eq!(simulation.state().velocities, [0.0, 1.0]);
+        let expected =
+            ["step 1", "pass 0 ContinuousTime", "hit at 0.5", "impulse -0 -0.25", "1 hits", "synchronise", "end 1"];
+        assert_eq!(log.lines, expected);
+        assert_eq!(simulation.steps_done(), 1);
+    }
+
+    #[test]
+    fn simple_handling_sees_only_the_end_of_the_step() {
+        let mut log = Log::default();
+        let simulation = stepped(&falling(Collision::Simple { restitution: 1.0 }), &mut log);
+        assert_eq!(simulation.state().velocities, [0.0, -1.0], "exactly on the plane the normal is zero");
+        assert_eq!(log.lines, ["step 1", "pass 0 Simple", "no overlap", "0 hits", "end 1"]);
+    }
+
+    #[test]
+    fn hybrid_handling_repeats_until_a_pass_finds_nothing() {
+        let mut log = Log::default();
+        stepped(&falling(hybrid(10)), &mut log);
+        let expected = [
+            "step 1",
+            "pass 0 Impulses { round: 0 }",
+            "hit at 0.5",
+            "1 hits",
+            "impulse -0 -0.25",
+            "pass 1 Impulses { round: 1 }",
+            "miss",
+            "0 hits",
+            "synchronise",
+            "end 1",
+        ];
+        assert_eq!(log.lines, expected);
+        assert_eq!(log.polynomials, 4);
+    }
+
+    #[test]
+    fn without_iterations_hybrid_goes_straight_to_the_zones() {
+        let mut log = Log::default();
+        let simulation = stepped(&falling(hybrid(-3)), &mut log);
+        let expected = [
+            "step 1",
+            "synchronise",
+            "pass 0 Geometric { round: 0 }",
+            "hit at 0.5",
+            "1 hits",
+            "zones 0 [[0]]",
+            "failsafe 1 [0]",
+            "pass 1 Geometric { round: 1 }",
+            "miss",
+            "0 hits",
+            "zones 1 [[0]]",
+            "end 1",
+        ];
+        assert_eq!(log.lines, expected);
+        assert_eq!(simulation.state().positions, [0.0, 0.5], "back where the step began");
+    }
+
+    #[test]
+    fn when_impulses_run_out_the_last_responses_are_not_looked_at_again() {
+        let mut log = Log::default();
+        stepped(&falling(hybrid(1)), &mut log);
+        let passes: Vec<_> = log.lines.iter().filter(|line| line.starts_with("pass")).collect();
+        assert_eq!(
+            passes,
+            ["pass 0 Impulses { round: 0 }", "pass 1 Geometric { round: 0 }", "pass 2 Geometric { round: 1 }"]
+        );
+    }
+
+    /// What the observer writes at the synchronisation point is what the step ends with, but for the geometric part.
+    #[test]
+    fn the_synchronised_state_counts_unless_zones_are_moved() {
+        let replacement = State { positions: vec![7.0, 8.0], velocities: vec![9.0, 10.0] };
+        for (collision, kept) in
+            [(Collision::ContinuousTime { restitution: 1.0 }, true), (hybrid(10), true), (hybrid(0), false)]
+        {
+            let mut log = Log { replacement: Some(replacement.clone()), ..Log::default() };
+            let simulation = stepped(&falling(collision), &mut log);
+            assert_eq!(*simulation.state() == replacement, kept, "{collision:?}");
+        }
+    }
+
+    #[test]
+    fn without_handling_no_pair_is_looked_at() {
+        for collision in [Collision::None, Collision::Penalty { stiffness: 1.0, thickness: 0.1 }] {
+            let mut log = Log::default();
+            let simulation = stepped(&falling(collision), &mut log);
+            assert_eq!(log.lines, ["step 1", "end 1"]);
+            assert_eq!(simulation.search_counts(), SearchCounts::default());
+        }
+    }
+
+    #[test]
+    fn two_fixed_particles_are_looked_at_too() {
+        let mut scene = scene(vec![
+            fixed(particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fixed(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
+        ]);
+        scene.collision = Collision::ContinuousTime { restitution: 1.0 };
+        let mut log = Log::default();
+        stepped(&scene, &mut log);
+        assert!(log.lines.contains(&"miss".to_owned()));
+    }
+
+    /// Both hits of one particle in a pass: the second is computed from where the first response left it.
+    #[test]
+    fn later_pairs_of_a_pass_see_earlier_responses() {
+        let mut scene = scene(vec![
+            particle((0.0, 0.0), (2.0, 0.0), 1.0, 0.1),
+            fixed(particle((0.5, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fixed(particle((0.75, 0.0), (0.0, 0.0), 1.0, 0.1)),
+        ]);
+        scene.collision = Collision::ContinuousTime { restitution: 0.0 };
+        let mut log = Log::default();
+        let simulation = stepped(&scene, &mut log);
+        // Restitution 0 takes the whole displacement away, so the third particle is not reached any more.
+        assert_eq!(simulation.state().positions[..2], [0.0, 0.0]);
+        assert_eq!(log.lines.iter().filter(|line| line.starts_with("hit")).count(), 1);
+    }
+
+    /// The search of a polynomial of degree three or more would never end; particles alone never meet then.
+    #[test]
+    fn a_position_that_is_no_number_is_an_error_where_an_edge_meets_it() {
+        let places = [(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)];
+        let mut scene = scene(places.map(|place| particle(place, (0.0, 0.0), 1.0, 0.1)).to_vec());
+        scene.collision = Collision::ContinuousTime { restitution: 1.0 };
+        for search in [RootSearch::WhereNeeded, RootSearch::Always, RootSearch::Audit] {
+            for (edges, expected) in [
+                (vec![], Ok(())),
+                (
+                    vec![edge(1, 2, 0.1)],
+                    Err(StepError::RootSearch {
+                        step: 42,
+                        pair: Pair { kind: PairKind::ParticleEdge, first: 0, second: 0 },
+                    }),
+                ),
+            ] {
+                scene.edges = edges;
+                let mut simulation = Simulation::new(&scene, search);
+                simulation.set_steps_done(41);
+                simulation.state_mut().positions[0] = f64::NAN;
+                assert_eq!(simulation.step(&mut ()), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn a_vortex_force_is_refused_by_implicit_integrators_only() {
+        let particles: Vec<Particle> = (0..2).map(|i| particle((f64::from(i), 0.0), (0.0, 0.0), 1.0, 0.1)).collect();
+        let mut scene = scene(particles);
+        scene.forces.push(Force::Vortex { first: 0, second: 1, strength: 1.0, coupling: 1.0 });
+        assert_eq!(Simulation::new(&scene, RootSearch::default()).step(&mut ()), Ok(()));
+        for integrator in [Integrator::ImplicitEuler, Integrator::LinearizedImplicitEuler] {
+            scene.integrator = integrator;
+            let error = Simulation::new(&scene, RootSearch::default()).step(&mut ());
+            assert_eq!(error, Err(StepError::VortexHessian { step: 1 }));
+        }
+    }
+
+    #[test]
+    fn gravity_accelerates() {
+        let mut scene = scene(vec![particle((0.0, 0.0), (0.0, 0.0), 3.0, 0.1)]);
+        scene.forces.push(Force::SimpleGravity { acceleration: Vec2::new(0.0, -10.0) });
+        scene.integrator = Integrator::SymplecticEuler;
+        let simulation = stepped(&scene, &mut Log::default());
+        assert_eq!(simulation.state().velocities, [0.0, -5.0]);
+        assert_eq!(simulation.state().positions, [0.0, -2.5]);
+    }
+}

@@ -1,0 +1,169 @@
+//! Counting what happens inside the steps: an observer that adds up and does nothing else.
+use crate::sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Stage, State, Zone};
+use std::fmt;
+
+/// Numbers of events over all steps that it heard. Use it with others as a tuple: `(&mut recorder, &mut counts)`.
+///
+/// ```
+/// use fosssim_model::{scene::original, sim::{RootSearch, Simulation}, trace::Counts};
+///
+/// let xml = br#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>
+///     <collision type="continuous-time" COR="1"/>
+///     <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0"/><particle m="1" px="9" py="0" vx="0" vy="0" fixed="0"/></scene>"#;
+/// let scene = original::read(xml).expect("a scene").scene;
+/// let mut simulation = Simulation::new(&scene, RootSearch::default());
+/// let mut counts = Counts::default();
+/// for _ in 0..scene.steps() {
+///     simulation.step(&mut counts)?;
+/// }
+/// assert_eq!((counts.continuous_time_passes, counts.calls_of_all_kinds(), counts.polynomials), (10, 10, 20));
+/// # Ok::<(), fosssim_model::sim::StepError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Steps that came to their end.
+    pub steps: u64,
+    /// Passes of `simple`.
+    pub simple_passes: u64,
+    /// Passes of `continuous-time`.
+    pub continuous_time_passes: u64,
+    /// Passes of the impulse stage of `hybrid`.
+    pub impulse_passes: u64,
+    /// Passes of the geometric stage of `hybrid`.
+    pub geometric_passes: u64,
+    /// Detection calls per kind of pair, in the order of the trace's numbers.
+    pub calls: [u64; 3],
+    /// Calls that found a collision, per kind of pair.
+    pub hits: [u64; 3],
+    /// Polynomials of all calls.
+    pub polynomials: u64,
+    /// Responses.
+    pub impulses: u64,
+    /// Steps with a geometric stage.
+    pub geometric_steps: u64,
+    /// Zones that were moved as rigid bodies.
+    pub failsafes: u64,
+    /// Particles of the largest of them.
+    pub largest_zone: u64,
+    /// Largest number of zones after a merge.
+    pub most_zones: u64,
+}
+
+impl Counts {
+    /// Detection calls of all kinds.
+    #[must_use]
+    pub fn calls_of_all_kinds(&self) -> u64 {
+        self.calls.iter().sum()
+    }
+
+    /// Hits of all kinds.
+    #[must_use]
+    pub fn hits_of_all_kinds(&self) -> u64 {
+        self.hits.iter().sum()
+    }
+
+    /// Passes of all stages.
+    #[must_use]
+    pub fn passes(&self) -> u64 {
+        self.simple_passes + self.continuous_time_passes + self.impulse_passes + self.geometric_passes
+    }
+}
+
+/// Place of a kind in the arrays.
+const fn slot(pair: Pair) -> usize {
+    match pair.kind {
+        PairKind::ParticleParticle => 0,
+        PairKind::ParticleEdge => 1,
+        PairKind::ParticleHalfPlane => 2,
+    }
+}
+
+impl Observer for Counts {
+    fn begin_pass(&mut self, pass: Pass) {
+        match pass.stage {
+            Stage::Simple => self.simple_passes += 1,
+            Stage::ContinuousTime => self.continuous_time_passes += 1,
+            Stage::Impulses { .. } => self.impulse_passes += 1,
+            Stage::Geometric { round } => {
+                self.geometric_passes += 1;
+                self.geometric_steps += u64::from(round == 0);
+            }
+        }
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let slot = slot(detection.pair);
+        self.calls[slot] += 1;
+        self.hits[slot] += u64::from(matches!(detection.decision, Decision::Hit { .. }));
+        self.polynomials += detection.polynomials.len() as u64;
+    }
+
+    fn impulse(&mut self, _impulse: &Impulse) {
+        self.impulses += 1;
+    }
+
+    fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
+        self.most_zones = self.most_zones.max(zones.len() as u64);
+    }
+
+    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
+        self.failsafes += 1;
+        self.largest_zone = self.largest_zone.max(zone.particles.len() as u64);
+    }
+
+    fn end_step(&mut self, _step: u32, _state: &State) {
+        self.steps += 1;
+    }
+}
+
+impl fmt::Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "steps         {}", self.steps)?;
+        writeln!(
+            f,
+            "passes        {} simple, {} continuous-time, {} impulse, {} geometric",
+            self.simple_passes, self.continuous_time_passes, self.impulse_passes, self.geometric_passes
+        )?;
+        for (name, numbers) in [("calls", self.calls), ("hits", self.hits)] {
+            let [particles, edges, half_planes] = numbers;
+            writeln!(
+                f,
+                "{name:<13} {particles} particle-particle, {edges} particle-edge, {half_planes} particle-half-plane"
+            )?;
+        }
+        writeln!(f, "polynomials   {}", self.polynomials)?;
+        writeln!(f, "impulses      {}", self.impulses)?;
+        writeln!(
+            f,
+            "geometric     {} steps, {} rigid failsafes, largest zone {}, most zones {}",
+            self.geometric_steps, self.failsafes, self.largest_zone, self.most_zones
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::Time;
+    use fosssim_num::vector::Vec2;
+
+    #[test]
+    fn events_are_counted_by_stage_and_kind() {
+        let mut counts = Counts::default();
+        let pair = Pair { kind: PairKind::ParticleEdge, first: 0, second: 1 };
+        for round in 0..2 {
+            counts.begin_pass(Pass { stage: Stage::Geometric { round }, index: round });
+            let hit = Decision::Hit { time: 0.5, normal: Vec2::new(1.0, 0.0) };
+            for decision in [hit, Decision::Miss { time: Time::None }] {
+                counts.detection(&Detection { pair, polynomials: &[], decision, q_start: &[], q_end: &[] });
+            }
+        }
+        let zone = Zone { particles: &[0, 1, 2], half_plane: false };
+        counts.zones(0, &[zone]);
+        counts.failsafe(0, &zone);
+        counts.end_step(1, &State::default());
+        assert_eq!((counts.geometric_passes, counts.geometric_steps, counts.passes()), (2, 1, 2));
+        assert_eq!((counts.calls, counts.hits), ([0, 4, 0], [0, 2, 0]));
+        assert_eq!((counts.most_zones, counts.failsafes, counts.largest_zone, counts.steps), (1, 1, 3, 1));
+    }
+}

@@ -1,0 +1,135 @@
+//! Bytes to the blocks of a record: what both readers share.
+//!
+//! The functions decode in bulk from the source's window and never allocate before the bytes are there.
+use super::{
+    encode::IMPULSE_BYTES,
+    frame::{LoggedImpulse, PolynomialLog},
+    source::{Source, WINDOW},
+};
+use crate::sim::State;
+use fosssim_num::{polynomial::MAX_COEFFICIENTS, tolerances::LEADING_COEFFICIENT, vector::Vec2};
+use std::io::Read;
+
+/// Bytes of memory that a decoded polynomial takes besides its coefficients.
+const POLYNOMIAL_MEMORY: usize = size_of::<usize>();
+
+/// Bytes of memory that a decoded impulse takes.
+pub(crate) const IMPULSE_MEMORY: usize = size_of::<LoggedImpulse>();
+
+#[inline]
+fn number(bytes: &[u8]) -> f64 {
+    f64::from_le_bytes(bytes.try_into().expect("eight bytes"))
+}
+
+#[inline]
+fn integer(bytes: &[u8]) -> i32 {
+    i32::from_le_bytes(bytes.try_into().expect("four bytes"))
+}
+
+/// Replaces `out` by the next `count` numbers; fewer when the source ends, a cut one is left in the source.
+pub(crate) fn numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> bool {
+    out.clear();
+    while out.len() < count {
+        let wanted = (8 * (count - out.len())).min(WINDOW);
+        let whole = source.ensure(wanted).min(wanted) / 8 * 8;
+        if whole == 0 {
+            return false;
+        }
+        out.extend(source.window()[..whole].chunks_exact(8).map(number));
+        source.consume(whole);
+    }
+    true
+}
+
+/// Replaces `state` by the next record's; false when the source ends before its end.
+pub(crate) fn state<R: Read>(source: &mut Source<R>, particles: usize, state: &mut State) -> bool {
+    numbers(source, 2 * particles, &mut state.positions) && numbers(source, 2 * particles, &mut state.velocities)
+}
+
+/// The next four bytes as a count or size; `Err` with the number of bytes left when there are fewer.
+pub(crate) fn count<R: Read>(source: &mut Source<R>) -> Result<i32, usize> {
+    let there = source.ensure(4);
+    if there < 4 {
+        return Err(there);
+    }
+    let count = integer(&source.window()[..4]);
+    source.consume(4);
+    Ok(count)
+}
+
+/// Appends up to `count` impulses from the window and gives their number; 0 only at the end of the source.
+pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<LoggedImpulse>) -> usize {
+    let wanted = count.min(WINDOW / IMPULSE_BYTES) * IMPULSE_BYTES;
+    let whole = source.ensure(wanted).min(wanted) / IMPULSE_BYTES;
+    let bytes = &source.window()[..whole * IMPULSE_BYTES];
+    out.extend(bytes.chunks_exact(IMPULSE_BYTES).map(|b| LoggedImpulse {
+        kind: integer(&b[0..4]),
+        first: integer(&b[4..8]),
+        second: integer(&b[8..12]),
+        normal: Vec2::new(number(&b[12..20]), number(&b[20..28])),
+        time: number(&b[28..36]),
+    }));
+    source.consume(whole * IMPULSE_BYTES);
+    whole
+}
+
+/// Appends ordinary polynomials (size 0 to 6, wholly in `bytes`) until the first that is not ordinary, at most `most`.
+/// Gives the bytes used, their number, and, with `TRIM`, whether any leading coefficient was dropped.
+pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut PolynomialLog) -> (usize, u64, bool) {
+    let (mut at, mut done, mut trimmed) = (0, 0, false);
+    while done < most
+        && let Some((head, rest)) = bytes[at..].split_first_chunk::<4>()
+    {
+        let size = u32::from_le_bytes(*head) as usize;
+        if size > MAX_COEFFICIENTS || 8 * size > rest.len() {
+            break;
+        }
+        let body = &rest[..8 * size];
+        let before = log.coefficients.len();
+        log.coefficients.extend(body.chunks_exact(8).map(number));
+        if TRIM && size > 0 && log.coefficients[before].abs() < LEADING_COEFFICIENT {
+            trim(&mut log.coefficients, before);
+            trimmed = true;
+        }
+        log.ends.push(log.coefficients.len());
+        at += 4 + 8 * size;
+        done += 1;
+    }
+    (at, done, trimmed)
+}
+
+/// Passes over ordinary polynomials as [`polynomials`] decodes them. Gives the bytes used and their number.
+pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64) {
+    let (mut at, mut done) = (0, 0);
+    while done < most
+        && let Some((head, rest)) = bytes[at..].split_first_chunk::<4>()
+    {
+        let size = u32::from_le_bytes(*head) as usize;
+        if size > MAX_COEFFICIENTS || 8 * size > rest.len() {
+            break;
+        }
+        at += 4 + 8 * size;
+        done += 1;
+    }
+    (at, done)
+}
+
+/// Drops the small leading coefficients of the polynomial that begins at `start`; a NaN stops the dropping.
+pub(crate) fn trim(coefficients: &mut Vec<f64>, start: usize) {
+    let small = coefficients[start..].iter().take_while(|c| c.abs() < LEADING_COEFFICIENT).count();
+    coefficients.drain(start..start + small);
+}
+
+/// Appends up to `count` coefficients from the window and gives their number; 0 only at the end of the source.
+pub(crate) fn coefficients<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> usize {
+    let wanted = (8 * count.min(WINDOW)).min(WINDOW);
+    let whole = source.ensure(wanted).min(wanted) / 8;
+    out.extend(source.window()[..8 * whole].chunks_exact(8).map(number));
+    source.consume(8 * whole);
+    whole
+}
+
+/// Memory that the log's content takes, in bytes.
+pub(crate) fn memory(log: &PolynomialLog) -> usize {
+    8 * log.coefficients.len() + POLYNOMIAL_MEMORY * log.ends.len()
+}

@@ -1,0 +1,101 @@
+//! One record in memory.
+use crate::sim::{Impulse, State};
+use fosssim_num::vector::Vec2;
+use std::fmt;
+
+/// A frame: one saved state with its logs. Buffers are reused from record to record.
+#[derive(Debug, Clone, Default)]
+pub struct Frame {
+    /// Positions and velocities.
+    pub state: State,
+    /// The impulse list; empty where the layout has none.
+    pub impulses: Vec<LoggedImpulse>,
+    /// The polynomial list; empty where the layout has none.
+    pub polynomials: PolynomialLog,
+}
+
+/// An impulse as a trace holds it: nothing about it is checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoggedImpulse {
+    /// 0 particle-particle, 1 particle-edge, 2 particle-half-plane; anything else in a damaged trace.
+    pub kind: i32,
+    /// Index of the particle.
+    pub first: i32,
+    /// Index of the particle, edge or half-plane.
+    pub second: i32,
+    /// Contact normal.
+    pub normal: Vec2,
+    /// Time of impact as a fraction of the step.
+    pub time: f64,
+}
+
+impl From<Impulse> for LoggedImpulse {
+    fn from(impulse: Impulse) -> Self {
+        #[expect(clippy::cast_possible_wrap, reason = "the format has 32 signed bits for an index")]
+        let (first, second) = (impulse.pair.first as i32, impulse.pair.second as i32);
+        Self { kind: impulse.pair.kind.code(), first, second, normal: impulse.normal, time: impulse.time }
+    }
+}
+
+impl fmt::Display for LoggedImpulse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, first, second, normal, time } = self;
+        match kind {
+            0 => write!(f, "particle {first} - particle {second}")?,
+            1 => write!(f, "particle {first} - edge {second}")?,
+            2 => write!(f, "particle {first} - half-plane {second}")?,
+            kind => write!(f, "unknown type {kind} {first} {second}")?,
+        }
+        write!(f, ", normal ({:?}, {:?}), time {time:?}", normal.x, normal.y)
+    }
+}
+
+/// The polynomials of a frame, in one array.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PolynomialLog {
+    /// All coefficients, polynomial after polynomial, highest power first, as logged.
+    pub coefficients: Vec<f64>,
+    /// For each polynomial the end of its coefficients in `coefficients`.
+    pub ends: Vec<usize>,
+}
+
+impl PolynomialLog {
+    /// Number of polynomials.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// Empties the log and keeps its memory.
+    pub fn clear(&mut self) {
+        self.coefficients.clear();
+        self.ends.clear();
+    }
+
+    /// Appends a polynomial.
+    pub fn push(&mut self, coefficients: &[f64]) {
+        self.coefficients.extend_from_slice(coefficients);
+        self.ends.push(self.coefficients.len());
+    }
+
+    /// The coefficients of polynomial `index`.
+    ///
+    /// # Panics
+    /// When there is no such polynomial.
+    #[must_use]
+    pub fn get(&self, index: usize) -> &[f64] {
+        let start = if index == 0 { 0 } else { self.ends[index - 1] };
+        &self.coefficients[start..self.ends[index]]
+    }
+
+    /// All polynomials in order.
+    pub fn iter(&self) -> impl Iterator<Item = &[f64]> {
+        (0..self.len()).map(|index| self.get(index))
+    }
+}

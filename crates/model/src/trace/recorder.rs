@@ -1,0 +1,168 @@
+//! Recording a simulation: an observer that writes the trace while the simulation steps.
+//!
+//! It decides only what reaches the trace and when (trace-format.md 2); it computes nothing. After the first eventful
+//! step it allocates nothing any more unless a step logs more than every step before.
+use super::{
+    encode,
+    frame::LoggedImpulse,
+    layout::Layout,
+    writer::{Encoded, Writer, Written},
+};
+use crate::sim::{Detection, Impulse, Observer, Pass, Resume, Stage, State};
+use std::io::{self, Write};
+
+/// Writes a trace: hand it to [`Simulation::step`](crate::sim::Simulation::step) as the observer of every step, then
+/// call [`Recorder::finish`].
+///
+/// A step that fails leaves the trace without its end record.
+#[derive(Debug)]
+pub struct Recorder<W: Write> {
+    writer: Writer<W>,
+    layout: Layout,
+    impulses: Encoded,
+    polynomials: Encoded,
+    /// Whether the responses of the current pass reach the trace: those of `hybrid` never do.
+    logs_impulses: bool,
+}
+
+impl<W: Write> Recorder<W> {
+    /// Starts a trace with the record of the initial state, whose lists are empty. The stream needs no buffer.
+    pub fn start(stream: W, layout: Layout, initial: &State) -> Self {
+        let mut writer = Writer::new(stream, layout);
+        let (impulses, polynomials) = (Encoded::default(), Encoded::default());
+        writer.record(initial, &impulses, &polynomials);
+        Self { writer, layout, impulses, polynomials, logs_impulses: false }
+    }
+
+    /// What has been written so far, what is still in the buffer included.
+    #[must_use]
+    pub fn written(&self) -> Written {
+        self.writer.written()
+    }
+
+    /// Whether writing has failed: there is no point in stepping on.
+    #[must_use]
+    pub fn failed(&self) -> bool {
+        self.writer.failed()
+    }
+
+    /// Writes what is left, flushes, and gives the stream back.
+    ///
+    /// # Errors
+    /// The first error that the stream reported, now or earlier.
+    pub fn finish(self) -> io::Result<(W, Written)> {
+        self.writer.finish()
+    }
+}
+
+impl<W: Write> Observer for Recorder<W> {
+    fn begin_step(&mut self, _step: u32) {
+        self.impulses.clear();
+        self.polynomials.clear();
+        self.logs_impulses = false;
+    }
+
+    fn begin_pass(&mut self, pass: Pass) {
+        self.logs_impulses = matches!(pass.stage, Stage::Simple | Stage::ContinuousTime);
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        for polynomial in detection.polynomials {
+            encode::polynomial(&mut self.polynomials.bytes, polynomial.coefficients());
+        }
+        self.polynomials.count += detection.polynomials.len();
+    }
+
+    fn impulse(&mut self, impulse: &Impulse) {
+        if self.logs_impulses {
+            encode::impulse(&mut self.impulses.bytes, &LoggedImpulse::from(*impulse));
+            self.impulses.count += 1;
+        }
+    }
+
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        if self.layout.records_per_step() == 2 {
+            self.writer.record(state, &self.impulses, &self.polynomials);
+        }
+        Resume::Own
+    }
+
+    fn end_step(&mut self, _step: u32, state: &State) {
+        self.writer.record(state, &self.impulses, &self.polynomials);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{Decision, Pair, PairKind, Time};
+    use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+
+    const PAIR: Pair = Pair { kind: PairKind::ParticleHalfPlane, first: 0, second: 3 };
+    const IMPULSE: Impulse = Impulse { pair: PAIR, normal: Vec2::new(-0.0, -0.25), time: 0.5 };
+
+    fn layout() -> Layout {
+        Layout { particles: 1, impulses: true, polynomials: true, steps: 1 }
+    }
+
+    fn state(x: f64) -> State {
+        State { positions: vec![x, 0.0], velocities: vec![0.0, 0.0] }
+    }
+
+    /// Plays one pass of `stage` that finds one hit.
+    fn pass(recorder: &mut Recorder<Vec<u8>>, stage: Stage) {
+        let pass = Pass { stage, index: 0 };
+        recorder.begin_pass(pass);
+        let polynomials = [Polynomial::trimmed(&[1.0, 2.0, 3.0]), Polynomial::trimmed(&[])];
+        let decision = Decision::Miss { time: Time::Excluded };
+        recorder.detection(&Detection { pair: PAIR, polynomials: &polynomials, decision, q_start: &[], q_end: &[] });
+        recorder.end_pass(pass, 1);
+        recorder.impulse(&IMPULSE);
+    }
+
+    #[test]
+    fn continuous_time_logs_the_same_lists_twice() {
+        let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
+        recorder.begin_step(1);
+        pass(&mut recorder, Stage::ContinuousTime);
+        recorder.synchronise(&mut state(1.0));
+        recorder.end_step(1, &state(1.0));
+        let (bytes, written) = recorder.finish().unwrap();
+        assert_eq!(bytes.len(), 40 + 2 * (40 + 36 + 28 + 4));
+        assert_eq!(written, Written { records: 3, bytes: bytes.len() as u64 });
+        assert_eq!(bytes[32..40], [0; 8], "the initial record has empty lists");
+        assert_eq!(bytes[40..148], bytes[148..]);
+        assert_eq!(bytes[72..88], [1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0]);
+        assert_eq!(bytes[112..120], [2, 0, 0, 0, 3, 0, 0, 0]);
+    }
+
+    #[test]
+    fn hybrid_logs_no_impulses_and_the_mid_record_holds_the_polynomials_so_far() {
+        let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
+        recorder.begin_step(1);
+        pass(&mut recorder, Stage::Impulses { round: 0 });
+        recorder.synchronise(&mut state(1.0));
+        pass(&mut recorder, Stage::Geometric { round: 0 });
+        recorder.end_step(1, &state(2.0));
+        let (bytes, _) = recorder.finish().unwrap();
+        assert_eq!(bytes.len(), 40 + (40 + 32) + (40 + 64));
+        assert_eq!(bytes[72..80], [0, 0, 0, 0, 2, 0, 0, 0]);
+        assert_eq!(bytes[112 + 32..112 + 40], [0, 0, 0, 0, 4, 0, 0, 0]);
+        assert_eq!(bytes[112..120], 2.0_f64.to_le_bytes());
+    }
+
+    #[test]
+    fn lists_are_cleared_between_steps() {
+        let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
+        for step in 1..=2 {
+            recorder.begin_step(step);
+            if step == 1 {
+                pass(&mut recorder, Stage::ContinuousTime);
+            }
+            recorder.synchronise(&mut state(1.0));
+            recorder.end_step(step, &state(1.0));
+        }
+        let (bytes, _) = recorder.finish().unwrap();
+        assert_eq!(bytes.len(), 40 + 2 * 108 + 2 * 40);
+    }
+}

@@ -1,0 +1,227 @@
+//! A stream with a buffer that can be looked at before it is consumed, an absolute offset, and, where it is known, the
+//! number of bytes left.
+//!
+//! An error of the stream counts as its end and is kept, so that both readers treat it like missing bytes and can
+//! still name it.
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show at once.
+pub(crate) const WINDOW: usize = 256 * 1024;
+
+#[derive(Debug)]
+pub(crate) struct Source<R> {
+    stream: R,
+    buffer: Vec<u8>,
+    start: usize,
+    end: usize,
+    /// Absolute offset of `buffer[start]`.
+    offset: u64,
+    /// Length of the whole stream, where it is known. Nothing beyond is read.
+    length: Option<u64>,
+    ended: bool,
+    error: Option<(io::ErrorKind, String)>,
+    /// What was consumed since `start_tape`.
+    tape: Option<Vec<u8>>,
+}
+
+impl<R: Read> Source<R> {
+    /// A source at the beginning of `stream`, whose length may be known.
+    pub(crate) fn new(stream: R, length: Option<u64>) -> Self {
+        Self { stream, buffer: Vec::new(), start: 0, end: 0, offset: 0, length, ended: false, error: None, tape: None }
+    }
+
+    /// The same source, with a known length of the whole stream.
+    pub(crate) fn with_length(mut self, bytes: u64) -> Self {
+        self.length = Some(bytes);
+        self
+    }
+
+    /// Starts keeping what is consumed, in `buffer`, whose old content is thrown away.
+    pub(crate) fn start_tape(&mut self, mut buffer: Vec<u8>) {
+        buffer.clear();
+        self.tape = Some(buffer);
+    }
+
+    /// Stops keeping and gives what was consumed since the start; empty without a start.
+    pub(crate) fn stop_tape(&mut self) -> Vec<u8> {
+        self.tape.take().unwrap_or_default()
+    }
+
+    /// Absolute offset of the next byte.
+    #[inline]
+    pub(crate) fn offset(&self) -> u64 {
+        self.offset
+    }
+
+    /// Bytes from here to the end: known with a known length and once the end has been seen.
+    pub(crate) fn left(&self) -> Option<u64> {
+        if self.ended {
+            Some((self.end - self.start) as u64)
+        } else {
+            self.length.map(|length| length.saturating_sub(self.offset))
+        }
+    }
+
+    /// The error that ended the stream.
+    pub(crate) fn error(&self) -> Option<&(io::ErrorKind, String)> {
+        self.error.as_ref()
+    }
+
+    /// The bytes in the buffer.
+    #[inline]
+    pub(crate) fn window(&self) -> &[u8] {
+        &self.buffer[self.start..self.end]
+    }
+
+    /// Tries to have at least `wanted` bytes in the buffer and gives the number that is there, fewer only at the end.
+    ///
+    /// # Panics
+    /// With more than [`WINDOW`] bytes.
+    pub(crate) fn ensure(&mut self, wanted: usize) -> usize {
+        assert!(wanted <= WINDOW, "the window is smaller");
+        if self.end - self.start < wanted && !self.ended {
+            self.fill(wanted);
+        }
+        self.end - self.start
+    }
+
+    /// Steps over `count` bytes of the window.
+    #[inline]
+    pub(crate) fn consume(&mut self, count: usize) {
+        if let Some(tape) = &mut self.tape {
+            tape.extend_from_slice(&self.buffer[self.start..self.start + count]);
+        }
+        self.start += count;
+        self.offset += count as u64;
+    }
+
+    /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Gives how many there were;
+    /// `None` when more follow.
+    pub(crate) fn drain(&mut self, limit: u64) -> Option<u64> {
+        let mut drained = 0;
+        loop {
+            let there = self.ensure(1);
+            if there == 0 {
+                return Some(drained);
+            }
+            let step = there.min(usize::try_from(limit - drained).unwrap_or(usize::MAX));
+            if step == 0 {
+                return None;
+            }
+            self.start += step;
+            self.offset += step as u64;
+            drained += step as u64;
+        }
+    }
+
+    #[cold]
+    fn fill(&mut self, wanted: usize) {
+        if self.buffer.is_empty() {
+            // Small traces get a small buffer; one byte more shows the end of the stream in the same call.
+            let size = self.length.map_or(WINDOW as u64, |length| length.saturating_add(1).clamp(64, WINDOW as u64));
+            self.buffer.resize(usize::try_from(size).unwrap_or(WINDOW), 0);
+        }
+        if self.buffer.len() < wanted {
+            self.buffer.resize(WINDOW, 0);
+        }
+        self.buffer.copy_within(self.start..self.end, 0);
+        self.end -= self.start;
+        self.start = 0;
+        while self.end < wanted && !self.ended {
+            let there = self.offset + self.end as u64;
+            let allowed = self.length.map_or(u64::MAX, |length| length.saturating_sub(there));
+            let room = (self.buffer.len() - self.end).min(usize::try_from(allowed).unwrap_or(usize::MAX));
+            if room == 0 {
+                self.ended = true;
+                break;
+            }
+            match self.stream.read(&mut self.buffer[self.end..self.end + room]) {
+                Ok(0) => self.ended = true,
+                Ok(count) => self.end += count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => {
+                    self.error = Some((error.kind(), error.to_string()));
+                    self.ended = true;
+                }
+            }
+        }
+    }
+}
+
+impl<R: Read + Seek> Source<R> {
+    /// Goes on reading at `offset`.
+    pub(crate) fn seek(&mut self, offset: u64) {
+        (self.start, self.end, self.ended, self.error) = (0, 0, false, None);
+        self.offset = offset;
+        if let Err(error) = self.stream.seek(SeekFrom::Start(offset)) {
+            self.error = Some((error.kind(), error.to_string()));
+            self.ended = true;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gives one byte per call, with an interruption before each.
+    struct Trickle<'a>(&'a [u8], bool);
+
+    impl Read for Trickle<'_> {
+        fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+            self.1 = !self.1;
+            if self.1 {
+                return Err(io::ErrorKind::Interrupted.into());
+            }
+            let count = out.len().min(1).min(self.0.len());
+            out[..count].copy_from_slice(&self.0[..count]);
+            self.0 = &self.0[count..];
+            Ok(count)
+        }
+    }
+
+    #[test]
+    fn a_trickling_stream_gives_the_same_bytes() {
+        let bytes: Vec<u8> = (0..100).collect();
+        let mut source = Source::new(Trickle(&bytes, false), None);
+        assert_eq!(source.ensure(10), 10);
+        assert_eq!(source.window(), &bytes[..10]);
+        source.consume(7);
+        assert_eq!((source.offset(), source.left()), (7, None));
+        assert_eq!(source.ensure(200), 93);
+        assert_eq!(source.window(), &bytes[7..]);
+        assert_eq!(source.left(), Some(93));
+        assert_eq!(source.drain(93), Some(93));
+        assert_eq!(source.ensure(1), 0);
+    }
+
+    #[test]
+    fn nothing_beyond_the_known_length_is_read() {
+        let mut source = Source::new(&[1_u8; 50][..], Some(20));
+        assert_eq!(source.left(), Some(20));
+        assert_eq!(source.ensure(30), 20);
+        assert_eq!(source.drain(u64::MAX), Some(20));
+    }
+
+    #[test]
+    fn no_more_is_drained_than_allowed() {
+        let mut source = Source::new(io::repeat(0), None);
+        assert_eq!((source.drain(1_000_000), source.offset()), (None, 1_000_000));
+        let mut source = Source::new(&[1_u8; 50][..], None);
+        assert_eq!((source.drain(49), source.drain(1)), (None, Some(1)));
+    }
+
+    #[test]
+    fn the_tape_holds_what_was_consumed() {
+        let bytes: Vec<u8> = (0..100).collect();
+        let mut source = Source::new(&bytes[..], None);
+        source.ensure(30);
+        source.consume(10);
+        source.start_tape(vec![1, 2, 3]);
+        source.consume(5);
+        source.consume(5);
+        assert_eq!(source.stop_tape(), &bytes[10..20]);
+        source.consume(5);
+        assert_eq!(source.stop_tape(), [0; 0]);
+    }
+}

@@ -1,0 +1,362 @@
+//! A readable summary of a trace, for snapshot tests and for the eye.
+//!
+//! A pure function of scene and bytes: the same trace gives the same text everywhere. Numbers are printed with the
+//! fewest digits that read back to the same bits. What a trace does not hold (passes, pair kinds, zones) is counted
+//! by [`Counts`](super::Counts) while a simulation runs.
+use super::{
+    TraceError,
+    digest::{self, Sha, Short},
+    frame::{Frame, LoggedImpulse},
+    histogram::Histogram,
+    layout::Layout,
+};
+use crate::scene::{Collision, Scene};
+use sha2::{Digest, Sha256};
+use std::{fmt, io::Read};
+
+/// At most so many collisions are listed.
+const COLLISIONS: usize = 40;
+/// At most so many polynomials of a step are listed.
+const POLYNOMIALS: usize = 24;
+/// At most so many coefficients of a polynomial are listed.
+const COEFFICIENTS: usize = 8;
+/// Steps are digested in at most so many groups.
+const GROUPS: u32 = 16;
+
+/// What a trace holds. Its `Display` is the text that a snapshot test keeps.
+///
+/// ```
+/// use fosssim_model::{
+///     scene::original,
+///     sim::{RootSearch, Simulation},
+///     trace::{Layout, Recorder, Summary},
+/// };
+///
+/// let xml = br#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/>
+///     <collision type="continuous-time" COR="1"/>
+///     <particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/><halfplane px="0" py="0" nx="0" ny="1"/></scene>"#;
+/// let scene = original::read(xml).expect("a scene").scene;
+/// let mut simulation = Simulation::new(&scene, RootSearch::default());
+/// let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+/// for _ in 0..scene.steps() {
+///     simulation.step(&mut recorder)?;
+/// }
+/// let (trace, _) = recorder.finish()?;
+///
+/// // A course's own test would hand this to `insta::assert_snapshot!`.
+/// let summary = Summary::of(&scene, &trace[..]);
+/// assert_eq!(
+///     summary.to_string(),
+///     "\
+/// scene          continuous-time, 1 step, 1 particle, 0 edges, 1 half-plane
+/// trace          288 bytes, 3 of 3 records
+/// impulses       1; per step: 1 in 1 step
+/// polynomials    2 (2 per detection pass); per step: 2 in 1 step
+/// collisions
+///   step 1: particle 0 - half-plane 0, normal (-0.0, -0.25), time 0.5
+/// step 1
+///   polynomial 0, pass 0, particle 0 - half-plane 0: [-0.25, 0.5, -0.1875]
+///   polynomial 1, pass 0, particle 0 - half-plane 0: [-0.25, 0.25]
+/// digests
+///   step 0       50a85e8d0672d8cb
+///   step 1       e622ef56e2388886
+/// sha256         d4d3b73d3f7f86db948d525ab9b5f011469a0834e363b78b8798acb45d4fc691
+/// "
+/// );
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Summary {
+    /// The collision type's name in scenes.
+    pub collision: &'static str,
+    /// The shape that the scene gives its traces.
+    pub layout: Layout,
+    /// Number of edges of the scene.
+    pub edges: usize,
+    /// Number of half-planes of the scene.
+    pub half_planes: usize,
+    /// Polynomials of one detection pass over all pairs (trace-format.md 2).
+    pub polynomials_per_pass: u64,
+    /// Bytes of the trace.
+    pub bytes: u64,
+    /// Records that could be read.
+    pub records: u64,
+    /// Bytes behind the last of them.
+    pub trailing: u64,
+    /// Whether more bytes follow, which were not read. `bytes` and `trailing` count only what was read, and the digest
+    /// says nothing about the trace.
+    pub unread: bool,
+    /// What ended the reading before the scene's last record.
+    pub stopped: Option<TraceError>,
+    /// Number of oddities that do not end the reading, and the first.
+    pub notes: (u64, Option<TraceError>),
+    /// Impulses per step, of end records.
+    pub impulses: Histogram,
+    /// Polynomials per step, of end records.
+    pub polynomials: Histogram,
+    /// The first collisions: step and impulse.
+    pub collisions: Vec<(u32, LoggedImpulse)>,
+    /// The first step.
+    pub first: Option<StepView>,
+    /// The step with the most impulses, among these with the most polynomials, among these the first.
+    pub busiest: Option<StepView>,
+    /// Digests of groups of steps: first and last step, and the digest of the steps' digests.
+    pub digests: Vec<(u32, u32, Short)>,
+    /// SHA-256 of all bytes.
+    pub sha256: Sha,
+}
+
+/// The polynomials of one step.
+#[derive(Debug, Clone, Default)]
+pub struct StepView {
+    /// The step, from 1.
+    pub step: u32,
+    /// Number of impulses.
+    pub impulses: usize,
+    /// Number of polynomials.
+    pub polynomials: usize,
+    /// The first polynomials: the pair as text, and the first coefficients.
+    pub shown: Vec<(String, Vec<f64>)>,
+}
+
+impl Summary {
+    /// Summarises a trace of `scene`, in the memory of one record. A malformed trace has a summary, too: it says where
+    /// reading ended.
+    pub fn of(scene: &Scene, trace: impl Read) -> Self {
+        let layout = Layout::of(scene);
+        let per_pass = polynomials_per_pass(scene);
+        let mut summary = Self {
+            collision: name(&scene.collision),
+            layout,
+            edges: scene.edges.len(),
+            half_planes: scene.half_planes.len(),
+            polynomials_per_pass: per_pass,
+            bytes: 0,
+            records: 0,
+            trailing: 0,
+            unread: false,
+            stopped: None,
+            notes: (0, None),
+            impulses: Histogram::default(),
+            polynomials: Histogram::default(),
+            collisions: Vec::new(),
+            first: None,
+            busiest: None,
+            digests: Vec::new(),
+            sha256: Sha([0; 32]),
+        };
+        let mut groups = Groups::new(layout.steps);
+        let walked = digest::walk(
+            trace,
+            layout,
+            |record, frame, notes| {
+                summary.notes.0 += notes.len() as u64;
+                if let (None, Some(note)) = (&summary.notes.1, notes.first()) {
+                    summary.notes.1 = Some(note.clone());
+                }
+                if record > 0 && !layout.is_mid(record) {
+                    summary.step(scene, layout.step_of(record), frame);
+                }
+            },
+            |step, digest| groups.add(step, digest),
+        );
+        summary.digests = groups.finish();
+        Self {
+            bytes: walked.bytes,
+            records: walked.records,
+            trailing: walked.trailing,
+            unread: walked.unread,
+            stopped: walked.stopped,
+            sha256: walked.sha256,
+            ..summary
+        }
+    }
+
+    /// Takes in the end record of a step.
+    fn step(&mut self, scene: &Scene, step: u32, frame: &Frame) {
+        self.impulses.add(frame.impulses.len() as u64);
+        self.polynomials.add(frame.polynomials.len() as u64);
+        let room = COLLISIONS - self.collisions.len();
+        self.collisions.extend(frame.impulses.iter().take(room).map(|impulse| (step, *impulse)));
+        let events = (frame.impulses.len(), frame.polynomials.len());
+        if self.busiest.as_ref().is_none_or(|busiest| events > (busiest.impulses, busiest.polynomials)) {
+            let view = StepView::of(scene, self.polynomials_per_pass, step, frame);
+            self.first.get_or_insert_with(|| view.clone());
+            self.busiest = Some(view);
+        }
+    }
+}
+
+impl StepView {
+    fn of(scene: &Scene, per_pass: u64, step: u32, frame: &Frame) -> Self {
+        let log = &frame.polynomials;
+        let labels = labels(scene).cycle();
+        let shown = log
+            .iter()
+            .zip(labels)
+            .take(POLYNOMIALS)
+            .enumerate()
+            .map(|(index, (coefficients, label))| {
+                let pass = index as u64 / per_pass.max(1);
+                let coefficients = coefficients.iter().copied().take(COEFFICIENTS).collect();
+                (format!("pass {pass}, {label}"), coefficients)
+            })
+            .collect();
+        Self { step, impulses: frame.impulses.len(), polynomials: log.len(), shown }
+    }
+}
+
+/// For each polynomial of a detection pass its pair in words (collisions.md 1).
+fn labels(scene: &Scene) -> impl Iterator<Item = String> + Clone {
+    let count = scene.particles.len();
+    (0..count).flat_map(move |i| {
+        let particles = (i + 1..count).map(move |j| (format!("particle {i} - particle {j}"), 2));
+        let apart = move |edge: usize| scene.edges[edge].first != i && scene.edges[edge].second != i;
+        let edges = (0..scene.edges.len()).filter(move |&e| apart(e));
+        let edges = edges.map(move |e| (format!("particle {i} - edge {e}"), 4));
+        let half_planes = (0..scene.half_planes.len()).map(move |h| (format!("particle {i} - half-plane {h}"), 2));
+        particles.chain(edges).chain(half_planes).flat_map(|(label, times)| std::iter::repeat_n(label, times))
+    })
+}
+
+/// Polynomials of one detection pass over all pairs; 0 for the types without polynomials.
+fn polynomials_per_pass(scene: &Scene) -> u64 {
+    if !Layout::of(scene).polynomials {
+        return 0;
+    }
+    let particles = scene.particles.len() as u64;
+    let apart = |first, second| particles - if first == second { 1 } else { 2 };
+    let edges: u64 = scene.edges.iter().map(|edge| apart(edge.first, edge.second)).sum();
+    particles * particles.saturating_sub(1) + 4 * edges + 2 * particles * scene.half_planes.len() as u64
+}
+
+fn name(collision: &Collision) -> &'static str {
+    match collision {
+        Collision::None => "none",
+        Collision::Simple { .. } => "simple",
+        Collision::Penalty { .. } => "penalty",
+        Collision::ContinuousTime { .. } => "continuous-time",
+        Collision::Hybrid { .. } => "hybrid",
+    }
+}
+
+/// Gathers the digests of steps into groups of equal length.
+struct Groups {
+    length: u32,
+    open: Option<(u32, u32, Sha256, Short)>,
+    closed: Vec<(u32, u32, Short)>,
+}
+
+impl Groups {
+    fn new(steps: u32) -> Self {
+        Self { length: steps.div_ceil(GROUPS).max(1), open: None, closed: Vec::new() }
+    }
+
+    fn add(&mut self, step: u32, digest: Short) {
+        match &mut self.open {
+            Some((_, last, all, _)) => {
+                all.update(digest.0.to_be_bytes());
+                *last = step;
+            }
+            None => {
+                let all = Sha256::new_with_prefix(digest.0.to_be_bytes());
+                self.open = Some((step, step, all, digest));
+            }
+        }
+        // The initial record is a group of its own.
+        if step.is_multiple_of(self.length) {
+            self.close();
+        }
+    }
+
+    fn close(&mut self) {
+        if let Some((first, last, all, single)) = self.open.take() {
+            // A single step keeps its own digest, the one that a listing of all steps shows.
+            self.closed.push((first, last, if first == last { single } else { Short::of(all) }));
+        }
+    }
+
+    fn finish(mut self) -> Vec<(u32, u32, Short)> {
+        self.close();
+        self.closed
+    }
+}
+
+/// `1 particle`, `2 particles`.
+fn number(count: impl Into<u64>, thing: &str) -> String {
+    let count = count.into();
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let steps = number(self.layout.steps, "step");
+        let particles = number(self.layout.particles as u64, "particle");
+        let (edges, planes) = (number(self.edges as u64, "edge"), number(self.half_planes as u64, "half-plane"));
+        writeln!(f, "scene          {}, {steps}, {particles}, {edges}, {planes}", self.collision)?;
+        let bytes = number(self.bytes, "byte");
+        let more = if self.unread { "more than " } else { "" };
+        writeln!(f, "trace          {more}{bytes}, {} of {}", self.records, number(self.layout.records(), "record"))?;
+        if let Some(error) = &self.stopped {
+            writeln!(f, "damage         {error}")?;
+        }
+        if self.trailing > 0 {
+            writeln!(f, "trailing       {more}{}", number(self.trailing, "byte"))?;
+        }
+        if let (count, Some(first)) = &self.notes {
+            writeln!(f, "odd            {}, the first: {first}", number(*count, "value"))?;
+        }
+        if self.layout.impulses {
+            writeln!(f, "impulses       {}; per step: {}", self.impulses.total(), self.impulses)?;
+        }
+        if self.layout.polynomials {
+            let (total, per_pass) = (self.polynomials.total(), self.polynomials_per_pass);
+            writeln!(f, "polynomials    {total} ({per_pass} per detection pass); per step: {}", self.polynomials)?;
+        }
+        self.write_collisions(f)?;
+        for (index, view) in [&self.first, &self.busiest].into_iter().flatten().enumerate() {
+            let again = index == 1 && self.first.as_ref().is_some_and(|first| first.step == view.step);
+            if !again && !view.shown.is_empty() {
+                write!(f, "{view}")?;
+            }
+        }
+        writeln!(f, "digests")?;
+        for (first, last, digest) in &self.digests {
+            let steps = if first == last { format!("step {first}") } else { format!("steps {first}-{last}") };
+            writeln!(f, "  {steps:<12} {digest}")?;
+        }
+        if self.unread {
+            return writeln!(f, "sha256         unknown, for not all bytes were read");
+        }
+        writeln!(f, "sha256         {}", self.sha256)
+    }
+}
+
+impl Summary {
+    fn write_collisions(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.collisions.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "collisions")?;
+        for (step, impulse) in &self.collisions {
+            writeln!(f, "  step {step}: {impulse}")?;
+        }
+        match self.impulses.total() - self.collisions.len() as u64 {
+            0 => Ok(()),
+            more => writeln!(f, "  and {more} more"),
+        }
+    }
+}
+
+impl fmt::Display for StepView {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "step {}", self.step)?;
+        for (index, (label, coefficients)) in self.shown.iter().enumerate() {
+            writeln!(f, "  polynomial {index}, {label}: {coefficients:?}")?;
+        }
+        match self.polynomials - self.shown.len() {
+            0 => Ok(()),
+            more => writeln!(f, "  and {more} more"),
+        }
+    }
+}

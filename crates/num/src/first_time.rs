@@ -1,0 +1,185 @@
+//! The first time from which a list of polynomials is positive.
+//!
+//! Part II of root-finder.md: the zeros cut the line into gaps, one sample per gap says whether the polynomial is
+//! positive there, and the sets of all polynomials are intersected. The samples are taken at face value, as the
+//! original does: rounding may decide one, and zeros that the root finder did not find are simply missing.
+use super::{
+    interval::{Interval, Intervals},
+    polynomial::{Polynomial, evaluate},
+    rpoly::{self, DoesNotTerminate, MAX_DEGREE, Zeros},
+    tolerances::IMAGINARY_PART,
+};
+
+/// The earliest `t >= 0` from which all polynomials are positive, `+inf` if none (root-finder.md 16.3). Polynomials
+/// must have been made by [`Polynomial::trimmed`] (or `untrimmed`, for the non-dropping build).
+///
+/// All polynomials are solved, even when an earlier one is nowhere positive: this decides whether the search ends.
+/// The result is `+0`, positive or `+inf`, never `-0` and never NaN for finite coefficients. An empty list gives
+/// `+inf`, and so does a list with an empty polynomial or one of the form `c z^m`, whatever the others are.
+///
+/// # Errors
+/// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
+///
+/// # Panics
+/// With more than ten polynomials whose sets are as ragged as can be; a detection has at most four.
+#[inline]
+pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
+    let lists = polynomials.iter().map(Polynomial::coefficients);
+    // Two polynomials, of degree five at most, meet in five intervals at most; four of them in nine.
+    match polynomials.len() {
+        0..=2 => intersected::<5>(lists),
+        3..=4 => intersected::<9>(lists),
+        _ => intersected::<32>(lists),
+    }
+}
+
+/// [`first_time`] of coefficient lists, highest power first, taken as they are; degrees up to [`MAX_DEGREE`].
+///
+/// # Errors
+/// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
+///
+/// # Panics
+/// With more than ten lists whose sets are as ragged as can be.
+pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
+    intersected::<32>(lists.into_iter())
+}
+
+/// The intersection of the positive sets and its first time, with room for `CAPACITY` intervals.
+#[inline]
+fn intersected<'a, const CAPACITY: usize>(mut lists: impl Iterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
+    let Some(first) = lists.next() else { return Ok(f64::INFINITY) };
+    let mut set = Intervals::<CAPACITY>::new();
+    for &interval in positive_set(first)?.as_slice() {
+        set.push(interval);
+    }
+    for list in lists {
+        set = set.intersection(&positive_set(list)?);
+    }
+    Ok(set.next_time(0.0))
+}
+
+/// The positive set of one polynomial: before merging, at most one interval per gap between six zeros.
+pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
+
+/// Where one polynomial is positive, judged by one sample per gap between its real zeros (root-finder.md 15.3).
+///
+/// # Errors
+/// [`DoesNotTerminate`] when the search for its zeros would never end.
+///
+/// # Panics
+/// With more than [`MAX_DEGREE`]` + 1` coefficients.
+pub fn positive_set(coefficients: &[f64]) -> Result<PositiveSet, DoesNotTerminate> {
+    let mut set = PositiveSet::new();
+    let zeros = match coefficients.len() {
+        0 => return Ok(set),
+        1 => Zeros::default(),
+        _ => rpoly::zeros(coefficients)?,
+    };
+    let mut storage = [0.0; MAX_DEGREE];
+    let breaks = sorted_real_parts(&zeros, &mut storage);
+    let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
+        // No real zero is known: t = 0 stands for the whole line.
+        if evaluate(coefficients, 0.0) > 0.0 {
+            set.push(Interval::EVERYTHING);
+        }
+        return Ok(set);
+    };
+    if evaluate(coefficients, first - 1.0) > 0.0 {
+        set.push(Interval { lo: f64::NEG_INFINITY, hi: first });
+    }
+    for pair in breaks.windows(2) {
+        if evaluate(coefficients, (pair[0] + pair[1]) * 0.5) > 0.0 {
+            set.push(Interval { lo: pair[0], hi: pair[1] });
+        }
+    }
+    if evaluate(coefficients, last + 1.0) > 0.0 {
+        set.push(Interval { lo: last, hi: f64::INFINITY });
+    }
+    set.normalise();
+    Ok(set)
+}
+
+/// The real parts of the zeros that count as real, ascending.
+///
+/// It is the original's insertion sort, step by step: with a NaN among the values the result depends on the method.
+fn sorted_real_parts<'a>(zeros: &Zeros, storage: &'a mut [f64; MAX_DEGREE]) -> &'a [f64] {
+    let mut length = 0;
+    for &(re, im) in zeros.as_slice() {
+        if im.abs() < IMAGINARY_PART {
+            let mut place = length;
+            if re < storage[0] {
+                while place > 0 {
+                    storage[place] = storage[place - 1];
+                    place -= 1;
+                }
+            } else {
+                while place > 0 && storage[place - 1] > re {
+                    storage[place] = storage[place - 1];
+                    place -= 1;
+                }
+            }
+            storage[place] = re;
+            length += 1;
+        }
+    }
+    &storage[..length]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_time;
+    use crate::polynomial::Polynomial;
+
+    type Make = fn(&[f64]) -> Polynomial;
+
+    fn time(make: Make, lists: &[&[f64]]) -> u64 {
+        let polynomials: Vec<Polynomial> = lists.iter().map(|list| make(list)).collect();
+        first_time(&polynomials).expect("terminates").to_bits()
+    }
+
+    #[test]
+    fn the_examples_of_the_specification_in_the_dropping_build() {
+        let never = f64::INFINITY.to_bits();
+        let half = 0.5_f64.to_bits();
+        let cases: [(&[&[f64]], u64); 16] = [
+            (&[], never),
+            (&[&[1.0, -0.5]], half),
+            (&[&[1.0, 0.0]], never),
+            (&[&[1.0, 0.0, 0.0]], never),
+            (&[&[1.0, -1.0, 0.0]], 1.0_f64.to_bits()),
+            (&[&[-1.0, 1.0, 0.0]], 0),
+            (&[&[-1.0, 0.25]], 0),
+            (&[&[1.0, -0.5], &[-1.0, 0.5]], half),
+            (&[&[1.0, -1.0, 0.25]], 0),
+            (&[&[-1.0, 1.0, -0.25]], never),
+            (&[&[0.0, 0.0]], never),
+            (&[&[1e-13, 1.0, -0.5]], half),
+            (&[&[1e-12, 1.0, -0.5]], 0x3FDF_FFFF_FFFF_EE68),
+            (&[&[1.0, 0.0, 1e-18], &[1.0, -0.25]], 0.25_f64.to_bits()),
+            (&[&[-0.09, 0.33, -0.28], &[-0.09, 0.165]], 0x3FF5_5555_5555_5555),
+            (&[&[1.0, -3.0, 2.0], &[1.0, 0.0]], never),
+        ];
+        for (lists, expected) in cases {
+            assert_eq!(time(Polynomial::trimmed, lists), expected, "{lists:?}");
+        }
+        assert_eq!(time(Polynomial::trimmed, &[&[0.0, 1.0, -0.5]]), half);
+    }
+
+    #[test]
+    fn the_examples_of_the_specification_in_the_non_dropping_build() {
+        let untrimmed: Make = Polynomial::untrimmed;
+        assert_eq!(time(untrimmed, &[&[0.0, 1.0, -0.5]]), f64::INFINITY.to_bits());
+        assert_eq!(time(untrimmed, &[&[0.0, 1.0, 0.5]]), 0);
+        assert_eq!(time(untrimmed, &[&[1e-13, 1.0, -0.5]]), 0x3FDF_FFFF_FFFF_FE3E);
+    }
+
+    #[test]
+    fn a_later_polynomial_that_cannot_be_solved_is_noticed_even_if_the_first_is_never_positive() {
+        let never = Polynomial::trimmed(&[-1.0]);
+        let endless = Polynomial::trimmed(&[1.0, f64::NAN, 1.0, 1.0]);
+        assert!(first_time(&[never, endless]).is_err());
+        // Degree two returns normally whatever its coefficients are.
+        let infinite = Polynomial::trimmed(&[1.0, f64::INFINITY, 1.0]);
+        assert_eq!(first_time(&[never, infinite]).expect("terminates"), f64::INFINITY);
+    }
+}

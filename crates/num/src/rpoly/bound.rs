@@ -1,0 +1,79 @@
+//! A lower bound on the moduli of the zeros (root-finder.md 9): the positive zero of the polynomial whose coefficients
+//! are the moduli, the last one negated, to half a per cent.
+use super::{Coefficients, DoesNotTerminate};
+use crate::elementary::{exp, ln};
+
+/// Newton steps after which the iteration is known to cycle; every other one makes fewer than 500.
+const MAX_NEWTON_STEPS: usize = 1000;
+
+/// The bound for a polynomial of degree `N`; 0 when its constant term is 0.
+///
+/// # Errors
+/// [`DoesNotTerminate`] when a coefficient is not finite, or when the Newton iteration cycles among subnormals.
+#[inline]
+pub(super) fn lower_bound<const N: usize>(polynomial: &Coefficients) -> Result<f64, DoesNotTerminate> {
+    if !polynomial[..=N].iter().all(|coefficient| coefficient.is_finite()) {
+        return Err(DoesNotTerminate);
+    }
+    let mut moduli = Coefficients::default();
+    for i in 0..=N {
+        moduli[i] = polynomial[i].abs();
+    }
+    moduli[N] = -moduli[N];
+    newton::<N>(&moduli, decimate::<N>(&moduli, start::<N>(&moduli)))
+}
+
+/// The starting point: the geometric mean of the zeros' moduli, or the Newton step from the origin if that is nearer.
+#[inline]
+#[expect(clippy::cast_precision_loss, reason = "N is at most six")]
+fn start<const N: usize>(moduli: &Coefficients) -> f64 {
+    let constant = moduli[N].abs();
+    let mean = exp((ln(constant) - ln(moduli[0])) / N as f64);
+    if moduli[N - 1] != 0.0 {
+        let newton = constant / moduli[N - 1];
+        if newton < mean {
+            return newton;
+        }
+    }
+    mean
+}
+
+/// Divides by ten as long as the polynomial stays positive. With finite coefficients this ends after some 600 rounds
+/// at the latest, at zero.
+#[inline]
+fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64) -> f64 {
+    loop {
+        let tenth = x * 0.1;
+        let mut value = moduli[0];
+        for &modulus in &moduli[1..=N] {
+            value = value * tenth + modulus;
+        }
+        if value <= 0.0 {
+            return x;
+        }
+        x = tenth;
+    }
+}
+
+/// Newton's iteration until a step changes less than half a per cent. With `x = 0` the ratio is NaN and none is made.
+#[inline]
+fn newton<const N: usize>(moduli: &Coefficients, mut x: f64) -> Result<f64, DoesNotTerminate> {
+    let mut step = x;
+    let mut steps = 0;
+    while (step / x).abs() > 0.005 {
+        if steps == MAX_NEWTON_STEPS {
+            return Err(DoesNotTerminate);
+        }
+        steps += 1;
+        let mut value = moduli[0];
+        let mut slope = value;
+        for &modulus in &moduli[1..N] {
+            value = value * x + modulus;
+            slope = slope * x + value;
+        }
+        value = value * x + moduli[N];
+        step = value / slope;
+        x -= step;
+    }
+    Ok(x)
+}

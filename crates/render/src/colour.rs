@@ -1,0 +1,75 @@
+//! Colours of scenes, and those that stand out against them.
+use fosssim_model::scene;
+
+/// A colour, eight bits per component.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Colour(pub [u8; 3]);
+
+impl Colour {
+    /// White, the background of scenes that name none.
+    pub const WHITE: Self = Self([255; 3]);
+    /// Black, the colour of half-planes that name none.
+    pub const BLACK: Self = Self([0; 3]);
+    /// The colour of particles that name none (scene-format.md 4).
+    pub const PARTICLE: Self = Self([166, 75, 0]);
+    /// The colour of edges that name none (scene-format.md 4).
+    pub const EDGE: Self = Self([0, 99, 99]);
+
+    /// The colour between this one and another, `share` of 8 parts of it.
+    #[must_use]
+    pub fn towards(self, other: Self, share: u8) -> Self {
+        let part = |own: u8, other: u8| {
+            let sum = u32::from(own) * u32::from(8 - share.min(8)) + u32::from(other) * u32::from(share.min(8));
+            u8::try_from((sum + 4) / 8).unwrap_or(u8::MAX)
+        };
+        Self(std::array::from_fn(|k| part(self.0[k], other.0[k])))
+    }
+
+    /// How bright it looks, 0 to 255 (Rec. 709 weights).
+    #[must_use]
+    pub fn brightness(self) -> u32 {
+        let [red, green, blue] = self.0.map(u32::from);
+        (2126 * red + 7152 * green + 722 * blue) / 10_000
+    }
+
+    /// Black or white, whichever can be read on this background.
+    #[must_use]
+    pub fn ink(self) -> Self {
+        if self.brightness() > 127 { Self::BLACK } else { Self::WHITE }
+    }
+
+    /// `#rrggbb`
+    #[must_use]
+    pub fn hex(self) -> String {
+        let [red, green, blue] = self.0;
+        format!("#{red:02x}{green:02x}{blue:02x}")
+    }
+}
+
+impl From<scene::Color> for Colour {
+    fn from(colour: scene::Color) -> Self {
+        // Out of range and NaN can't come from a reader, and saturate.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
+        let part = |value: f64| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
+        Self([part(colour.red), part(colour.green), part(colour.blue)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ink_can_be_read_on_its_background() {
+        assert_eq!(Colour::WHITE.ink(), Colour::BLACK);
+        assert_eq!(Colour([20, 20, 60]).ink(), Colour::WHITE);
+        assert_eq!(Colour([255, 230, 0]).ink(), Colour::BLACK);
+    }
+
+    #[test]
+    fn parts_of_the_way_begin_and_end_at_the_colours() {
+        let (one, two) = (Colour([0, 10, 255]), Colour([255, 10, 0]));
+        assert_eq!((one.towards(two, 0), one.towards(two, 8), one.towards(two, 4)), (one, two, Colour([128, 10, 128])));
+        assert_eq!(Colour::PARTICLE.hex(), "#a64b00");
+    }
+}

@@ -1,0 +1,24 @@
+//! A detection call as a picture: the assignment's figure 2 with the numbers of the pair.
+use crate::plot::{Curve, Curves, Embedding};
+use fosssim_judge::study::Study;
+
+/// The polynomials of a call on the step, where each is positive, where all are, and the time of impact. The mathematically
+/// right approach polynomial, where it is another one, has no part in the decision and is not shown.
+#[must_use]
+pub fn picture(study: &Study, title: &str, embedding: Embedding) -> String {
+    let names: Vec<String> = study.curves.iter().map(|curve| curve.role.to_string()).collect();
+    let zeros: Vec<Vec<f64>> = study.curves.iter().map(|curve| curve.real_zeros()).collect();
+    let curves: Vec<Curve<'_>> = study
+        .curves
+        .iter()
+        .zip(names.iter().zip(&zeros))
+        .map(|(curve, (name, zeros))| Curve {
+            name,
+            coefficients: curve.logged.coefficients(),
+            zeros,
+            positive: &curve.positive,
+        })
+        .collect();
+    let impact = study.answer.collides().then(|| study.answer.time());
+    Curves { title, curves: &curves, common: Some(&study.answer.positive), impact }.svg(embedding)
+}

@@ -1,0 +1,147 @@
+//! A GIF: 256 colours for the whole film, chosen from the scene's own.
+//!
+//! Edges of shapes are blends of two colours; the palette holds the way from each colour to the background in steps, and a
+//! cube of all colours where there is room. What is not in it becomes the nearest that is.
+use super::{Rate, changed::Part};
+use crate::{colour::Colour, raster::Raster, size::Size};
+use std::{
+    collections::{BTreeSet, HashMap},
+    io::{self, Write},
+};
+
+/// Steps on the way from a colour to the background.
+const STEPS: u8 = 8;
+
+/// A GIF that is being written.
+pub struct Gif<W: Write> {
+    encoder: gif::Encoder<W>,
+    size: Size,
+    rate: Rate,
+    palette: Vec<Colour>,
+    /// Colours that have been looked up.
+    known: HashMap<[u8; 3], u8>,
+    before: Vec<u8>,
+    pictures: u64,
+}
+
+impl<W: Write> Gif<W> {
+    /// Begins a film, played for ever, in these colours, the background first.
+    ///
+    /// # Errors
+    /// When `out` can't be written, or the pictures are larger than a GIF can say.
+    pub fn new(out: W, size: Size, rate: Rate, colours: &[Colour]) -> io::Result<Self> {
+        let palette = palette(colours);
+        let bytes: Vec<u8> = palette.iter().flat_map(|colour| colour.0).collect();
+        let mut encoder = gif::Encoder::new(out, side(size.width()), side(size.height()), &bytes).map_err(error)?;
+        encoder.set_repeat(gif::Repeat::Infinite).map_err(error)?;
+        Ok(Self { encoder, size, rate, palette, known: HashMap::new(), before: Vec::new(), pictures: 0 })
+    }
+
+    /// Appends a picture.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub fn picture(&mut self, raster: &Raster) -> io::Result<()> {
+        let (palette, known) = (&self.palette, &mut self.known);
+        let after: Vec<u8> = raster
+            .rgba()
+            .chunks_exact(4)
+            .map(|pixel| {
+                let colour = [pixel[0], pixel[1], pixel[2]];
+                *known.entry(colour).or_insert_with(|| nearest(palette, colour))
+            })
+            .collect();
+        let part = match self.before.is_empty() {
+            true => Part::whole(self.size),
+            false => Part::changed::<1>(self.size, &self.before, &after),
+        };
+        // Delays are hundredths of a second: their sum stays true at every rate.
+        let at = |pictures: u64| 100 * pictures / u64::from(self.rate.per_second());
+        let delay = at(self.pictures + 1) - at(self.pictures);
+        let frame = gif::Frame {
+            delay: u16::try_from(delay).unwrap_or(u16::MAX),
+            dispose: gif::DisposalMethod::Keep,
+            left: side(part.left),
+            top: side(part.top),
+            width: side(part.width),
+            height: side(part.height),
+            buffer: part.cut::<1>(self.size, &after).into(),
+            ..gif::Frame::default()
+        };
+        self.encoder.write_frame(&frame).map_err(error)?;
+        self.before = after;
+        self.pictures += 1;
+        Ok(())
+    }
+
+    /// Ends the film.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub fn finish(self) -> io::Result<()> {
+        self.encoder.into_inner().map_err(error)?.flush()
+    }
+}
+
+/// A side of a picture or a place in it; sizes are far below the limit.
+fn side(pixels: u32) -> u16 {
+    u16::try_from(pixels).unwrap_or(u16::MAX)
+}
+
+fn error(error: gif::EncodingError) -> io::Error {
+    match error {
+        gif::EncodingError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
+/// At most 256 colours: the given ones first, then steps towards the first one, then a cube of all colours.
+fn palette(colours: &[Colour]) -> Vec<Colour> {
+    let background = colours.first().copied().unwrap_or(Colour::WHITE);
+    let mut palette = Vec::new();
+    let mut seen = BTreeSet::new();
+    let mut add = |colour: Colour| {
+        if palette.len() < 256 && seen.insert(colour) {
+            palette.push(colour);
+        }
+    };
+    colours.iter().copied().for_each(&mut add);
+    // Half the way first: where there are many colours, few steps of each are better than all of a few.
+    for step in [4, 2, 6, 1, 3, 5, 7] {
+        debug_assert!(step < STEPS);
+        colours.iter().for_each(|&colour| add(colour.towards(background, step)));
+    }
+    for levels in [6_u8, 4] {
+        let part = |index: u8| u8::try_from(255 * u32::from(index) / u32::from(levels - 1)).unwrap_or(u8::MAX);
+        for red in 0..levels {
+            for green in 0..levels {
+                (0..levels).for_each(|blue| add(Colour([red, green, blue].map(part))));
+            }
+        }
+    }
+    palette
+}
+
+fn nearest(palette: &[Colour], colour: [u8; 3]) -> u8 {
+    let distance = |other: &Colour| -> u32 {
+        other.0.iter().zip(colour).map(|(&own, other)| u32::from(own.abs_diff(other)).pow(2)).sum()
+    };
+    let nearest = palette.iter().enumerate().min_by_key(|(_, other)| distance(other));
+    nearest.map_or(0, |(index, _)| u8::try_from(index).unwrap_or(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scenes_colours_are_exact() {
+        let many: Vec<Colour> = (0..200).map(|k| Colour([k, 255 - k, 7])).collect();
+        let palette = palette(&many);
+        assert_eq!(palette.len(), 256);
+        for colour in many {
+            assert_eq!(palette[usize::from(nearest(&palette, colour.0))], colour);
+        }
+        assert!(super::palette(&[]).len() <= 256);
+    }
+}

@@ -1,0 +1,28 @@
+//! Pictures to files: one PNG, an animated PNG, a GIF. Encoders are fed picture by picture and hold two at most.
+mod apng;
+mod changed;
+mod gif;
+mod png;
+
+pub use self::{apng::Apng, gif::Gif, png::png};
+
+/// How fast pictures follow each other, in pictures per second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rate(u16);
+
+/// The fastest rate.
+pub const FASTEST: u16 = 240;
+
+impl Rate {
+    /// A rate from 1 to [`FASTEST`]; nothing for others.
+    #[must_use]
+    pub const fn new(per_second: u16) -> Option<Self> {
+        if per_second == 0 || per_second > FASTEST { None } else { Some(Self(per_second)) }
+    }
+
+    /// Pictures per second.
+    #[must_use]
+    pub const fn per_second(self) -> u16 {
+        self.0
+    }
+}

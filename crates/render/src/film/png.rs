@@ -1,0 +1,23 @@
+//! One picture as PNG.
+use crate::raster::Raster;
+use std::io::{self, Write};
+
+/// A picture as the bytes of a PNG file, without transparency.
+///
+/// # Errors
+/// When `out` can't be written.
+pub fn png(raster: &Raster, out: impl Write) -> io::Result<()> {
+    let size = raster.size();
+    let mut encoder = ::png::Encoder::new(out, size.width(), size.height());
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&rgb(raster))?;
+    writer.finish()?;
+    Ok(())
+}
+
+/// Red, green and blue of each pixel.
+pub(super) fn rgb(raster: &Raster) -> Vec<u8> {
+    raster.rgba().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+}

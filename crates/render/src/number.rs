@@ -1,0 +1,76 @@
+//! Numbers as labels: few digits, no noise.
+
+/// At most six significant digits, no zeros at the end: `0.14`, `-1.5`, `1e-9`, `2.5e12`, `nan`.
+#[must_use]
+pub fn short(value: f64) -> String {
+    if !value.is_finite() {
+        return if value.is_nan() { "nan".to_owned() } else { format!("{value}") };
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let scientific = format!("{value:.5e}");
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let power: i32 = exponent.parse().unwrap_or(0);
+    if (-4..7).contains(&power) {
+        #[expect(clippy::cast_sign_loss, reason = "not negative")]
+        let decimals = (5 - power).max(0) as usize;
+        return trimmed(&format!("{value:.decimals$}")).to_owned();
+    }
+    format!("{}e{power}", trimmed(mantissa))
+}
+
+/// Without zeros behind the point.
+fn trimmed(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+/// A coordinate in pixels: two decimals at most, never `-0`.
+#[must_use]
+pub fn pixel(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = trimmed(&text);
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// The decades from the one at or below `least` to the one at or above `most`, as powers of ten.
+#[must_use]
+pub fn decades(least: f64, most: f64) -> (i32, i32) {
+    #[expect(clippy::cast_possible_truncation, reason = "a logarithm of a finite double is below 400")]
+    let power = |value: f64, round: fn(f64) -> f64| round(value.log10()).clamp(-400.0, 400.0) as i32;
+    let low = power(least, f64::floor);
+    (low, power(most, f64::ceil).max(low + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_are_short() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (0.14, "0.14"),
+            (0.1 + 0.2, "0.3"),
+            (-1.5, "-1.5"),
+            (1e-9, "1e-9"),
+            (2.5e12, "2.5e12"),
+            (123_456.789, "123457"),
+            (999_999.9, "1000000"),
+            (1.0 / 3.0, "0.333333"),
+            (0.000_1, "0.0001"),
+            (f64::NAN, "nan"),
+            (f64::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+        assert_eq!((pixel(-0.001), pixel(12.345), pixel(3.0)), ("0".into(), "12.35".into(), "3".into()));
+    }
+
+    #[test]
+    fn decades_enclose() {
+        assert_eq!(decades(3e-12, 2e-3), (-12, -2));
+        assert_eq!(decades(1e-3, 1e-3), (-3, -2));
+    }
+}

@@ -1,0 +1,372 @@
+//! From the positions of a scene's bodies to the shapes of a picture.
+use crate::{
+    clip::Frame,
+    colour::Colour,
+    number::short,
+    shape::{Paint, Point, Shape},
+    size::Size,
+    view::{Extent, View},
+};
+use fosssim_model::scene::{Color, Scene};
+use fosssim_num::vector::{Vec2, at};
+use std::collections::VecDeque;
+
+/// Discs and lines are at least so wide, in pixels, or they would vanish.
+const THINNEST: f64 = 1.5;
+
+/// How much of a half-plane's inside shows.
+const INSIDE: f64 = 0.25;
+
+/// Discs of more pixels than this are drawn as the half-plane that they are where they can be seen.
+const HUGE: f64 = 100_000.0;
+
+/// So many points of a particle's path are drawn; older ones grow sparse.
+const LONGEST_PATH: usize = 2000;
+
+/// What a picture shows besides the bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// The size of the picture.
+    pub size: Size,
+    /// Whether step and time stand in the lower left corner.
+    pub label: bool,
+}
+
+/// Draws the bodies of one scene.
+#[derive(Debug, Clone)]
+pub struct Painter {
+    view: View,
+    label: bool,
+    time_step: f64,
+    background: Colour,
+    radii: Vec<f64>,
+    particles: Vec<Colour>,
+    edges: Vec<([usize; 2], f64, Colour)>,
+    half_planes: Vec<(Vec2, Vec2, Colour)>,
+    trails: Vec<Trail>,
+}
+
+/// The path that a particle leaves behind.
+#[derive(Debug, Clone)]
+struct Trail {
+    particle: usize,
+    colour: Colour,
+    duration: f64,
+    /// Times and places, oldest first.
+    points: VecDeque<(f64, Vec2)>,
+}
+
+impl Painter {
+    /// A painter whose pictures hold all of `extent`, or show the scene's own viewport.
+    #[must_use]
+    pub fn new(scene: &Scene, extent: &Extent, options: Options) -> Self {
+        let display = &scene.display;
+        // Later elements win; indices that name nothing are the original's undefined behaviour and colour nothing.
+        let coloured = |count: usize, default: Colour, list: &[(usize, Color)]| {
+            let mut colours = vec![default; count];
+            for &(index, colour) in list {
+                if let Some(place) = colours.get_mut(index) {
+                    *place = colour.into();
+                }
+            }
+            colours
+        };
+        let particles = coloured(scene.particles.len(), Colour::PARTICLE, &display.particle_colors);
+        let edges = coloured(scene.edges.len(), Colour::EDGE, &display.edge_colors);
+        let half_planes = coloured(scene.half_planes.len(), Colour::BLACK, &display.half_plane_colors);
+        let paths = display.paths.iter().filter(|path| path.particle < scene.particles.len());
+        Self {
+            view: View::of(scene, extent, options.size),
+            label: options.label,
+            time_step: scene.time_step,
+            background: display.background.map_or(Colour::WHITE, Colour::from),
+            radii: scene.particles.iter().map(|particle| particle.radius).collect(),
+            particles,
+            edges: scene.edges.iter().zip(edges).map(|(e, colour)| ([e.first, e.second], e.radius, colour)).collect(),
+            half_planes: scene.half_planes.iter().zip(half_planes).map(|(h, c)| (h.point, h.normal, c)).collect(),
+            trails: paths
+                .map(|path| Trail {
+                    particle: path.particle,
+                    colour: path.color.into(),
+                    duration: path.duration,
+                    points: VecDeque::new(),
+                })
+                .collect(),
+        }
+    }
+
+    /// The size of the pictures.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        self.view.size()
+    }
+
+    /// The colour behind everything.
+    #[must_use]
+    pub const fn background(&self) -> Colour {
+        self.background
+    }
+
+    /// All colours that pictures are made of, the background first.
+    #[must_use]
+    pub fn colours(&self) -> Vec<Colour> {
+        let mut colours = vec![self.background, self.background.ink(), self.overlay_colour()];
+        colours.extend(self.trails.iter().map(|trail| trail.colour));
+        colours.extend(&self.particles);
+        colours.extend(self.edges.iter().map(|edge| edge.2));
+        colours.extend(self.half_planes.iter().map(|half_plane| half_plane.2));
+        let mut seen = std::collections::BTreeSet::new();
+        colours.retain(|&colour| seen.insert(colour));
+        colours
+    }
+
+    /// What a second motion is drawn in: it stands out against light and dark backgrounds.
+    fn overlay_colour(&self) -> Colour {
+        if self.background.brightness() > 127 { Colour([178, 0, 110]) } else { Colour([255, 140, 220]) }
+    }
+
+    /// The picture after `step`, at these positions (2N, trace order), with a second motion's on top. Pictures have to be
+    /// asked for in the order of the steps, because particles leave paths.
+    ///
+    /// # Panics
+    /// When there are fewer positions than the scene has particles.
+    #[must_use]
+    pub fn picture(&mut self, step: u32, positions: &[f64], overlay: Option<&[f64]>) -> Vec<Shape> {
+        let time = f64::from(step) * self.time_step;
+        let mut shapes = Vec::new();
+        for &(point, normal, colour) in &self.half_planes {
+            self.half_plane(point, normal, colour, &mut shapes);
+        }
+        let (view, frame) = (self.view, self.frame(4.0));
+        for trail in &mut self.trails {
+            trail.goes_on(time, at(positions, trail.particle));
+            trail.draw(&view, &frame, &mut shapes);
+        }
+        for &(ends, radius, colour) in &self.edges {
+            let [first, second] = ends.map(|end| at(positions, end));
+            self.edge(first, second, radius, Paint::Solid(colour), &mut shapes);
+        }
+        for (index, (&radius, &colour)) in self.radii.iter().zip(&self.particles).enumerate() {
+            self.disc(at(positions, index), radius, Paint::Solid(colour), &mut shapes);
+        }
+        if let Some(other) = overlay {
+            let paint = Paint::Dashed(self.overlay_colour());
+            for &(ends, _, _) in &self.edges {
+                let [first, second] = ends.map(|end| at(other, end));
+                self.edge(first, second, 0.0, paint, &mut shapes);
+            }
+            for (index, &radius) in self.radii.iter().enumerate() {
+                self.disc(at(other, index), radius, paint, &mut shapes);
+            }
+        }
+        if self.label {
+            self.write(step, time, &mut shapes);
+        }
+        shapes
+    }
+
+    /// The picture's rectangle, widened by so many pixels.
+    fn frame(&self, margin: f64) -> Frame {
+        let size = self.size();
+        Frame { low: [-margin, -margin], high: [f64::from(size.width()) + margin, f64::from(size.height()) + margin] }
+    }
+
+    fn disc(&self, center: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
+        let place = self.view.place(center);
+        let radius = self.view.length(radius).max(THINNEST);
+        if !place.iter().all(|value| value.is_finite()) || !radius.is_finite() {
+            return;
+        }
+        let frame = self.frame(4.0);
+        let nearest: Point = std::array::from_fn(|k| place[k].clamp(frame.low[k], frame.high[k]));
+        let away = [nearest[0] - place[0], nearest[1] - place[1]];
+        let distance = away[0].hypot(away[1]);
+        if distance > radius {
+            return;
+        }
+        if radius < HUGE {
+            shapes.push(Shape::Disc { center: place, radius, paint });
+            return;
+        }
+        if matches!(paint, Paint::Dashed(_)) {
+            return;
+        }
+        // Its edge looks straight here, and lies across the way from its centre.
+        let points = match distance > 0.0 {
+            true => {
+                let unit = [away[0] / distance, away[1] / distance];
+                frame.side(|[x, y]| radius - ((x - place[0]) * unit[0] + (y - place[1]) * unit[1]))
+            }
+            false => frame.side(|_| 1.0),
+        };
+        shapes.push(Shape::Area { points, paint });
+    }
+
+    fn edge(&self, first: Vec2, second: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
+        let wide = 2.0 * self.view.length(radius);
+        let width = if wide.is_nan() { THINNEST } else { wide.clamp(THINNEST, HUGE) };
+        let frame = self.frame(width);
+        if let Some(ends) = frame.line(self.view.place(first), self.view.place(second)) {
+            shapes.push(Shape::Line { points: ends.to_vec(), width, paint });
+        }
+    }
+
+    fn half_plane(&self, point: Vec2, normal: Vec2, colour: Colour, shapes: &mut Vec<Shape>) {
+        let place = self.view.place(point);
+        // In the picture y points down.
+        let (x, y) = (normal.x, -normal.y);
+        let length = x.hypot(y);
+        if !(length > 0.0) || !length.is_finite() || !place.iter().all(|value| value.is_finite()) {
+            return;
+        }
+        let unit = [x / length, y / length];
+        let above = |[x, y]: Point| (x - place[0]) * unit[0] + (y - place[1]) * unit[1];
+        let points = self.frame(4.0).side(|point| -above(point));
+        if points.len() > 2 {
+            shapes.push(Shape::Area { points, paint: Paint::Faint(colour, INSIDE) });
+        }
+        // The boundary, as far as it can be seen: through its point nearest to the middle of the picture.
+        let size = self.size();
+        let middle = [0.5 * f64::from(size.width()), 0.5 * f64::from(size.height())];
+        let off = above(middle);
+        let near = [middle[0] - off * unit[0], middle[1] - off * unit[1]];
+        let reach = f64::from(size.width()) + f64::from(size.height());
+        let along = [-unit[1] * reach, unit[0] * reach];
+        let ends = [[near[0] - along[0], near[1] - along[1]], [near[0] + along[0], near[1] + along[1]]];
+        if let Some(ends) = self.frame(4.0).line(ends[0], ends[1]) {
+            shapes.push(Shape::Line { points: ends.to_vec(), width: 2.0, paint: Paint::Solid(colour) });
+        }
+    }
+
+    fn write(&self, step: u32, time: f64, shapes: &mut Vec<Shape>) {
+        let place = [8.0, f64::from(self.size().height()) - 8.0];
+        let text = format!("step {step}  t {}", short(time));
+        shapes.push(Shape::Text { place, text, colour: self.background.ink() });
+    }
+}
+
+impl Trail {
+    /// The particle has come here.
+    fn goes_on(&mut self, time: f64, place: Vec2) {
+        while self.points.front().is_some_and(|&(then, _)| !(time - then <= self.duration)) {
+            self.points.pop_front();
+        }
+        if self.points.len() >= LONGEST_PATH {
+            let mut keep = false;
+            self.points.retain(|_| {
+                keep = !keep;
+                keep
+            });
+        }
+        self.points.push_back((time, place));
+    }
+
+    /// The path in pieces that lie in the picture.
+    fn draw(&self, view: &View, frame: &Frame, shapes: &mut Vec<Shape>) {
+        let mut piece: Vec<Point> = Vec::new();
+        let mut finish = |piece: &mut Vec<Point>| {
+            if piece.len() > 1 {
+                let points = std::mem::take(piece);
+                shapes.push(Shape::Line { points, width: THINNEST, paint: Paint::Solid(self.colour) });
+            }
+            piece.clear();
+        };
+        for (&(_, from), &(_, to)) in self.points.iter().zip(self.points.iter().skip(1)) {
+            let Some([from, to]) = frame.line(view.place(from), view.place(to)) else {
+                finish(&mut piece);
+                continue;
+            };
+            if piece.last() != Some(&from) {
+                finish(&mut piece);
+                piece.push(from);
+            }
+            piece.push(to);
+        }
+        finish(&mut piece);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_model::scene::original;
+
+    const SCENE: &str = r#"<scene><duration time="1"/><viewport cx="0" cy="0" size="2"/>
+        <backgroundcolor r="0" g="0" b="0.2"/><integrator type="explicit-euler" dt="0.1"/>
+        <particle m="1" px="-1" py="0" vx="0" vy="0" fixed="0" radius="0.5"/>
+        <particle m="1" px="1" py="0" vx="0" vy="0" fixed="0" radius="0.25"/>
+        <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-1" nx="0" ny="3"/>
+        <particlecolor i="1" r="1" g="0" b="0"/><particlecolor i="1" r="0" g="1" b="0"/>
+        <particlepath i="1" duration="0.25" r="1" g="1" b="0"/></scene>"#;
+
+    fn painter(xml: &str) -> Painter {
+        let scene = original::read(xml.as_bytes()).unwrap().scene;
+        Painter::new(&scene, &Extent::default(), Options { size: Size::new(400, 400).unwrap(), label: true })
+    }
+
+    #[test]
+    fn bodies_have_the_scenes_own_colours_and_places() {
+        let shapes = painter(SCENE).picture(3, &[-1.0, 0.0, 1.0, 0.0], None);
+        let green = Paint::Solid(Colour([0, 255, 0]));
+        assert!(shapes.contains(&Shape::Disc {
+            center: [100.0, 200.0],
+            radius: 50.0,
+            paint: Paint::Solid(Colour::PARTICLE)
+        }));
+        assert!(shapes.contains(&Shape::Disc { center: [300.0, 200.0], radius: 25.0, paint: green }));
+        let line = Shape::Line {
+            points: vec![[100.0, 200.0], [300.0, 200.0]],
+            width: 20.0,
+            paint: Paint::Solid(Colour::EDGE),
+        };
+        assert!(shapes.contains(&line), "{shapes:?}");
+        // The half-plane's inside is below its boundary, that is where y is larger.
+        let Shape::Area { points, .. } = &shapes[0] else { panic!("{shapes:?}") };
+        assert!(points.iter().all(|point| point[1] >= 300.0), "{points:?}");
+        let text = Shape::Text { place: [8.0, 392.0], text: "step 3  t 0.3".into(), colour: Colour::WHITE };
+        assert_eq!(shapes.last(), Some(&text));
+    }
+
+    #[test]
+    fn a_second_motion_is_dashed() {
+        let shapes = painter(SCENE).picture(0, &[-1.0, 0.0, 1.0, 0.0], Some(&[-1.0, 0.5, 1.0, 0.5]));
+        let dashed = shapes.iter().filter(|shape| {
+            matches!(shape, Shape::Disc { paint: Paint::Dashed(_), .. } | Shape::Line { paint: Paint::Dashed(_), .. })
+        });
+        assert_eq!(dashed.count(), 3);
+    }
+
+    #[test]
+    fn paths_last_as_long_as_the_scene_says() {
+        let mut painter = painter(SCENE);
+        let yellow = Paint::Solid(Colour([255, 255, 0]));
+        let lengths: Vec<usize> = (0..6)
+            .map(|step| {
+                let x = 1.0 - 0.1 * f64::from(step);
+                let shapes = painter.picture(step, &[-1.0, 0.0, x, 0.0], None);
+                let path = shapes.iter().find_map(|shape| match shape {
+                    Shape::Line { points, paint, .. } if *paint == yellow => Some(points.len()),
+                    _ => None,
+                });
+                path.unwrap_or(0)
+            })
+            .collect();
+        assert_eq!(lengths, [0, 2, 3, 3, 3, 3]);
+    }
+
+    #[test]
+    fn bodies_without_a_place_and_very_far_ones_are_left_out() {
+        let mut painter = painter(SCENE);
+        for positions in
+            [[f64::NAN, 0.0, f64::INFINITY, 0.0], [1e300, 1e300, -1e300, 0.0], [1e9, 0.0, f64::NAN, f64::NAN]]
+        {
+            let shapes = painter.picture(0, &positions, Some(&positions));
+            assert!(!shapes.iter().any(|shape| matches!(shape, Shape::Disc { .. })), "{positions:?}");
+        }
+        let huge = SCENE.replace(r#"radius="0.5""#, r#"radius="1e9""#);
+        let shapes = self::painter(&huge).picture(0, &[-1e9, 0.0, 1.0, 0.0], None);
+        let Some(Shape::Area { points, .. }) = shapes.get(shapes.len() - 3) else { panic!("{shapes:?}") };
+        // Its edge stands in the middle of the picture.
+        assert!(points.iter().all(|point| point[0] < 200.1), "{points:?}");
+    }
+}

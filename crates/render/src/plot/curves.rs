@@ -1,0 +1,193 @@
+//! Detection polynomials on the step, with the intervals in which each is positive and those in which all are: the
+//! assignment's figure 2.
+use super::{
+    Embedding,
+    sheet::{Anchor, Ink, Sheet, Tone, WIDTH},
+};
+use crate::number::short;
+use fosssim_num::{interval::Interval, polynomial::evaluate};
+
+/// A polynomial.
+#[derive(Debug, Clone, Copy)]
+pub struct Curve<'a> {
+    /// What it is, in a few words.
+    pub name: &'a str,
+    /// Its coefficients, highest power first.
+    pub coefficients: &'a [f64],
+    /// Its real zeros.
+    pub zeros: &'a [f64],
+    /// Where it is positive.
+    pub positive: &'a [Interval],
+}
+
+/// What the plot shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Curves<'a> {
+    /// Its title.
+    pub title: &'a str,
+    /// The polynomials; four styles tell them apart.
+    pub curves: &'a [Curve<'a>],
+    /// Where all are positive; `None` where that is not asked, as for an expected and an actual polynomial.
+    pub common: Option<&'a [Interval]>,
+    /// The time of impact.
+    pub impact: Option<f64>,
+}
+
+const LEFT: f64 = 140.0;
+const RIGHT: f64 = WIDTH - 20.0;
+const TOP: f64 = 34.0;
+const MIDDLE: f64 = 134.0;
+const BOTTOM: f64 = 234.0;
+const ROW: f64 = 22.0;
+const SAMPLES: u32 = 128;
+
+impl Curves<'_> {
+    /// The plot.
+    #[must_use]
+    pub fn svg(&self, embedding: Embedding) -> String {
+        let rows = self.curves.len() + usize::from(self.common.is_some());
+        #[expect(clippy::cast_precision_loss, reason = "a handful")]
+        let row_top = |row: usize| BOTTOM + 30.0 + ROW * row as f64;
+        let height = row_top(rows) + 12.0;
+        let mut sheet = Sheet::new(height, self.title, &self.description(), embedding);
+        sheet.text([16.0, 18.0], Anchor::Start, Tone::Plain, self.title);
+        for tick in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            sheet.rule(Ink::Grid, [x(tick), TOP], [x(tick), row_top(rows)]);
+            sheet.text([x(tick), BOTTOM + 16.0], Anchor::Middle, Tone::Faint, &short(tick));
+        }
+        sheet.text([RIGHT, BOTTOM + 16.0 - 18.0], Anchor::End, Tone::Faint, "t");
+        sheet.rule(Ink::Axis, [LEFT, MIDDLE], [RIGHT, MIDDLE]);
+        sheet.text([LEFT - 8.0, TOP + 10.0], Anchor::End, Tone::Faint, "positive");
+        sheet.text([LEFT - 8.0, MIDDLE + 4.0], Anchor::End, Tone::Faint, "0");
+        sheet.text([LEFT - 8.0, BOTTOM - 2.0], Anchor::End, Tone::Faint, "negative");
+        for (number, curve) in self.curves.iter().enumerate() {
+            let ink = Ink::Series(number);
+            draw(curve, ink, number, &mut sheet);
+            let top = row_top(number);
+            sheet.line(ink, 2.0, &[[8.0, top + 8.0], [30.0, top + 8.0]]);
+            sheet.marker(ink, [19.0, top + 8.0]);
+            sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Plain, curve.name);
+            sets(curve.positive, ink, top, 0.75, &mut sheet);
+        }
+        if let Some(common) = self.common {
+            let top = row_top(rows - 1);
+            sheet.rule(Ink::Axis, [LEFT, top - 2.0], [RIGHT, top - 2.0]);
+            sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Bad, "all positive");
+            sets(common, Ink::Bad, top, 1.0, &mut sheet);
+        }
+        if let Some(time) = self.impact.filter(|time| (0.0..=1.0).contains(time)) {
+            sheet.line(Ink::Bad, 1.5, &[[x(time), TOP - 4.0], [x(time), row_top(rows)]]);
+            let (place, anchor) =
+                if time < 0.6 { (x(time) + 5.0, Anchor::Start) } else { (x(time) - 5.0, Anchor::End) };
+            sheet.text([place, TOP + 4.0], anchor, Tone::Bad, &format!("impact at {}", short(time)));
+        }
+        sheet.finish()
+    }
+
+    /// What the plot says, in words.
+    fn description(&self) -> String {
+        let mut words: Vec<String> =
+            self.curves.iter().map(|curve| format!("{} is positive {}", curve.name, within(curve.positive))).collect();
+        if let Some(common) = self.common {
+            words.push(format!("all are positive {}", within(common)));
+        }
+        if let Some(time) = self.impact {
+            words.push(format!("the time of impact is {}", short(time)));
+        }
+        words.join("; ") + ". Each curve is scaled to its own largest value on the step."
+    }
+}
+
+fn x(time: f64) -> f64 {
+    LEFT + time * (RIGHT - LEFT)
+}
+
+/// A curve on `[0, 1]`, scaled to its largest modulus there: a positive factor moves no zero.
+fn draw(curve: &Curve<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
+    let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
+    let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();
+    let most = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |most, value| most.max(value.abs()));
+    let y = |value: f64| if most > 0.0 { MIDDLE - value / most * (MIDDLE - TOP - 8.0) } else { MIDDLE };
+    let mut piece: Vec<[f64; 2]> = Vec::new();
+    for (&time, &value) in times.iter().zip(&values) {
+        if value.is_finite() {
+            piece.push([x(time), y(value)]);
+        } else {
+            sheet.line(ink, 2.0, &std::mem::take(&mut piece));
+        }
+    }
+    sheet.line(ink, 2.0, &piece);
+    // Markers of different curves stand at different times, so that none hides another.
+    for k in (8 + 8 * (number % 4)..=SAMPLES as usize).step_by(32) {
+        if values[k].is_finite() {
+            sheet.marker(ink, [x(times[k]), y(values[k])]);
+        }
+    }
+    for &zero in curve.zeros.iter().filter(|zero| (0.0..=1.0).contains(*zero)) {
+        sheet.rule(ink, [x(zero), MIDDLE - 6.0], [x(zero), MIDDLE + 6.0]);
+    }
+}
+
+/// A row of bars: sets of time as far as they lie in `[0, 1]`; a single time is a diamond.
+fn sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
+    for interval in list {
+        let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));
+        if lo < hi {
+            sheet.bar(ink, [x(lo), top + 2.0], [x(hi) - x(lo), ROW - 10.0], opacity);
+        } else if lo == hi {
+            sheet.marker(ink, [x(lo), top + 8.0]);
+        }
+    }
+}
+
+/// Sets of time as far as they lie in the step, in words.
+fn within(list: &[Interval]) -> String {
+    let parts: Vec<String> = list
+        .iter()
+        .filter_map(|interval| {
+            let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));
+            match (lo < hi, lo == hi) {
+                (true, _) => Some(format!("from {} to {}", short(lo), short(hi))),
+                (_, true) => Some(format!("only at {}", short(lo))),
+                _ => None,
+            }
+        })
+        .collect();
+    if parts.is_empty() { "nowhere in the step".to_owned() } else { parts.join(" and ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_words_say_what_the_picture_shows() {
+        let set = |lo, hi| Interval { lo, hi };
+        let (one, both) = ([set(0.5, 1.5)], [set(0.5, 1.0)]);
+        let curves = [
+            Curve { name: "overlap", coefficients: &[-0.25, 0.5, -0.1875], zeros: &[0.5, 1.5], positive: &one },
+            Curve {
+                name: "approach",
+                coefficients: &[-0.25, 0.25],
+                zeros: &[1.0],
+                positive: &[set(f64::NEG_INFINITY, 1.0)],
+            },
+        ];
+        let plot = Curves { title: "A ball", curves: &curves, common: Some(&both), impact: Some(0.5) };
+        let svg = plot.svg(Embedding::Alone);
+        assert!(svg.contains(
+            "<desc>overlap is positive from 0.5 to 1; approach is positive from 0 to 1; all are positive from 0.5 to 1; the \
+             time of impact is 0.5. Each curve is scaled to its own largest value on the step.</desc>"
+        ), "{svg}");
+        insta::assert_snapshot!("curves", svg);
+    }
+
+    #[test]
+    fn nothing_to_show_is_no_failure() {
+        let nothing = Curve { name: "", coefficients: &[], zeros: &[], positive: &[] };
+        let endless = Curve { name: "", coefficients: &[f64::INFINITY, 1.0], zeros: &[f64::NAN], positive: &[] };
+        let svg = Curves { title: "", curves: &[nothing, endless], common: None, impact: Some(f64::INFINITY) }
+            .svg(Embedding::Inline);
+        assert!(!svg.contains("NaN") && !svg.contains("style"), "{svg}");
+    }
+}

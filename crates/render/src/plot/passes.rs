@@ -1,0 +1,121 @@
+//! How often each step looked for collisions: as it should have, and as it did.
+use super::{
+    Embedding,
+    sheet::{Anchor, Columns, Ink, Sheet, Tone, WIDTH, ticks},
+};
+
+/// What the plot shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Passes<'a> {
+    /// Its title.
+    pub title: &'a str,
+    /// Detection passes of each step, from the first one on, as the reference makes them.
+    pub expected: &'a [u32],
+    /// Those of the trace. Where its polynomials are no whole number of passes, there is none.
+    pub actual: &'a [Option<u32>],
+}
+
+const LEFT: f64 = 64.0;
+const RIGHT: f64 = WIDTH - 16.0;
+const TOP: f64 = 44.0;
+const BOTTOM: f64 = 150.0;
+const HEIGHT: f64 = 192.0;
+
+impl Passes<'_> {
+    /// The plot.
+    #[must_use]
+    pub fn svg(&self, embedding: Embedding) -> String {
+        let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
+        sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);
+        let steps = self.expected.len().max(self.actual.len());
+        let columns = Columns::of(steps);
+        let most = self.expected.iter().copied().chain(self.actual.iter().copied().flatten()).max().unwrap_or(0).max(1);
+        let y = |count: u32| BOTTOM - f64::from(count) / f64::from(most) * (BOTTOM - TOP);
+        let every = (most / 4).max(1);
+        for count in (0..=most).step_by(every as usize) {
+            sheet.rule(if count == 0 { Ink::Axis } else { Ink::Grid }, [LEFT, y(count)], [RIGHT, y(count)]);
+            sheet.text([LEFT - 8.0, y(count) + 4.0], Anchor::End, Tone::Faint, &count.to_string());
+        }
+        for tick in ticks(steps) {
+            let x = columns.x(tick - 1, LEFT, RIGHT);
+            sheet.text([x, BOTTOM + 16.0], Anchor::Middle, Tone::Faint, &tick.to_string());
+        }
+        sheet.text([RIGHT, HEIGHT - 6.0], Anchor::End, Tone::Faint, "step");
+        let (mut expected, mut actual, mut differing) = (Vec::new(), Vec::new(), Vec::new());
+        for column in 0..columns.columns {
+            let range = columns.range(column);
+            if range.is_empty() {
+                continue;
+            }
+            let x = columns.x(range.start, LEFT, RIGHT);
+            // A step that differs stands for its column.
+            let place = range.clone().find(|&place| self.differs(place));
+            if place.is_some() {
+                differing.push(x);
+            }
+            let place = place.unwrap_or(range.start);
+            if let Some(&count) = self.expected.get(place) {
+                expected.push([x, y(count)]);
+            }
+            if let Some(Some(count)) = self.actual.get(place) {
+                actual.push([x, y(*count)]);
+            }
+        }
+        for &x in &differing {
+            sheet.bar(Ink::Bad, [x - 1.5, TOP], [3.0, BOTTOM - TOP], 0.25);
+            sheet.marker(Ink::Bad, [x, TOP - 8.0]);
+        }
+        for (number, points) in [expected, actual].iter().enumerate() {
+            let ink = Ink::Series(number);
+            sheet.line(ink, 1.5, points);
+            let every = (points.len() / 12).max(1);
+            points.iter().skip(every * number / 2).step_by(every).for_each(|&point| sheet.marker(ink, point));
+        }
+        sheet.legend([LEFT, HEIGHT - 6.0], &[(Ink::Series(0), "expected"), (Ink::Series(1), "actual")]);
+        sheet.finish()
+    }
+
+    fn differs(&self, place: usize) -> bool {
+        match (self.expected.get(place), self.actual.get(place)) {
+            (Some(expected), Some(actual)) => Some(*expected) != *actual,
+            _ => false,
+        }
+    }
+
+    /// What the plot says, in words.
+    fn description(&self) -> String {
+        let compared = self.expected.len().min(self.actual.len());
+        let differing = (0..compared).filter(|&place| self.differs(place)).count();
+        let first = (0..compared).find(|&place| self.differs(place));
+        let first = first.map_or_else(String::new, |place| {
+            let actual = self.actual[place].map_or_else(|| "no whole number".to_owned(), |count| count.to_string());
+            format!("; the first is step {} with {actual}, expected {}", place + 1, self.expected[place])
+        });
+        format!("{differing} of {compared} steps have another number of detection passes{first}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differing_steps_are_marked_and_said() {
+        let plot = Passes { title: "Passes", expected: &[1, 2, 2, 1], actual: &[Some(1), Some(2), Some(3), None] };
+        let svg = plot.svg(Embedding::Inline);
+        let words = "2 of 4 steps have another number of detection passes; the first is step 3 with 3, expected 2";
+        assert!(svg.contains(&format!("<desc>{words}</desc>")), "{svg}");
+        assert_eq!(svg.matches("m0 -7l-7 7").count(), 2);
+    }
+
+    #[test]
+    fn a_single_differing_step_of_a_long_run_is_seen() {
+        let expected = vec![1; 100_000];
+        let mut actual: Vec<_> = expected.iter().copied().map(Some).collect();
+        actual[77_777] = Some(9);
+        let svg = Passes { title: "Passes", expected: &expected, actual: &actual }.svg(Embedding::Inline);
+        assert_eq!(svg.matches("m0 -7l-7 7").count(), 1);
+        assert!(svg.len() < 40_000);
+        let _ = Passes { title: "", expected: &[], actual: &[] }.svg(Embedding::Alone);
+    }
+}

@@ -1,0 +1,190 @@
+//! Residuals over the steps, on a logarithmic scale, with the tolerance as a line.
+use super::{
+    Embedding,
+    sheet::{Anchor, Columns, Ink, Sheet, Tone, WIDTH, ticks},
+};
+use crate::number::{decades, short};
+
+/// A residual of every step, from the first one on.
+#[derive(Debug, Clone, Copy)]
+pub struct Series<'a> {
+    /// What it is, in a word or two.
+    pub name: &'a str,
+    /// One value per step.
+    pub values: &'a [f64],
+}
+
+/// What the plot shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Residuals<'a> {
+    /// Its title.
+    pub title: &'a str,
+    /// One to four residuals.
+    pub series: &'a [Series<'a>],
+    /// The bound that they are held to.
+    pub tolerance: Option<f64>,
+    /// A step to be pointed at, from 1, and why.
+    pub mark: Option<(u32, &'a str)>,
+}
+
+const LEFT: f64 = 64.0;
+const RIGHT: f64 = WIDTH - 16.0;
+const TOP: f64 = 48.0;
+const BOTTOM: f64 = 220.0;
+/// Below the scale is the place of zeros, above it that of what is no number.
+const LANE: f64 = 14.0;
+const HEIGHT: f64 = 262.0;
+
+impl Residuals<'_> {
+    /// The plot.
+    #[must_use]
+    pub fn svg(&self, embedding: Embedding) -> String {
+        let steps = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
+        let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
+        sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);
+        let scale = Scale::of(self);
+        scale.draw(&mut sheet);
+        let columns = Columns::of(steps);
+        for tick in ticks(steps) {
+            let x = columns.x(tick - 1, LEFT, RIGHT);
+            sheet.text([x, BOTTOM + LANE + 16.0], Anchor::Middle, Tone::Faint, &tick.to_string());
+        }
+        sheet.text([RIGHT, HEIGHT - 6.0], Anchor::End, Tone::Faint, "step");
+        if let Some((step, why)) = self.mark
+            && (1..=steps).contains(&(step as usize))
+        {
+            let x = columns.x(step as usize - 1, LEFT, RIGHT);
+            sheet.line(Ink::Bad, 1.0, &[[x, TOP - LANE], [x, BOTTOM + LANE]]);
+            let (place, anchor) = if x < 0.6 * WIDTH { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
+            sheet.text([place, TOP - LANE + 8.0], anchor, Tone::Bad, &format!("step {step}: {why}"));
+        }
+        if let Some(tolerance) = self.tolerance {
+            let y = scale.y(tolerance);
+            sheet.line(Ink::Bad, 1.5, &[[LEFT, y], [RIGHT, y]]);
+            sheet.text([RIGHT, y - 4.0], Anchor::End, Tone::Bad, &format!("tolerance {}", short(tolerance)));
+        }
+        for (number, series) in self.series.iter().enumerate() {
+            let ink = Ink::Series(number);
+            let points: Vec<[f64; 2]> = (0..columns.columns)
+                .filter_map(|column| {
+                    let range = columns.range(column);
+                    let (place, value) = worst(series.values, range)?;
+                    Some([columns.x(place, LEFT, RIGHT), scale.y(value)])
+                })
+                .collect();
+            sheet.line(ink, 1.5, &points);
+            let every = (points.len() / 12).max(1);
+            points.iter().skip(every * number / 4).step_by(every).for_each(|&point| sheet.marker(ink, point));
+        }
+        let names: Vec<_> = self.series.iter().enumerate().map(|(k, series)| (Ink::Series(k), series.name)).collect();
+        sheet.legend([LEFT, HEIGHT - 6.0], &names);
+        sheet.finish()
+    }
+
+    /// What the plot says, in words.
+    fn description(&self) -> String {
+        let mut words = Vec::new();
+        for series in self.series {
+            let Some((place, value)) = worst(series.values, 0..series.values.len()) else { continue };
+            let mut text = format!("{}: largest {} in step {}", series.name, short(value), place + 1);
+            if let Some(tolerance) = self.tolerance {
+                // A value that is no number is not below the tolerance.
+                let above = series.values.iter().filter(|&&value| !(value < tolerance)).count();
+                text +=
+                    &format!(", {above} of {} steps not below the tolerance {}", series.values.len(), short(tolerance));
+            }
+            words.push(text);
+        }
+        words.join("; ")
+    }
+}
+
+/// The worst value among some steps, and its place: what is no number is worse than any number.
+fn worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> {
+    let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
+    let places = range.start.min(values.len())..range.end.min(values.len());
+    places
+        .map(|place| (place, values[place]))
+        .reduce(|worst, next| if rank(next.1) > rank(worst.1) { next } else { worst })
+}
+
+/// The logarithmic scale.
+struct Scale {
+    low: i32,
+    high: i32,
+}
+
+impl Scale {
+    fn of(plot: &Residuals<'_>) -> Self {
+        let values = plot.series.iter().flat_map(|series| series.values).copied().chain(plot.tolerance);
+        let shown = values.map(f64::abs).filter(|value| *value > 0.0 && value.is_finite());
+        let (least, most) =
+            shown.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
+        let (low, high) = if most > 0.0 { decades(least, most) } else { (-16, 0) };
+        Self { low, high }
+    }
+
+    fn y(&self, value: f64) -> f64 {
+        if !value.is_finite() {
+            return TOP - LANE;
+        }
+        if value == 0.0 {
+            return BOTTOM + LANE;
+        }
+        let share = (value.abs().log10() - f64::from(self.low)) / f64::from(self.high - self.low);
+        BOTTOM - share.clamp(0.0, 1.0) * (BOTTOM - TOP)
+    }
+
+    fn draw(&self, sheet: &mut Sheet) {
+        let every = ((self.high - self.low) / 6 + 1).max(1);
+        for power in (self.low..=self.high).filter(|power| (power - self.low) % every == 0) {
+            let share = f64::from(power - self.low) / f64::from(self.high - self.low);
+            let y = BOTTOM - share * (BOTTOM - TOP);
+            sheet.rule(Ink::Grid, [LEFT, y], [RIGHT, y]);
+            sheet.text([LEFT - 8.0, y + 4.0], Anchor::End, Tone::Faint, &format!("1e{power}"));
+        }
+        sheet.rule(Ink::Axis, [LEFT, BOTTOM + LANE], [RIGHT, BOTTOM + LANE]);
+        sheet.text([LEFT - 8.0, BOTTOM + LANE + 4.0], Anchor::End, Tone::Faint, "0");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(values: &[f64]) -> String {
+        let series = [Series { name: "position", values }];
+        let plot = Residuals { title: "Residuals", series: &series, tolerance: Some(1e-10), mark: Some((3, "first")) };
+        plot.svg(Embedding::Inline)
+    }
+
+    #[test]
+    fn the_words_say_what_the_picture_shows() {
+        let svg = plot(&[0.0, 1e-12, 3e-4, f64::NAN]);
+        assert!(
+            svg.contains("<desc>position: largest nan in step 4, 2 of 4 steps not below the tolerance 1e-10</desc>"),
+            "{svg}"
+        );
+        assert!(svg.contains(">tolerance 1e-10</text>") && svg.contains(">step 3: first</text>"));
+    }
+
+    #[test]
+    fn nothing_to_show_is_no_failure() {
+        for values in [&[][..], &[0.0], &[f64::NAN, f64::INFINITY], &[5e-324, f64::MAX]] {
+            let svg = plot(values);
+            assert!(!svg.contains("NaN") && !svg.contains("inf "), "{values:?}: {svg}");
+        }
+    }
+
+    #[test]
+    fn long_runs_show_their_worst_steps() {
+        let mut values = vec![1e-13; 20_000];
+        values[12_345] = 1e-3;
+        let svg = plot(&values);
+        assert!(svg.len() < 30_000, "{}", svg.len());
+        let series = [Series { name: "position", values: &values }];
+        let scale = Scale::of(&Residuals { title: "", series: &series, tolerance: None, mark: None });
+        let top = crate::number::pixel(scale.y(1e-3));
+        assert!(svg.contains(&format!(" {top}L")), "the peak is drawn");
+    }
+}

@@ -1,0 +1,267 @@
+//! A sheet of SVG that a plot is drawn on.
+use super::{Embedding, STYLE};
+use crate::{number::pixel, svg::escaped};
+use std::fmt::Write;
+
+/// Widths of all sheets.
+pub const WIDTH: f64 = 640.0;
+
+/// What a mark is drawn in: the class of the style sheet and the colour where there is none.
+#[derive(Debug, Clone, Copy)]
+pub enum Ink {
+    /// Axes.
+    Axis,
+    /// Grid lines.
+    Grid,
+    /// What is wrong, limits, impacts.
+    Bad,
+    /// Series, from 0; after four the styles begin anew.
+    Series(usize),
+}
+
+impl Ink {
+    const fn stroke(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Axis => ("ax", "#1b1f24"),
+            Self::Grid => ("gr", "#dfe3e8"),
+            Self::Bad => ("bs", "#b3261e"),
+            Self::Series(number) => match number % 4 {
+                0 => ("s1", "#0063a6"),
+                1 => ("s2", "#a34e00"),
+                2 => ("s3", "#00694a"),
+                _ => ("s4", "#84367c"),
+            },
+        }
+    }
+
+    const fn fill(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Axis | Self::Grid => ("ax", "#1b1f24"),
+            Self::Bad => ("bf", "#b3261e"),
+            Self::Series(number) => match number % 4 {
+                0 => ("f1", "#0063a6"),
+                1 => ("f2", "#a34e00"),
+                2 => ("f3", "#00694a"),
+                _ => ("f4", "#84367c"),
+            },
+        }
+    }
+
+    /// The dashes of a series' line.
+    const fn dash(self) -> &'static str {
+        match self {
+            Self::Series(number) => match number % 4 {
+                0 => "",
+                1 => " stroke-dasharray=\"7 3\"",
+                2 => " stroke-dasharray=\"2 3\"",
+                _ => " stroke-dasharray=\"8 3 2 3\"",
+            },
+            Self::Bad => " stroke-dasharray=\"4 3\"",
+            Self::Axis | Self::Grid => "",
+        }
+    }
+}
+
+/// Where a text stands relative to its place.
+#[derive(Debug, Clone, Copy)]
+pub enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Which ink a text has.
+#[derive(Debug, Clone, Copy)]
+pub enum Tone {
+    Plain,
+    Faint,
+    Bad,
+}
+
+/// A sheet.
+#[derive(Debug)]
+pub struct Sheet(String);
+
+impl Sheet {
+    /// A sheet of this height.
+    pub fn new(height: f64, title: &str, description: &str, embedding: Embedding) -> Self {
+        let (title, description) = (escaped(title), escaped(description));
+        let (width, height) = (pixel(WIDTH), pixel(height));
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"fp\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+             height=\"{height}\" role=\"img\" aria-label=\"{title}\" font-family=\"sans-serif\" font-size=\"12\">\
+             <title>{title}</title><desc>{description}</desc>\n"
+        );
+        if embedding == Embedding::Alone {
+            let _ = writeln!(svg, "<style>{STYLE}</style>");
+            let _ = writeln!(svg, "<rect class=\"pp\" width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>");
+        }
+        Self(svg)
+    }
+
+    /// The finished SVG.
+    pub fn finish(mut self) -> String {
+        self.0 += "</svg>\n";
+        self.0
+    }
+
+    /// A thin straight line without dashes.
+    pub fn rule(&mut self, ink: Ink, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2]) {
+        let (class, colour) = ink.stroke();
+        let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(pixel);
+        let _ =
+            writeln!(self.0, "<path class=\"{class}\" stroke=\"{colour}\" fill=\"none\" d=\"M{x1} {y1}L{x2} {y2}\"/>");
+    }
+
+    /// A line with the ink's dashes.
+    pub fn line(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
+        if points.len() < 2 {
+            return;
+        }
+        let (class, colour) = ink.stroke();
+        let list = points.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join("L");
+        let _ = writeln!(
+            self.0,
+            "<path class=\"{class}\" stroke=\"{colour}\" stroke-width=\"{}\" stroke-linejoin=\"round\" fill=\"none\"{} \
+             d=\"M{list}\"/>",
+            pixel(width),
+            ink.dash()
+        );
+    }
+
+    /// A filled rectangle.
+    pub fn bar(&mut self, ink: Ink, [left, top]: [f64; 2], [width, height]: [f64; 2], opacity: f64) {
+        let (class, colour) = ink.fill();
+        let [left, top, width, height] = [left, top, width.max(0.5), height].map(pixel);
+        let _ = writeln!(
+            self.0,
+            "<rect class=\"{class}\" fill=\"{colour}\" fill-opacity=\"{}\" x=\"{left}\" y=\"{top}\" width=\"{width}\" \
+             height=\"{height}\"/>",
+            pixel(opacity)
+        );
+    }
+
+    /// A marker; each series has a shape of its own: disc, square, triangle, diamond. Anything wrong has a cross.
+    pub fn marker(&mut self, ink: Ink, [x, y]: [f64; 2]) {
+        let path = match ink {
+            Ink::Series(number) => match number % 4 {
+                0 => format!("M{} {}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0z", pixel(x - 3.0), pixel(y)),
+                1 => format!("M{} {}h5.4v5.4h-5.4z", pixel(x - 2.7), pixel(y - 2.7)),
+                2 => format!("M{} {}l3.6 6.2h-7.2z", pixel(x), pixel(y - 4.0)),
+                _ => format!("M{} {}l4 4l-4 4l-4 -4z", pixel(x), pixel(y - 4.0)),
+            },
+            Ink::Axis | Ink::Grid | Ink::Bad => {
+                let (class, colour) = ink.stroke();
+                let (x, y) = (pixel(x - 3.5), pixel(y - 3.5));
+                let _ = writeln!(
+                    self.0,
+                    "<path class=\"{class}\" stroke=\"{colour}\" stroke-width=\"2\" d=\"M{x} {y}l7 7m0 -7l-7 7\"/>"
+                );
+                return;
+            }
+        };
+        let (class, colour) = ink.fill();
+        let _ = writeln!(self.0, "<path class=\"{class}\" fill=\"{colour}\" d=\"{path}\"/>");
+    }
+
+    /// A line of text; `[x, y]` is on its base line.
+    pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, tone: Tone, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let (class, colour) = match tone {
+            Tone::Plain => ("", "#1b1f24"),
+            Tone::Faint => (" class=\"ft\"", "#5f6871"),
+            Tone::Bad => (" class=\"bt\"", "#b3261e"),
+        };
+        let (x, y) = (pixel(x), pixel(y));
+        let _ = writeln!(
+            self.0,
+            "<text{class} x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" fill=\"{colour}\">{}</text>",
+            escaped(text)
+        );
+    }
+
+    /// A legend in a row: line, marker and name of each series.
+    pub fn legend(&mut self, [left, base]: [f64; 2], names: &[(Ink, &str)]) {
+        let mut x = left;
+        for &(ink, name) in names {
+            self.line(ink, 2.0, &[[x, base - 4.0], [x + 26.0, base - 4.0]]);
+            if !matches!(ink, Ink::Bad) {
+                self.marker(ink, [x + 13.0, base - 4.0]);
+            }
+            self.text([x + 32.0, base], Anchor::Start, Tone::Plain, name);
+            #[expect(clippy::cast_precision_loss, reason = "names are short")]
+            let wide = name.chars().count() as f64;
+            x += 52.0 + 6.5 * wide;
+        }
+    }
+}
+
+/// Steps in columns: plots of long runs show the worst of the steps that share a column.
+#[derive(Debug, Clone, Copy)]
+pub struct Columns {
+    pub steps: usize,
+    pub columns: usize,
+}
+
+/// No plot has more columns.
+const MOST_COLUMNS: usize = 540;
+
+impl Columns {
+    pub fn of(steps: usize) -> Self {
+        Self { steps, columns: steps.clamp(1, MOST_COLUMNS) }
+    }
+
+    /// The places (from 0) of the steps in a column.
+    pub fn range(&self, column: usize) -> std::ops::Range<usize> {
+        let at = |column: usize| {
+            let place = column as u128 * self.steps as u128 / self.columns as u128;
+            usize::try_from(place).unwrap_or(self.steps)
+        };
+        at(column)..at(column + 1)
+    }
+
+    /// The middle of a step's place (from 0) between `left` and `right`.
+    #[expect(clippy::cast_precision_loss, reason = "steps fit into 32 bits")]
+    pub fn x(&self, place: usize, left: f64, right: f64) -> f64 {
+        let steps = (self.steps.max(2) - 1) as f64;
+        left + (right - left) * place as f64 / steps
+    }
+}
+
+/// Round steps for the labels of an axis that counts from 1 to `last`: at most six.
+pub fn ticks(last: usize) -> Vec<usize> {
+    // 1, 2, 5, 10, 20, 50 and so on.
+    let units = (0..18).flat_map(|power| [1, 2, 5].map(|digit| digit * 10_usize.pow(power)));
+    let unit = { units }.find(|unit| last / unit <= 5).unwrap_or(last.max(1));
+    let mut ticks: Vec<usize> = (1..).map(|k| k * unit).take_while(|&tick| tick <= last).collect();
+    if ticks.first() != Some(&1) && last >= 1 {
+        ticks.insert(0, 1);
+    }
+    ticks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_share_all_steps_out() {
+        for steps in [1, 2, 7, 540, 541, 5000] {
+            let columns = Columns::of(steps);
+            let all: Vec<usize> = (0..columns.columns).flat_map(|column| columns.range(column)).collect();
+            assert_eq!(all, (0..steps).collect::<Vec<_>>(), "{steps}");
+        }
+    }
+
+    #[test]
+    fn ticks_are_few_and_round() {
+        assert_eq!(ticks(3), [1, 2, 3]);
+        assert_eq!(ticks(200), [1, 50, 100, 150, 200]);
+        assert_eq!(ticks(800), [1, 200, 400, 600, 800]);
+        assert!(ticks(0).is_empty() && ticks(4_000_000_000).len() <= 6);
+    }
+}

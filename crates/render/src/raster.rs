@@ -1,0 +1,189 @@
+//! Shapes as pixels, by tiny-skia without vector instructions: the same shapes give the same pixels on every run.
+use crate::{
+    colour::Colour,
+    font,
+    shape::{Paint, Point, Shape},
+    size::Size,
+};
+use tiny_skia::{FillRule, LineCap, LineJoin, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform};
+
+/// A letter's dot is so many pixels wide and high.
+const DOT: u32 = 2;
+
+/// Lengths of dashes and gaps, in pixels.
+const DASH: [f32; 2] = [6.0, 4.0];
+
+/// A picture in pixels; nothing shows through it.
+#[derive(Debug, Clone)]
+pub struct Raster {
+    size: Size,
+    pixels: Pixmap,
+}
+
+impl Raster {
+    /// An empty picture, to be drawn on again and again.
+    ///
+    /// # Panics
+    /// Never: every [`Size`] is one that a pixmap can have.
+    #[must_use]
+    pub fn new(size: Size) -> Self {
+        let pixels = Pixmap::new(size.width(), size.height()).expect("sizes are checked");
+        Self { size, pixels }
+    }
+
+    /// The size.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        self.size
+    }
+
+    /// Red, green, blue and 255 of each pixel, row by row from the top.
+    #[must_use]
+    pub fn rgba(&self) -> &[u8] {
+        self.pixels.data()
+    }
+
+    /// Draws shapes in place of what was there.
+    pub fn draw(&mut self, background: Colour, shapes: &[Shape]) {
+        let [red, green, blue] = background.0;
+        self.pixels.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
+        for shape in shapes {
+            match shape {
+                Shape::Disc { center, radius, paint } => self.disc(*center, *radius, *paint),
+                Shape::Line { points, width, paint } => self.line(points, *width, *paint),
+                Shape::Area { points, paint } => self.area(points, *paint),
+                Shape::Text { place, text, colour } => self.text(*place, text, *colour),
+            }
+        }
+    }
+
+    fn disc(&mut self, [x, y]: Point, radius: f64, paint: Paint) {
+        let mut builder = PathBuilder::new();
+        builder.push_circle(narrow(x), narrow(y), narrow(radius));
+        let Some(path) = builder.finish() else { return };
+        if matches!(paint, Paint::Dashed(_)) {
+            self.stroke(&path, 2.0, paint);
+        } else {
+            self.pixels.fill_path(&path, &ink(paint), FillRule::Winding, Transform::identity(), None);
+        }
+    }
+
+    fn line(&mut self, points: &[Point], width: f64, paint: Paint) {
+        if let Some(path) = path(points, false) {
+            self.stroke(&path, narrow(width), paint);
+        }
+    }
+
+    fn stroke(&mut self, path: &tiny_skia::Path, width: f32, paint: Paint) {
+        let dashed = matches!(paint, Paint::Dashed(_));
+        let stroke = Stroke {
+            width,
+            line_cap: if dashed { LineCap::Butt } else { LineCap::Round },
+            line_join: LineJoin::Round,
+            dash: if dashed { StrokeDash::new(DASH.to_vec(), 0.0) } else { None },
+            ..Stroke::default()
+        };
+        self.pixels.stroke_path(path, &ink(paint), &stroke, Transform::identity(), None);
+    }
+
+    fn area(&mut self, points: &[Point], paint: Paint) {
+        if let Some(path) = path(points, true) {
+            self.pixels.fill_path(&path, &ink(paint), FillRule::Winding, Transform::identity(), None);
+        }
+    }
+
+    fn text(&mut self, [left, base]: Point, text: &str, colour: Colour) {
+        let paint = ink(Paint::Solid(colour));
+        let top = base - f64::from(DOT * font::HEIGHT);
+        for (place, letter) in text.chars().enumerate() {
+            let Some(rows) = font::rows(letter) else { continue };
+            #[expect(clippy::cast_precision_loss, reason = "labels are short")]
+            let start = left + place as f64 * f64::from(DOT * font::ADVANCE);
+            for (row, bits) in (0_u32..).zip(rows) {
+                for column in (0..5_u32).filter(|column| bits & (0b10000 >> column) != 0) {
+                    let x = narrow(start + f64::from(DOT * column));
+                    let y = narrow(top + f64::from(DOT * row));
+                    #[expect(clippy::cast_precision_loss, reason = "two pixels")]
+                    if let Some(dot) = Rect::from_xywh(x, y, DOT as f32, DOT as f32) {
+                        self.pixels.fill_rect(dot, &paint, Transform::identity(), None);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A coordinate as the drawing library takes it; shapes lie near the picture.
+#[expect(clippy::cast_possible_truncation, reason = "pixels need no more digits")]
+fn narrow(value: f64) -> f32 {
+    value as f32
+}
+
+fn path(points: &[Point], closed: bool) -> Option<tiny_skia::Path> {
+    let (&[x, y], rest) = points.split_first()?;
+    let mut builder = PathBuilder::new();
+    builder.move_to(narrow(x), narrow(y));
+    for &[x, y] in rest {
+        builder.line_to(narrow(x), narrow(y));
+    }
+    if closed {
+        builder.close();
+    }
+    builder.finish()
+}
+
+fn ink(paint: Paint) -> tiny_skia::Paint<'static> {
+    let [red, green, blue] = paint.colour().0;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
+    let alpha = match paint {
+        Paint::Faint(_, share) => (share.clamp(0.0, 1.0) * 255.0).round() as u8,
+        Paint::Solid(_) | Paint::Dashed(_) => 255,
+    };
+    let mut ink = tiny_skia::Paint { anti_alias: true, ..tiny_skia::Paint::default() };
+    ink.set_color_rgba8(red, green, blue, alpha);
+    ink
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shapes() -> Vec<Shape> {
+        let red = Colour([200, 0, 0]);
+        vec![
+            Shape::Area {
+                points: vec![[0.0, 40.0], [64.0, 30.0], [64.0, 48.0], [0.0, 48.0]],
+                paint: Paint::Faint(Colour::BLACK, 0.25),
+            },
+            Shape::Line { points: vec![[5.0, 5.0], [40.5, 20.25]], width: 3.0, paint: Paint::Solid(Colour::EDGE) },
+            Shape::Line { points: vec![[5.0, 15.0], [50.0, 35.0]], width: 2.0, paint: Paint::Dashed(red) },
+            Shape::Disc { center: [30.0, 24.0], radius: 9.5, paint: Paint::Solid(Colour::PARTICLE) },
+            Shape::Disc { center: [36.0, 24.0], radius: 9.5, paint: Paint::Dashed(red) },
+            Shape::Text { place: [2.0, 46.0], text: "t 0.1".into(), colour: Colour::BLACK },
+        ]
+    }
+
+    /// Pixels are part of what the product promises: equal on two runs, and on two machines of a kind.
+    #[test]
+    fn pixels_are_equal_on_every_run() {
+        let mut raster = Raster::new(Size::new(64, 48).unwrap());
+        raster.draw(Colour::BLACK, &[]);
+        raster.draw(Colour::WHITE, &shapes());
+        assert!(raster.rgba().chunks(4).all(|pixel| pixel[3] == 255));
+        insta::assert_snapshot!("digest", blake3::hash(raster.rgba()).to_hex());
+        let mut again = Raster::new(Size::new(64, 48).unwrap());
+        again.draw(Colour::WHITE, &shapes());
+        assert_eq!(raster.rgba(), again.rgba());
+    }
+
+    #[test]
+    fn every_shape_leaves_its_mark() {
+        let mut raster = Raster::new(Size::new(64, 48).unwrap());
+        for shape in shapes() {
+            raster.draw(Colour::WHITE, &[]);
+            let empty = raster.rgba().to_vec();
+            raster.draw(Colour::WHITE, std::slice::from_ref(&shape));
+            assert!(raster.rgba() != empty, "{shape:?}");
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What pictures are made of, in pixels from the upper left corner. Everything lies in or near the picture: far coordinates
+//! have been clipped, so that no drawing library sees numbers it can't handle.
+use crate::colour::Colour;
+
+/// A point in pixels.
+pub type Point = [f64; 2];
+
+/// How a shape is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Paint {
+    /// Filled, or a plain stroke.
+    Solid(Colour),
+    /// As solid, but so much of it shows: 0 to 1.
+    Faint(Colour, f64),
+    /// A dashed outline, or a dashed stroke.
+    Dashed(Colour),
+}
+
+impl Paint {
+    /// Its colour.
+    #[must_use]
+    pub const fn colour(self) -> Colour {
+        match self {
+            Self::Solid(colour) | Self::Faint(colour, _) | Self::Dashed(colour) => colour,
+        }
+    }
+}
+
+/// One thing in a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A disc; dashed ones are outlines.
+    Disc {
+        /// Its centre.
+        center: Point,
+        /// Its radius, positive.
+        radius: f64,
+        /// How it is drawn.
+        paint: Paint,
+    },
+    /// A line with round ends.
+    Line {
+        /// Its points, at least two.
+        points: Vec<Point>,
+        /// Its width, positive.
+        width: f64,
+        /// How it is drawn.
+        paint: Paint,
+    },
+    /// A filled polygon.
+    Area {
+        /// Its corners.
+        points: Vec<Point>,
+        /// How it is drawn.
+        paint: Paint,
+    },
+    /// A line of text.
+    Text {
+        /// Its lower left corner.
+        place: Point,
+        /// What it says.
+        text: String,
+        /// Its colour.
+        colour: Colour,
+    },
+}

@@ -1,0 +1,90 @@
+//! The size of pictures.
+use std::{fmt, str::FromStr};
+
+/// The smallest width and height.
+pub const SMALLEST: u32 = 16;
+
+/// The largest width and height.
+pub const LARGEST: u32 = 7680;
+
+/// Width and height in pixels, both sensible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    width: u32,
+    height: u32,
+}
+
+/// A size that is refused.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum BadSize {
+    /// Not two numbers.
+    #[error("`{0}` is no size; write WIDTHxHEIGHT as in 640x480")]
+    Unreadable(String),
+    /// Too small or too large.
+    #[error("{0}x{1} is no sensible size; width and height may be {SMALLEST} to {LARGEST} pixels")]
+    OutOfRange(u32, u32),
+}
+
+impl Size {
+    /// A size.
+    ///
+    /// # Errors
+    /// When a side is below [`SMALLEST`] or above [`LARGEST`].
+    pub const fn new(width: u32, height: u32) -> Result<Self, BadSize> {
+        if width < SMALLEST || width > LARGEST || height < SMALLEST || height > LARGEST {
+            return Err(BadSize::OutOfRange(width, height));
+        }
+        Ok(Self { width, height })
+    }
+
+    /// Width in pixels.
+    #[must_use]
+    pub const fn width(self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    #[must_use]
+    pub const fn height(self) -> u32 {
+        self.height
+    }
+
+    /// Number of pixels.
+    #[must_use]
+    pub const fn pixels(self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}", self.width, self.height)
+    }
+}
+
+impl FromStr for Size {
+    type Err = BadSize;
+
+    fn from_str(text: &str) -> Result<Self, BadSize> {
+        let unreadable = || BadSize::Unreadable(text.to_owned());
+        let (width, height) = text.split_once(['x', 'X']).ok_or_else(unreadable)?;
+        let side = |side: &str| side.trim().parse::<u32>().map_err(|_| unreadable());
+        Self::new(side(width)?, side(height)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nonsense_is_refused_in_words() {
+        assert_eq!("640x480".parse(), Size::new(640, 480));
+        let refused = |text: &str| text.parse::<Size>().unwrap_err().to_string();
+        assert_eq!(refused("640"), "`640` is no size; write WIDTHxHEIGHT as in 640x480");
+        assert_eq!(refused("-640x480"), "`-640x480` is no size; write WIDTHxHEIGHT as in 640x480");
+        let range = "is no sensible size; width and height may be 16 to 7680 pixels";
+        assert_eq!(refused("0x480"), format!("0x480 {range}"));
+        assert_eq!(refused("640x4294967295"), format!("640x4294967295 {range}"));
+    }
+}

@@ -1,0 +1,126 @@
+//! Shapes as SVG: plain elements, fixed decimals, no scripts, no styles.
+use crate::{
+    colour::Colour,
+    number::pixel,
+    shape::{Paint, Point, Shape},
+    size::Size,
+};
+use std::fmt::Write;
+
+/// A picture as an SVG document; `title` is what readers of the screen are told.
+#[must_use]
+pub fn document(size: Size, background: Colour, title: &str, shapes: &[Shape]) -> String {
+    let (width, height) = (size.width(), size.height());
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+         role=\"img\">\n<title>{}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
+        escaped(title),
+        background.hex()
+    );
+    for shape in shapes {
+        element(shape, &mut svg);
+    }
+    svg += "</svg>\n";
+    svg
+}
+
+/// Text as the content of an element or attribute. Characters that XML does not know become a replacement.
+#[must_use]
+pub fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            '\'' => safe += "&#39;",
+            '\t' | '\n' => safe.push(' '),
+            // Marks that turn the reading direction could make a name look like another one.
+            '\u{0}'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+                safe.push('\u{fffd}');
+            }
+            '\u{200e}' | '\u{200f}' | '\u{61c}' | '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
+            letter => safe.push(letter),
+        }
+    }
+    safe
+}
+
+fn element(shape: &Shape, svg: &mut String) {
+    // Writing to a string never fails.
+    let _ = match shape {
+        Shape::Disc { center: [x, y], radius, paint } => {
+            let (x, y, radius) = (pixel(*x), pixel(*y), pixel(*radius));
+            writeln!(svg, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {}/>", area(*paint))
+        }
+        Shape::Line { points, width, paint } => {
+            let dash = if matches!(paint, Paint::Dashed(_)) { DASH } else { "" };
+            let cap = if dash.is_empty() { "round" } else { "butt" };
+            writeln!(
+                svg,
+                "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\"{} stroke-width=\"{}\" stroke-linecap=\"{cap}\" \
+                 stroke-linejoin=\"round\"{dash}/>",
+                list(points),
+                paint.colour().hex(),
+                opacity("stroke", *paint),
+                pixel(*width)
+            )
+        }
+        Shape::Area { points, paint } => writeln!(svg, "<polygon points=\"{}\" {}/>", list(points), area(*paint)),
+        Shape::Text { place: [x, y], text, colour } => writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{}\" fill=\"{}\" font-family=\"monospace\" font-size=\"14\">{}</text>",
+            pixel(*x),
+            pixel(*y),
+            colour.hex(),
+            escaped(text)
+        ),
+    };
+}
+
+const DASH: &str = " stroke-dasharray=\"6 4\"";
+
+fn area(paint: Paint) -> String {
+    match paint {
+        Paint::Solid(colour) => format!("fill=\"{}\"", colour.hex()),
+        Paint::Faint(colour, _) => format!("fill=\"{}\"{}", colour.hex(), opacity("fill", paint)),
+        Paint::Dashed(colour) => format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{DASH}", colour.hex()),
+    }
+}
+
+fn opacity(what: &str, paint: Paint) -> String {
+    match paint {
+        Paint::Faint(_, share) => format!(" {what}-opacity=\"{}\"", pixel(share)),
+        Paint::Solid(_) | Paint::Dashed(_) => String::new(),
+    }
+}
+
+fn list(points: &[Point]) -> String {
+    points.iter().map(|[x, y]| format!("{},{}", pixel(*x), pixel(*y))).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hostile_text_stays_text() {
+        let shapes = [Shape::Text { place: [0.0; 2], text: "</text><script>".into(), colour: Colour::BLACK }];
+        let hostile = "<script>alert('x')</script>\u{0}\u{202e}\"&]]>";
+        let svg = document(Size::new(20, 20).unwrap(), Colour::WHITE, hostile, &shapes);
+        assert!(!svg.contains("<script") && !svg.contains(['\u{0}', '\u{202e}']), "{svg}");
+        let mut reader = quick_xml::Reader::from_str(&svg);
+        let mut elements = Vec::new();
+        loop {
+            match reader.read_event().unwrap() {
+                quick_xml::events::Event::Eof => break,
+                quick_xml::events::Event::Start(tag) | quick_xml::events::Event::Empty(tag) => {
+                    elements.push(tag.name().as_ref().to_owned());
+                }
+                _ => {}
+            }
+        }
+        assert_eq!(elements, ["svg", "title", "rect", "text"]);
+    }
+}

@@ -1,0 +1,124 @@
+//! The fair rules' part of the check report, for people.
+use super::super::{
+    number::{count, general},
+    style::{Look, Style},
+    table::{Align, Table},
+};
+use fosssim_judge::{
+    Outcome, PairWords, PassWords,
+    fair::{Form, Judgement, Refusal, Verdict, cause},
+    share,
+};
+
+/// The section; nothing when the fair rules were not asked.
+pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
+    let fair = outcome.fair.as_deref()?;
+    let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
+    let (look, word) = match fair.verdict {
+        Verdict::Accepted => (Look::Good, "accepted"),
+        Verdict::Rejected => (Look::Bad, "rejected"),
+        Verdict::None => (Look::Notice, "no verdict"),
+    };
+    let mut line = |words: String| text += &format!("  {words}\n");
+    line(format!("{}: {}", style.paint(look, word), summary(fair, outcome)));
+    if let Some([low, high]) = fair.scale() {
+        let range = if high / low - 1.0 < 1e-9 {
+            general(low)
+        } else {
+            format!("between {} and {}", general(low), general(high))
+        };
+        line(format!("factor of the polynomials: {range}; any positive factor is right"));
+    }
+    match fair.form {
+        Form::Either => {}
+        Form::Course => line("approach polynomial: the course's form, with its slip in t^3".to_owned()),
+        Form::Right => line("approach polynomial: the right form, without the course's slip in t^3".to_owned()),
+    }
+    if let Some(shares) = shares(fair) {
+        line(format!("largest used share of a tolerance: {shares}"));
+    }
+    if fair.borderline > 0 {
+        let (verb, plural) = if fair.borderline == 1 { ("was", "") } else { ("were", "s") };
+        line(format!(
+            "{} decision{plural} that round-off may flip {verb} followed, not charged",
+            count(fair.borderline)
+        ));
+        for decision in &fair.borderline_examples {
+            let word = if decision.collides { "collides" } else { "does not collide" };
+            let (pair, pass) = (PairWords(decision.pair), PassWords(decision.pass));
+            line(format!("  step {}: {pair} ({pass}): the trace {word}", decision.step));
+        }
+        let more = fair.borderline - fair.borderline_examples.len() as u64;
+        if more > 0 {
+            line(format!("  and {} more", count(more)));
+        }
+    }
+    if !fair.examples.is_empty() {
+        let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
+        table.heading(["kind", "count", "first example"]);
+        for example in &fair.examples {
+            let kind = example.kind();
+            table.row([kind.to_string().into(), count(fair.counts.get(kind)).into(), example.to_string().into()]);
+        }
+        text += &table.render(style);
+    }
+    if let Some(cause) = cause(outcome) {
+        let verdicts = if cause.original_fails() {
+            "the original fails this trace, the fair rules accept it"
+        } else {
+            "the original passes this trace, the fair rules reject it"
+        };
+        text += &format!("  {} {verdicts}:\n  {cause}\n", style.paint(Look::Notice, "The rule books differ:"));
+    }
+    Some(text)
+}
+
+/// What the fair verdict rests on, in one line.
+pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
+    let refusal = match fair.refusal {
+        Some(Refusal::Stopped) => Some("the trace can't be followed to its end"),
+        Some(Refusal::Damaged) => Some("the trace is damaged"),
+        Some(Refusal::TrailingBytes) => Some("bytes follow the last record"),
+        None => None,
+    };
+    let found = fair.first_divergence.as_ref().map(|first| {
+        let wrong = match fair.wrong_steps {
+            0 => "the first record is wrong".to_owned(),
+            many => share::wrong(many, outcome.steps, count),
+        };
+        let first = match first.step {
+            0 if fair.wrong_steps == 0 => String::new(),
+            0 => ", and so is the first record".to_owned(),
+            _ if outcome.steps == 1 => String::new(),
+            step => format!(", the first is step {step}"),
+        };
+        wrong + &first
+    });
+    match (refusal, found) {
+        (Some(refusal), Some(found)) => format!("{refusal}; {found}"),
+        (Some(refusal), None) => refusal.to_owned(),
+        (None, Some(found)) => found,
+        (None, None) if fair.verdict == Verdict::None => "nothing is wrong so far".to_owned(),
+        (None, None) => share::right(outcome.steps, count),
+    }
+}
+
+/// `coefficients 12 %, positions 3 %`; what was not used is left out.
+fn shares(fair: &Judgement) -> Option<String> {
+    let shares = fair.shares;
+    let list: Vec<String> = [
+        ("coefficients", shares.coefficient),
+        ("normals", shares.normal),
+        ("positions", shares.position),
+        ("velocities", shares.velocity),
+    ]
+    .into_iter()
+    .filter(|(_, share)| *share > 0.0)
+    .map(|(name, share)| format!("{name} {}", percent(share)))
+    .collect();
+    (!list.is_empty()).then(|| list.join(", "))
+}
+
+fn percent(share: f64) -> String {
+    if share < 0.01 { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
+}

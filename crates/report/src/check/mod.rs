@@ -1,0 +1,233 @@
+//! The report on one trace: verdict, residuals, the fair rules, findings, first divergence.
+//!
+//! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both say the
+//! same and depend on nothing but the outcome.
+
+mod divergence;
+mod fair;
+mod fair_view;
+mod text;
+
+pub use text::stopped;
+
+use super::{
+    describe::step_error,
+    explain::ExplanationView,
+    style::Style,
+    view::{CHECK_SCHEMA, FindingView, Number},
+};
+use fair_view::{CauseView, CountedView, FairView};
+use fosssim_judge::{Book, Kind, Outcome, Overall, Rules, Ruling, Stop, Unreadable};
+use fosssim_mistakes::diagnose::Explanation;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A judged trace with the names under which people know it.
+#[derive(Debug, Clone, Copy)]
+pub struct Check<'a> {
+    /// The scene as typed.
+    pub scene: &'a str,
+    /// The trace as typed.
+    pub trace: &'a str,
+    /// What judging yielded.
+    pub outcome: &'a Outcome,
+    /// Likely mistakes, the likeliest first; empty where nothing is wrong or nobody has asked.
+    pub explanations: &'a [Explanation],
+    /// Which rule books were asked.
+    pub rules: Rules,
+    /// Whether certificates were audited, so that the counts of root searches are worth showing.
+    pub audit: bool,
+}
+
+impl Check<'_> {
+    /// Whether the trace is accepted.
+    #[must_use]
+    pub fn accepted(&self) -> bool {
+        self.outcome.ruling(self.book()) == Ruling::Accepted
+    }
+
+    /// The official verdict in words: `accepted`, `wrong answer` or `bad trace`.
+    #[must_use]
+    pub fn verdict(&self) -> &'static str {
+        self.outcome.ruling(self.book()).words()
+    }
+
+    /// The official book.
+    const fn book(&self) -> Book {
+        self.rules.official()
+    }
+
+    /// The report for people.
+    #[must_use]
+    pub fn text(&self, style: Style) -> String {
+        text::render(self, style)
+    }
+
+    /// The report for programs: one JSON object, indented, with a line feed at its end.
+    #[must_use]
+    pub fn json(&self) -> String {
+        // A struct of plain values always serialises.
+        serde_json::to_string_pretty(&self.view()).unwrap_or_default() + "\n"
+    }
+
+    fn view(&self) -> View<'_> {
+        let outcome = self.outcome;
+        let residuals = outcome.residuals;
+        let account = outcome.account(self.book());
+        let finding = |finding| match self.book() {
+            Book::Parity => FindingView::from(finding),
+            Book::Fair => FindingView::fair(finding),
+        };
+        View {
+            schema: CHECK_SCHEMA,
+            scene: self.scene,
+            trace: self.trace,
+            rules: self.rules.name(),
+            official: self.book().name(),
+            verdict: self.verdict(),
+            parity: Parity {
+                overall: match outcome.overall {
+                    Overall::Passed => "passed",
+                    Overall::Failed => "failed",
+                    Overall::None => "none",
+                },
+                accumulated_position_residual: Number(residuals.accumulated_position),
+                accumulated_velocity_residual: Number(residuals.accumulated_velocity),
+                maximum_position_residual: Number(residuals.maximum_position),
+                maximum_velocity_residual: Number(residuals.maximum_velocity),
+                collisions_passed: outcome.collisions_passed,
+                messages: messages(outcome),
+            },
+            fair: outcome.fair.as_deref().map(FairView::from),
+            difference: CauseView::of(outcome),
+            first_divergence: account.first_divergence.map(finding),
+            findings: account
+                .examples
+                .iter()
+                .map(|first| CountedView { count: account.counts.get(first.kind()), first: finding(first) })
+                .collect(),
+            explanations: self.explanations.iter().map(ExplanationView::from).collect(),
+            steps: outcome.steps,
+            steps_judged: outcome.steps_judged,
+            wrong_steps: account.wrong_steps,
+            problem: outcome.stop.as_ref().map(Problem::from),
+            damage: outcome.damage.as_ref().map(|damage| Place {
+                step: damage.step,
+                frame: Some(damage.frame),
+                offset: Some(damage.offset),
+                message: damage.message.clone(),
+            }),
+            trailing_bytes: outcome.trailing_bytes,
+            root_searches: self.audit.then_some(Searches {
+                calls: outcome.searches.calls,
+                searched: outcome.searches.searched,
+                excluded: outcome.searches.excluded,
+                disagreements: outcome.searches.disagreements,
+            }),
+        }
+    }
+}
+
+/// How often the original prints each of its messages, in the words that graders of its output look for.
+fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
+    let mut messages: BTreeMap<_, _> = Kind::ALL
+        .into_iter()
+        .filter_map(|kind| Some((kind.original_message()?, outcome.counts.get(kind))))
+        .filter(|&(_, count)| count > 0)
+        .collect();
+    if outcome.overall == Overall::None {
+        messages.insert("Simulation did not run to completion", 1);
+    }
+    match outcome.stop {
+        Some(Stop::Trace { cause: Unreadable::State, .. }) => {
+            messages.insert("Failed to load timestep", 1);
+        }
+        Some(Stop::Trace { cause: Unreadable::Impulses, .. }) => {
+            messages.insert("Error while trying to deserialize", 1);
+        }
+        _ => {}
+    }
+    messages
+}
+
+#[derive(Serialize)]
+struct View<'a> {
+    schema: u32,
+    scene: &'a str,
+    trace: &'a str,
+    rules: &'static str,
+    official: &'static str,
+    verdict: &'static str,
+    parity: Parity,
+    fair: Option<FairView>,
+    difference: Option<CauseView>,
+    first_divergence: Option<FindingView>,
+    findings: Vec<CountedView>,
+    explanations: Vec<ExplanationView>,
+    steps: u32,
+    steps_judged: u32,
+    wrong_steps: u64,
+    problem: Option<Problem>,
+    damage: Option<Place>,
+    trailing_bytes: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    root_searches: Option<Searches>,
+}
+
+#[derive(Serialize)]
+struct Parity {
+    overall: &'static str,
+    accumulated_position_residual: Number,
+    accumulated_velocity_residual: Number,
+    maximum_position_residual: Number,
+    maximum_velocity_residual: Number,
+    collisions_passed: Option<bool>,
+    messages: BTreeMap<&'static str, u64>,
+}
+
+/// Why judging stopped early.
+#[derive(Serialize)]
+struct Problem {
+    kind: &'static str,
+    #[serde(flatten)]
+    place: Place,
+}
+
+#[derive(Serialize)]
+struct Place {
+    step: u32,
+    frame: Option<u64>,
+    offset: Option<u64>,
+    message: String,
+}
+
+#[derive(Serialize)]
+struct Searches {
+    calls: u64,
+    searched: u64,
+    excluded: u64,
+    disagreements: u64,
+}
+
+impl From<&Stop> for Problem {
+    fn from(stop: &Stop) -> Self {
+        match stop {
+            Stop::Trace { frame, step, cause, offset, message } => {
+                let kind = match cause {
+                    Unreadable::State => "state_unreadable",
+                    Unreadable::Impulses => "impulses_unreadable",
+                    Unreadable::Memory => "impossible_count",
+                    Unreadable::Limit => "beyond_limit",
+                    Unreadable::Io => "read_error",
+                };
+                let place = Place { step: *step, frame: Some(*frame), offset: Some(*offset), message: message.clone() };
+                Self { kind, place }
+            }
+            Stop::Step(error) => {
+                let (step, message) = step_error(error);
+                let place = Place { step, frame: None, offset: None, message };
+                Self { kind: "step_without_result", place }
+            }
+        }
+    }
+}

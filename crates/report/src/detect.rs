@@ -1,0 +1,333 @@
+//! The report on one detection call: polynomials, zeros, intervals, decision; as text and JSON
+//! (`schemas/detect.schema.json`).
+use super::{
+    number::exact,
+    style::{Look, Style},
+    table::{Align, Cell, Table},
+    view::{Number, PairView, PassView, numbers, pair_kind},
+};
+use fosssim_judge::{
+    PairWords, PassWords,
+    study::{Answer, Curve, Study},
+};
+use fosssim_model::sim::{Decision, Pair, PairMotion, Pass, PointMotion};
+use fosssim_num::interval::Interval;
+use serde_json::{Value, json};
+
+/// The version of the report's shape.
+pub const DETECT_SCHEMA: u32 = 1;
+
+/// Where in a scene's run a pair was looked at.
+#[derive(Debug, Clone, Copy)]
+pub struct Place<'a> {
+    /// The scene as typed.
+    pub scene: &'a str,
+    /// The trace as typed; `None` for the reference's own run.
+    pub trace: Option<&'a str>,
+    /// The step, from 1.
+    pub step: u32,
+    /// The pair.
+    pub pair: Pair,
+    /// The detection pass; `None` where the scene has no continuous-time detection.
+    pub pass: Option<Pass>,
+    /// How many passes the reference makes in this step.
+    pub passes: usize,
+    /// What the trace logged for this call, where it logged as many polynomials as the reference.
+    pub logged: Option<&'a [Vec<f64>]>,
+}
+
+/// A detection call to be shown.
+#[derive(Debug, Clone, Copy)]
+pub struct Detect<'a> {
+    /// What was found.
+    pub study: &'a Study,
+    /// Where the pair comes from; `None` when its numbers were typed.
+    pub place: Option<Place<'a>>,
+}
+
+impl Detect<'_> {
+    /// In one line: what this is about.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let Some(place) = &self.place else {
+            return match self.study.motion {
+                PairMotion::Particles { .. } => "Two particles".to_owned(),
+                PairMotion::Edge { .. } => "A particle and an edge".to_owned(),
+                PairMotion::HalfPlane { .. } => "A particle and a half-plane".to_owned(),
+            };
+        };
+        let run = place.trace.map_or_else(|| "the reference's run".to_owned(), |trace| format!("the trace {trace}"));
+        let words = PairWords(place.pair).to_string();
+        let (first, rest) = words.split_at(1);
+        format!("{}{rest} in step {} of {run}, scene {}", first.to_uppercase(), place.step, place.scene)
+    }
+
+    /// The decision in one sentence.
+    #[must_use]
+    pub fn decision(&self) -> String {
+        let answer = &self.study.answer;
+        match answer.decision {
+            Decision::Hit { time, normal } => {
+                let (x, y) = (exact(normal.x), exact(normal.y));
+                format!("they collide at time {} with normal ({x}, {y})", exact(time))
+            }
+            Decision::Miss { .. } if answer.time() <= 1.0 => {
+                format!(
+                    "no collision: all are positive from time {}, but the normal is zero there",
+                    exact(answer.time())
+                )
+            }
+            Decision::Miss { .. } if answer.time().is_finite() => {
+                format!(
+                    "no collision in this step: all are positive from time {} on, which is after it",
+                    exact(answer.time())
+                )
+            }
+            Decision::Miss { .. } => "no collision: there is no time from 0 on at which all are positive".to_owned(),
+        }
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn text(&self, style: Style) -> String {
+        let study = self.study;
+        let mut text = style.paint(Look::Strong, &self.title()) + "\n";
+        if let Some(place) = &self.place {
+            text += &match place.pass {
+                Some(pass) => format!("  pass {} of {}: {}\n", pass.index + 1, place.passes, PassWords(pass)),
+                None => {
+                    "  this scene has no continuous-time detection; the motion is that of the whole step\n".to_owned()
+                }
+            };
+        }
+        text += &motion(&study.motion, style);
+        text += &format!(
+            "\n{}\n",
+            style.paint(Look::Strong, "Polynomials in t, the fraction of the step; each is to be positive")
+        );
+        for curve in &study.curves {
+            text += &polynomial_lines(&curve.role.to_string(), curve, style);
+        }
+        if let Some(right) = &study.right_approach {
+            text += &polynomial_lines("approach without the slip in t^3 of the course's formula", &right.curve, style);
+        }
+        if let Some(logged) = self.place.and_then(|place| place.logged) {
+            text += &format!("\n{}\n", style.paint(Look::Strong, "What the trace logged"));
+            for (curve, coefficients) in study.curves.iter().zip(logged) {
+                let same = curve.logged.coefficients() == coefficients;
+                let look = if same { Look::Good } else { Look::Bad };
+                let mark = if same { "the same" } else { "differs" };
+                text += &format!("  {}: {}\n", curve.role, style.paint(look, mark));
+                text += &format!("    {}\n", polynomial(coefficients));
+            }
+        }
+        text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
+        text += &format!("  all positive: {}\n", intervals(&study.answer.positive));
+        let look = if study.answer.collides() { Look::Notice } else { Look::Good };
+        text += &format!("  {}\n", style.paint(look, &self.decision()));
+        text += match study.certain {
+            Some(certain) if certain == study.answer.collides() => "  certain: round-off can't change this\n",
+            Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
+            None => "  borderline: a correct program with other round-off may decide otherwise\n",
+        };
+        if let Some(right) = &study.right_approach {
+            text += &with_right(&study.answer, &right.answer);
+        }
+        text
+    }
+
+    /// For programs: one JSON object, indented, with a line feed at its end.
+    #[must_use]
+    pub fn json(&self) -> String {
+        let study = self.study;
+        let value = json!({
+            "schema": DETECT_SCHEMA,
+            "place": self.place.map(|place| json!({
+                "scene": place.scene,
+                "trace": place.trace,
+                "step": place.step,
+                "pair": PairView::from(place.pair),
+                "pass": place.pass.map(PassView::from),
+                "passes": place.passes,
+                "logged": place.logged.map(|logged| logged.iter().map(|list| numbers(list)).collect::<Vec<_>>()),
+            })),
+            "kind": pair_kind(study.motion.kind()),
+            "motion": motion_view(&study.motion),
+            "polynomials": study.curves.iter().map(curve_view).collect::<Vec<_>>(),
+            "answer": answer_view(&study.answer),
+            "certain": study.certain,
+            "right_approach": study.right_approach.as_ref().map(|right| json!({
+                "polynomial": curve_view(&right.curve),
+                "answer": answer_view(&right.answer),
+            })),
+        });
+        format!("{value:#}\n")
+    }
+}
+
+/// What the right approach polynomial changes.
+fn with_right(course: &Answer, right: &Answer) -> String {
+    let says = match (course.decision, right.decision) {
+        (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
+            "the same collision at the same time".to_owned()
+        }
+        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", exact(time)),
+        (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
+        (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
+    };
+    format!("  with the approach polynomial that has no slip: {says}\n")
+}
+
+/// The objects and how they move.
+fn motion(motion: &PairMotion, style: Style) -> String {
+    let vector = |x: f64, y: f64| format!("({}, {})", exact(x), exact(y));
+    let mut table = Table::new([Align::Left, Align::Left, Align::Left, Align::Left]);
+    table.heading(["", "start", "displacement", "radius"]);
+    let mut moving = |name: &str, point: PointMotion, radius: Option<f64>| {
+        let (start, shift) = (vector(point.start.x, point.start.y), vector(point.shift.x, point.shift.y));
+        let radius = radius.map(exact).unwrap_or_default();
+        table.row([name.into(), start.into(), shift.into(), Cell::from(radius)]);
+    };
+    match *motion {
+        PairMotion::Particles { centres: [one, two], radii } => {
+            moving("particle 1", one, Some(radii[0]));
+            moving("particle 2", two, Some(radii[1]));
+        }
+        PairMotion::Edge { centre, ends, radii } => {
+            moving("particle", centre, Some(radii[0]));
+            moving("edge, first end", ends[0], Some(radii[1]));
+            moving("edge, second end", ends[1], None);
+        }
+        PairMotion::HalfPlane { centre, radius, point, normal } => {
+            moving("particle", centre, Some(radius));
+            let (point, normal) = (vector(point.x, point.y), vector(normal.x, normal.y));
+            table.row(["half-plane".into(), point.into(), format!("normal {normal}").into(), "".into()]);
+        }
+    }
+    table.render(style)
+}
+
+/// A polynomial with its zeros and where it is positive.
+fn polynomial_lines(name: &str, curve: &Curve, style: Style) -> String {
+    let mut text = format!("  {name}\n    {}\n", polynomial(curve.logged.coefficients()));
+    let all = curve.untrimmed.coefficients();
+    let dropped = &all[..all.len() - curve.logged.coefficients().len()];
+    if dropped.iter().any(|&coefficient| coefficient != 0.0) {
+        let words = format!("logged without its leading coefficients below 1e-12; with them: {}", polynomial(all));
+        text += &format!("    {}\n", style.paint(Look::Faint, &words));
+    }
+    let real = curve.real_zeros();
+    let complex = curve.zeros.len() - real.len();
+    let mut zeros = real.iter().map(|&zero| exact(zero)).collect::<Vec<_>>().join(", ");
+    if zeros.is_empty() {
+        zeros = "none real".to_owned();
+    }
+    if complex > 0 {
+        zeros += &format!(" ({complex} complex)");
+    }
+    text += &format!("    zeros: {zeros}\n    positive: {}\n", intervals(&curve.positive));
+    text
+}
+
+/// `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `only at 0.5`.
+fn intervals(list: &[Interval]) -> String {
+    if list.is_empty() {
+        return "nowhere".to_owned();
+    }
+    let words = |interval: &Interval| match interval {
+        Interval { lo, hi } if lo == hi => format!("only at {}", exact(*lo)),
+        Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY } => "always".to_owned(),
+        Interval { lo, hi } => format!("({}, {})", exact(*lo), exact(*hi)),
+    };
+    list.iter().map(words).collect::<Vec<_>>().join(" and ")
+}
+
+/// `-0.25 t^2 + 0.5 t - 0.1875`; an empty list of coefficients is the zero polynomial.
+pub(crate) fn polynomial(coefficients: &[f64]) -> String {
+    if coefficients.is_empty() {
+        return "0 (no coefficient)".to_owned();
+    }
+    let mut text = String::new();
+    for (place, &value) in coefficients.iter().enumerate() {
+        let negative = value.is_sign_negative();
+        text += match (place, negative) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => " + ",
+            (_, true) => " - ",
+        };
+        text += &exact(value.abs());
+        match coefficients.len() - 1 - place {
+            0 => {}
+            1 => text += " t",
+            power => text += &format!(" t^{power}"),
+        }
+    }
+    text
+}
+
+fn motion_view(motion: &PairMotion) -> Value {
+    let vector = |x: f64, y: f64| [Number(x), Number(y)];
+    let point = |point: PointMotion| json!({ "start": vector(point.start.x, point.start.y), "displacement": vector(point.shift.x, point.shift.y) });
+    match *motion {
+        PairMotion::Particles { centres, radii } => {
+            json!({ "points": centres.map(point), "radii": numbers(&radii) })
+        }
+        PairMotion::Edge { centre, ends, radii } => {
+            let points = [centre, ends[0], ends[1]].map(point);
+            json!({ "points": points, "radii": numbers(&radii) })
+        }
+        PairMotion::HalfPlane { centre, radius, point: at, normal } => json!({
+            "points": [point(centre)],
+            "radii": numbers(&[radius]),
+            "half_plane": { "point": vector(at.x, at.y), "normal": vector(normal.x, normal.y) },
+        }),
+    }
+}
+
+fn curve_view(curve: &Curve) -> Value {
+    json!({
+        "role": curve.role.key(),
+        "coefficients": numbers(curve.logged.coefficients()),
+        "untrimmed": numbers(curve.untrimmed.coefficients()),
+        "zeros": curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect::<Vec<_>>(),
+        "positive": sets(&curve.positive),
+    })
+}
+
+fn sets(list: &[Interval]) -> Vec<[Number; 2]> {
+    list.iter().map(|interval| [Number(interval.lo), Number(interval.hi)]).collect()
+}
+
+fn answer_view(answer: &Answer) -> Value {
+    let normal = match answer.decision {
+        Decision::Hit { normal, .. } => Some([Number(normal.x), Number(normal.y)]),
+        Decision::Miss { .. } => None,
+    };
+    json!({
+        "positive": sets(&answer.positive),
+        "collides": answer.collides(),
+        "time": Number(answer.time()),
+        "normal": normal,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_are_written_as_in_books() {
+        assert_eq!(polynomial(&[-0.25, 0.5, -0.1875]), "-0.25 t^2 + 0.5 t - 0.1875");
+        assert_eq!(polynomial(&[f64::NAN, -0.0]), "nan t - 0");
+        assert_eq!(polynomial(&[]), "0 (no coefficient)");
+    }
+
+    #[test]
+    fn sets_of_times_are_written_as_in_books() {
+        let set = |lo, hi| Interval { lo, hi };
+        assert_eq!(intervals(&[]), "nowhere");
+        assert_eq!(intervals(&[Interval::EVERYTHING]), "always");
+        assert_eq!(intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)]), "(-inf, 0.25) and only at 0.5");
+    }
+}

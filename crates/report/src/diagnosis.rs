@@ -1,0 +1,167 @@
+//! The report of `explain`: what is likely wrong with a program, trace by trace and all together.
+use super::{
+    explain::{ExplanationView, lines},
+    style::{Look, Style},
+};
+use fosssim_judge::Finding;
+use fosssim_mistakes::diagnose::Explanation;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// The version of the JSON report's schema (`schemas/explain.schema.json`).
+const SCHEMA: u32 = 1;
+
+/// What is to be said of one trace.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The scene's name.
+    pub scene: String,
+    /// Where the trace comes from.
+    pub trace: String,
+    /// Whether the fair rules accept it.
+    pub accepted: bool,
+    /// What else is to be said of it, such as how its program ended, or why it can't be read.
+    pub note: Option<String>,
+    /// The first thing that is wrong, as far as it may be told: a line, and with values.
+    pub first: Option<(String, Option<Finding>)>,
+    /// Likely mistakes, the likeliest first.
+    pub explanations: Vec<Explanation>,
+}
+
+/// The whole report.
+#[derive(Debug, Clone)]
+pub struct Diagnosis {
+    /// The traces, in the order in which they were asked about.
+    pub cases: Vec<Case>,
+    /// With several traces, the mistake that explains most of them.
+    pub common: Option<Explanation>,
+}
+
+impl Diagnosis {
+    /// Whether nothing is wrong.
+    #[must_use]
+    pub fn accepted(&self) -> bool {
+        self.cases.iter().all(|case| case.accepted)
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn text(&self, style: Style) -> String {
+        let mut text = String::new();
+        if let [case] = &self.cases[..] {
+            text += &alone(case, style);
+            return text;
+        }
+        let wrong = self.cases.iter().filter(|case| !case.accepted).count();
+        let _ = writeln!(text, "{} of {} traces are wrong by the fair rules.\n", wrong, self.cases.len());
+        if let Some(common) = &self.common {
+            let explained = self.cases.iter().filter(|case| names(case, &common.key)).count();
+            let heading = format!("What explains most ({explained} of {wrong} wrong traces)");
+            let _ = writeln!(text, "{}", style.paint(Look::Strong, &heading));
+            text += &indented(std::slice::from_ref(common));
+            text.push('\n');
+        }
+        for case in &self.cases {
+            let _ = writeln!(text, "{}", head(case, style));
+            let others: Vec<&Explanation> = case.explanations.iter().filter(|other| !self.is_common(other)).collect();
+            for other in others {
+                text += &indented(std::slice::from_ref(other));
+            }
+        }
+        text
+    }
+
+    fn is_common(&self, explanation: &Explanation) -> bool {
+        self.common
+            .as_ref()
+            .is_some_and(|common| common.key == explanation.key || explanation.same_as.contains(&common.key))
+    }
+
+    /// For programs.
+    #[must_use]
+    pub fn json(&self) -> String {
+        let cases = self.cases.iter().map(|case| CaseView {
+            scene: &case.scene,
+            trace: &case.trace,
+            accepted: case.accepted,
+            note: case.note.as_deref(),
+            first_divergence: case
+                .first
+                .as_ref()
+                .and_then(|(_, first)| first.as_ref())
+                .map(super::view::FindingView::fair),
+            explanations: case.explanations.iter().map(ExplanationView::from).collect(),
+        });
+        let view = View {
+            schema: SCHEMA,
+            accepted: self.accepted(),
+            common: self.common.as_ref().map(ExplanationView::from),
+            traces: cases.collect(),
+        };
+        serde_json::to_string_pretty(&view).unwrap_or_default() + "\n"
+    }
+}
+
+/// Whether a trace's explanations hold this key, told or as not to be told apart.
+fn names(case: &Case, key: &str) -> bool {
+    case.explanations.iter().any(|one| one.key == key || one.same_as.iter().any(|other| other == key))
+}
+
+fn head(case: &Case, style: Style) -> String {
+    let verdict = if case.accepted { style.paint(Look::Good, "right") } else { style.paint(Look::Bad, "wrong") };
+    let mut line = format!("{verdict}  {}", case.scene);
+    if let Some(note) = &case.note {
+        let _ = write!(line, ": {note}");
+    }
+    if let (Some((first, _)), true) = (&case.first, case.explanations.is_empty()) {
+        let _ = write!(line, ": {first}");
+    }
+    line
+}
+
+fn alone(case: &Case, style: Style) -> String {
+    let Case { scene, trace, accepted, note, first, explanations } = case;
+    let mut text = format!("{trace} on {scene}\n");
+    if let Some(note) = note {
+        let _ = writeln!(text, "{note}");
+    }
+    if *accepted {
+        let _ = writeln!(text, "{}", style.paint(Look::Good, "There is nothing to explain: the fair rules accept it."));
+        return text;
+    }
+    if let Some((first, _)) = first {
+        let _ = writeln!(text, "{first}");
+    }
+    if explanations.is_empty() && first.is_none() {
+        text += "No known mistake explains it.\n";
+    } else if explanations.is_empty() {
+        text += "No known mistake explains it. The first divergence is where to look: the step starts from the trace's own\n\
+                 state, so nothing before it is to blame.\n";
+    } else {
+        text.push('\n');
+        text += &indented(explanations);
+    }
+    text
+}
+
+fn indented(explanations: &[Explanation]) -> String {
+    lines(explanations).iter().map(|line| format!("  {line}\n")).collect()
+}
+
+#[derive(Serialize)]
+struct View<'a> {
+    schema: u32,
+    accepted: bool,
+    common: Option<ExplanationView>,
+    traces: Vec<CaseView<'a>>,
+}
+
+#[derive(Serialize)]
+struct CaseView<'a> {
+    scene: &'a str,
+    trace: &'a str,
+    accepted: bool,
+    note: Option<&'a str>,
+    first_divergence: Option<super::view::FindingView>,
+    explanations: Vec<ExplanationView>,
+}

@@ -1,0 +1,86 @@
+//! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
+use super::{one_line, points};
+use fosssim_grading::Grade;
+use fosssim_judge::fair::Cause;
+
+/// One row per scene.
+pub(super) fn scenes(grades: &[Grade]) -> String {
+    let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,rules_differ,likely_mistake";
+    let rows = grades.iter().flat_map(|grade| {
+        grade.groups.iter().flat_map(move |group| {
+            group.scenes.iter().map(move |scene| {
+                vec![
+                    safe(&grade.submission),
+                    safe(&group.name),
+                    safe(&scene.scene),
+                    scene.verdict.code().to_owned(),
+                    scene.points.map(points).unwrap_or_default(),
+                    points(scene.max_points),
+                    scene.right_steps.to_string(),
+                    scene.steps.to_string(),
+                    format!("{:.3}", scene.cpu.as_secs_f64()),
+                    format!("{:.3}", scene.wall.as_secs_f64()),
+                    safe(&scene.summary),
+                    scene.differs.map_or("", Cause::key).to_owned(),
+                    scene.explanations.first().map(|likeliest| safe(&likeliest.key)).unwrap_or_default(),
+                ]
+            })
+        })
+    });
+    write(head.split(',').map(str::to_owned).collect(), rows)
+}
+
+/// One row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge differently. Points are empty
+/// where the grader failed or was stopped.
+#[must_use]
+pub fn submissions(grades: &[Grade]) -> String {
+    let mut head: Vec<String> =
+        ["submission", "verdict", "points", "max_points", "accepted_scenes", "scenes", "wall_seconds", "rules_differ"]
+            .map(str::to_owned)
+            .into();
+    if let Some(first) = grades.first() {
+        head.extend(first.groups.iter().map(|group| safe(&group.name)));
+    }
+    let rows = grades.iter().map(|grade| {
+        let mut row = vec![
+            safe(&grade.submission),
+            grade.verdict.words().to_owned(),
+            grade.points.map(points).unwrap_or_default(),
+            points(grade.max_points),
+            grade.scenes().filter(|scene| scene.verdict.is_accepted()).count().to_string(),
+            grade.scenes().count().to_string(),
+            format!("{:.3}", grade.wall.as_secs_f64()),
+            grade.differing().to_string(),
+        ];
+        row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
+        row
+    });
+    write(head, rows)
+}
+
+fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in std::iter::once(head).chain(rows) {
+        // Writing to memory fails only when rows differ in length, which the rows above do not.
+        let _ = writer.write_record(&row);
+    }
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+/// Text that no spreadsheet takes for a formula.
+fn safe(text: &str) -> String {
+    let text = one_line(text);
+    if text.trim_start().starts_with(['=', '+', '-', '@', '|', '%']) { format!("'{text}") } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_are_defused() {
+        assert_eq!(safe("=HYPERLINK(\"x\")"), "'=HYPERLINK(\"x\")");
+        assert_eq!(safe(" @SUM(A1)"), "' @SUM(A1)");
+        assert_eq!(safe("a=b"), "a=b");
+    }
+}

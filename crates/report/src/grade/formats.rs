@@ -1,0 +1,139 @@
+//! Every format: against its schema, and as a snapshot that people read.
+use super::{Format, csv_of_submissions, json_line, samples};
+use fosssim_grading::Grade;
+use fosssim_testing::{Need, skip};
+use std::path::Path;
+
+fn all() -> [Grade; 3] {
+    [samples::good(), samples::bad(), samples::fault()]
+}
+
+fn schema(name: &str) -> serde_json::Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../schemas").join(name);
+    serde_json::from_str(&std::fs::read_to_string(path).expect("a schema")).expect("JSON")
+}
+
+fn assert_valid(name: &str, document: &str) {
+    let document: serde_json::Value = serde_json::from_str(document).expect("JSON");
+    if let Err(error) = jsonschema::validate(&schema(name), &document) {
+        panic!("{name}: {error}\n{document:#}");
+    }
+}
+
+/// No control character but line break and tab, whatever a program or a name holds.
+fn assert_harmless(document: &str) {
+    let bad: Vec<char> = document.chars().filter(|c| c.is_control() && !matches!(c, '\n' | '\t' | '\r')).collect();
+    assert!(bad.is_empty(), "{bad:?} in\n{document}");
+    assert!(!document.contains('\u{202e}'));
+}
+
+#[test]
+fn nothing_hostile_gets_through_any_format() {
+    for (format, name) in Format::ALL {
+        for grade in all() {
+            let document = format.render(std::slice::from_ref(&grade));
+            assert_harmless(&document);
+            assert!(!document.is_empty() || name == "github", "{name}");
+        }
+    }
+    assert_harmless(&csv_of_submissions(&all()));
+    let annotations = Format::Github.render(&[samples::bad()]);
+    assert!(annotations.lines().all(|line| line.starts_with("::error ") || line.starts_with("::warning ")));
+    let csv = Format::Csv.render(&all());
+    assert!(!csv.contains(",=") && !csv.contains("\n="), "{csv}");
+}
+
+#[test]
+fn json_follows_its_schema() {
+    assert_valid("grade.schema.json", &Format::Json.render(&all()));
+    insta::assert_snapshot!("grade_json", Format::Json.render(&all()).replace(env!("CARGO_PKG_VERSION"), "VERSION"));
+    assert_eq!(json_line(&samples::good()).lines().count(), 1);
+}
+
+#[test]
+fn gradescope_follows_its_schema() {
+    for grade in all() {
+        assert_valid("gradescope.schema.json", &Format::Gradescope.render(&[grade]));
+    }
+    let document: serde_json::Value =
+        serde_json::from_str(&Format::Gradescope.render(&[samples::fault()])).expect("JSON");
+    assert!(document.get("score").is_none(), "a fault of ours is nobody's zero");
+    insta::assert_snapshot!(
+        "grade_gradescope",
+        Format::Gradescope.render(&[samples::bad()]).replace(env!("CARGO_PKG_VERSION"), "VERSION")
+    );
+}
+
+#[test]
+fn prairielearn_follows_its_schema() {
+    for grade in all() {
+        assert_valid("prairielearn.schema.json", &Format::Prairielearn.render(&[grade]));
+    }
+    let document: serde_json::Value =
+        serde_json::from_str(&Format::Prairielearn.render(&[samples::fault()])).expect("JSON");
+    assert_eq!(document["gradable"], false);
+    insta::assert_snapshot!("grade_prairielearn", Format::Prairielearn.render(&[samples::bad()]));
+}
+
+#[test]
+fn a_stopped_grading_has_points_in_no_format() {
+    let grades = [samples::stopped()];
+    let json = |format: Format| -> serde_json::Value { serde_json::from_str(&format.render(&grades)).expect("JSON") };
+    let own = json(Format::Json);
+    assert_valid("grade.schema.json", &own.to_string());
+    let grade = &own["grades"][0];
+    assert_eq!((&grade["points"], &grade["groups"][0]["points"]), (&serde_json::Value::Null, &serde_json::Value::Null));
+    let scene = |number: usize| &grade["groups"][0]["scenes"][number]["points"];
+    assert!(scene(0).is_number() && scene(1).is_null() && scene(2).is_null(), "{grade:#}");
+    // Gradescope would add up what the tests have.
+    let gradescope = json(Format::Gradescope);
+    assert_valid("gradescope.schema.json", &gradescope.to_string());
+    assert!(!gradescope.to_string().contains("\"score\""), "{gradescope:#}");
+    let output = gradescope["output"].as_str().expect("words");
+    assert!(
+        output.contains("2 of 3 scenes have no result") && output.contains("14.0 s of it in scene Detection/b"),
+        "{output}"
+    );
+    let prairielearn = json(Format::Prairielearn);
+    assert_valid("prairielearn.schema.json", &prairielearn.to_string());
+    assert_eq!((&prairielearn["gradable"], prairielearn.get("score")), (&serde_json::json!(false), None));
+    let csv = csv_of_submissions(&grades);
+    assert!(csv.lines().nth(1).expect("a row").starts_with("kim,not run,,10,1,3,"), "{csv}");
+    assert!(csv.ends_with(",\n"), "nor has the group points: {csv}");
+    let scenes = Format::Csv.render(&grades);
+    assert!(scenes.contains("Detection/b,--,,3.33,") && scenes.contains("Detection/a,AC,3.33,3.33,"), "{scenes}");
+    for format in [Format::Text, Format::Markdown] {
+        let text = format.render(&grades);
+        assert!(text.contains("no points yet: 2 of 3 scenes not run"), "{text}");
+    }
+}
+
+#[test]
+fn every_result_can_be_rehearsed() {
+    for grade in [samples::good(), samples::bad(), samples::stopped(), samples::fault()] {
+        grade.scenes().for_each(|scene| super::rehearse(&scene.result));
+    }
+}
+
+#[test]
+fn junit_follows_its_schema() {
+    let document = Format::Junit.render(&all());
+    insta::assert_snapshot!("grade_junit", document);
+    let folder = tempfile::tempdir().expect("folder");
+    let file = folder.path().join("junit.xml");
+    std::fs::write(&file, &document).expect("written");
+    let schema = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../schemas/junit.xsd");
+    match std::process::Command::new("xmllint").arg("--noout").arg("--schema").arg(schema).arg(&file).output() {
+        Ok(output) => assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr)),
+        Err(error) => skip(Need::Xmllint, format_args!("xmllint is not here ({error})")),
+    }
+}
+
+#[test]
+fn text_csv_and_github_read_well() {
+    insta::assert_snapshot!("grade_text", Format::Text.render(&all()));
+    insta::assert_snapshot!("grade_csv", Format::Csv.render(&all()));
+    insta::assert_snapshot!("grade_submissions_csv", csv_of_submissions(&[samples::good(), samples::good()]));
+    insta::assert_snapshot!("grade_github", Format::Github.render(&all()));
+    insta::assert_snapshot!("grade_markdown", Format::Markdown.render(&all()));
+}

@@ -1,0 +1,94 @@
+//! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
+use super::{super::explain, difference, no_points, one_line, points, reached};
+use fosssim_grading::{Grade, Verdict};
+use std::fmt::Write;
+
+/// Annotations; the words are escaped as workflow commands want it.
+pub(super) fn annotations(grades: &[Grade]) -> String {
+    let mut text = String::new();
+    for grade in grades {
+        for warning in &grade.warnings {
+            let _ = writeln!(text, "::warning title={}::{}", property(&grade.submission), data(warning));
+        }
+        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+            let title = property(&format!("{}: {}", grade.submission, build.end));
+            let words: String = build.output.chars().take(4000).collect();
+            let _ =
+                writeln!(text, "::error title={title}::{}", words.lines().map(data).collect::<Vec<_>>().join("%0A"));
+        }
+        for scene in grade.scenes().filter(|scene| !scene.verdict.is_accepted()) {
+            let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
+            let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
+            let words: Vec<String> =
+                std::iter::once(scene.summary.clone()).chain(explain::sentence(&scene.explanations)).collect();
+            let _ = writeln!(text, "::{level} title={title}::{}", data(&words.join("; ")));
+        }
+        for scene in grade.scenes() {
+            let Some(words) = difference(scene) else { continue };
+            let title = property(&format!("{}: {}", grade.submission, scene.scene));
+            let _ = writeln!(text, "::warning title={title}::{}", data(&words));
+        }
+    }
+    text
+}
+
+/// What follows `::` in a workflow command.
+fn data(text: &str) -> String {
+    one_line(text).replace('%', "%25")
+}
+
+/// A property's value in a workflow command.
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}
+
+/// A Markdown table per submission.
+pub(super) fn summary(grades: &[Grade]) -> String {
+    let mut text = String::new();
+    for grade in grades {
+        let score = grade.points.map(|reached| format!("{} of {}", points(reached), points(grade.max_points)));
+        let score = score.or_else(|| no_points(grade)).unwrap_or_default();
+        let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&score));
+        for warning in &grade.warnings {
+            let _ = writeln!(text, "**Warning:** {}\n", cell(warning));
+        }
+        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+            let _ = writeln!(text, "{}\n", cell(&build.end));
+            for line in build.output.lines().take(40) {
+                let _ = writeln!(text, "    {}", one_line(line));
+            }
+            text.push('\n');
+        }
+        let _ = writeln!(text, "| scene | verdict | points | what happened |\n|---|---|---:|---|");
+        for scene in grade.scenes() {
+            let name = cell(&scene.scene);
+            let words: Vec<String> = std::iter::once(&scene.summary)
+                .chain(&explain::sentence(&scene.explanations))
+                .chain(&difference(scene))
+                .map(|words| cell(words))
+                .collect();
+            let words = words.join("; ");
+            let _ = writeln!(text, "| {name} | {} | {} | {words} |", scene.verdict, reached(scene.points));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Text without Markdown or HTML of its own.
+fn cell(text: &str) -> String {
+    let mut cell = String::new();
+    for c in one_line(text).chars() {
+        match c {
+            '<' => cell.push_str("&lt;"),
+            '>' => cell.push_str("&gt;"),
+            '&' => cell.push_str("&amp;"),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '|' | '#' | '!' | '~' | '@' => {
+                cell.push('\\');
+                cell.push(c);
+            }
+            c => cell.push(c),
+        }
+    }
+    cell
+}

@@ -1,0 +1,143 @@
+//! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
+use super::{super::explain, difference, likely_mistake, plain, points};
+use crate::number::counted;
+use fosssim_grading::{Grade, SceneGrade, Verdict, config::Visibility};
+use serde::Serialize;
+use std::fmt::Write;
+
+#[derive(Serialize)]
+struct Results {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    score: Option<f64>,
+    execution_time: u64,
+    output: String,
+    output_format: &'static str,
+    test_output_format: &'static str,
+    test_name_format: &'static str,
+    stdout_visibility: &'static str,
+    tests: Vec<Test>,
+    extra_data: Extra,
+}
+
+#[derive(Serialize)]
+struct Test {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    score: Option<f64>,
+    max_score: f64,
+    status: &'static str,
+    name: String,
+    number: String,
+    output: String,
+    tags: Vec<String>,
+    visibility: &'static str,
+}
+
+#[derive(Serialize)]
+struct Extra {
+    verdict: &'static str,
+    suite: String,
+    version: &'static str,
+    sandbox: Vec<String>,
+}
+
+/// The results of one submission.
+pub(super) fn render(grade: &Grade) -> String {
+    let mut tests = Vec::new();
+    for (g, group) in grade.groups.iter().enumerate() {
+        for (s, scene) in group.scenes.iter().enumerate() {
+            tests.push(Test {
+                // Without a score of its own the whole would be the sum of these.
+                score: grade.points.and(scene.points).map(rounded),
+                max_score: rounded(scene.max_points),
+                status: if scene.verdict.is_accepted() { "passed" } else { "failed" },
+                name: format!("{} ({})", plain(&scene.scene), plain(&group.name)),
+                number: format!("{}.{}", g + 1, s + 1),
+                output: output(scene, grade.shows_output),
+                tags: vec![scene.verdict.code().to_owned()],
+                visibility: group.visibility.key(),
+            });
+        }
+    }
+    let results = Results {
+        score: grade.points.map(rounded),
+        execution_time: grade.wall.as_secs(),
+        output: overall(grade),
+        output_format: "text",
+        test_output_format: "text",
+        test_name_format: "text",
+        stdout_visibility: "hidden",
+        tests,
+        extra_data: Extra {
+            verdict: grade.verdict.words(),
+            suite: plain(&grade.suite),
+            version: env!("CARGO_PKG_VERSION"),
+            sandbox: grade.layers.clone(),
+        },
+    };
+    let mut text = serde_json::to_string_pretty(&results).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+fn overall(grade: &Grade) -> String {
+    // What everybody reads at once says nothing about groups that not everybody sees.
+    let all_visible = grade.groups.iter().all(|group| group.visibility == Visibility::Visible);
+    let mut lines = vec![match grade.points {
+        Some(_) if !all_visible => "Graded.".to_owned(),
+        Some(reached) => format!("{}: {} of {} points.", grade.verdict, points(reached), points(grade.max_points)),
+        None if grade.is_our_fault() => {
+            "The grader failed; this is not your fault and costs nothing. Staff has to look at it.".to_owned()
+        }
+        None => out_of_time(grade),
+    }];
+    if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+        lines.push(format!("{}\n{}", plain(&build.end), plain(&build.output)));
+    }
+    if all_visible {
+        lines.extend(likely_mistake(grade).map(|line| plain(&line)));
+    }
+    lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", plain(warning))));
+    lines.join("\n")
+}
+
+/// What a student is told when the platform's time was up: what used it.
+fn out_of_time(grade: &Grade) -> String {
+    let missing = grade.count(Verdict::NotRun);
+    let mut text = format!(
+        "Grading was stopped because its time was up; {missing} of {} have no result, so there is no score yet.",
+        counted(grade.scenes().count() as u64, "scene")
+    );
+    let scenes = grade.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene)));
+    let longest = scenes.max_by_key(|(_, scene)| scene.wall).filter(|(_, scene)| !scene.wall.is_zero());
+    if let Some((group, longest)) = longest {
+        let _ = write!(text, " Your program took {:.1} s", grade.wall.as_secs_f64());
+        let (seconds, scene, summary) = (longest.wall.as_secs_f64(), plain(&longest.scene), plain(&longest.summary));
+        let _ = match group.visibility {
+            Visibility::Visible => write!(text, ", {seconds:.1} s of it in scene {scene}: {summary}."),
+            _ => write!(text, ", {seconds:.1} s of it in one scene."),
+        };
+    }
+    text
+}
+
+fn output(scene: &SceneGrade, shows_output: bool) -> String {
+    let mut lines = vec![format!("{}: {}", scene.verdict, plain(&scene.summary))];
+    lines.extend(difference(scene));
+    lines.extend(scene.details.iter().map(|detail| plain(detail)));
+    lines.extend(explain::lines(&scene.explanations).iter().map(|line| plain(line)));
+    if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
+        lines.push(match shows_output {
+            true => format!("The program's error output:\n{}", plain(&scene.stderr)),
+            // It could tell of a hidden scene what the program kept of it.
+            false => {
+                "The program's error output is kept from this report, because the suite has hidden groups.".to_owned()
+            }
+        });
+    }
+    lines.join("\n")
+}
+
+/// Points with six decimals at most, so that shares of a group add up to what is shown.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}

@@ -1,0 +1,153 @@
+//! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
+use super::{super::explain::ExplanationView, plain};
+use fosssim_grading::{Grade, GroupGrade, SceneGrade};
+use serde::Serialize;
+
+/// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
+const SCHEMA: u32 = 3;
+
+#[derive(Serialize)]
+struct Document {
+    schema: u32,
+    version: &'static str,
+    grades: Vec<GradeView>,
+}
+
+#[derive(Serialize)]
+struct GradeView {
+    submission: String,
+    suite: String,
+    rules: &'static str,
+    /// The book that gives verdicts and points.
+    official: &'static str,
+    verdict: &'static str,
+    code: &'static str,
+    /// `null` when the grader failed or was stopped: that is nobody's zero.
+    points: Option<f64>,
+    max_points: f64,
+    wall_seconds: f64,
+    sandbox: Vec<String>,
+    warnings: Vec<String>,
+    build: Option<BuildView>,
+    /// The mistake that explains most wrong scenes, where several have explanations.
+    likely_mistake: Option<ExplanationView>,
+    groups: Vec<GroupView>,
+}
+
+#[derive(Serialize)]
+struct BuildView {
+    succeeded: bool,
+    end: String,
+    output: String,
+}
+
+#[derive(Serialize)]
+struct GroupView {
+    name: String,
+    visibility: &'static str,
+    verdict: &'static str,
+    points: Option<f64>,
+    max_points: f64,
+    scenes: Vec<SceneView>,
+}
+
+#[derive(Serialize)]
+struct SceneView {
+    scene: String,
+    verdict: &'static str,
+    code: &'static str,
+    summary: String,
+    difference: Option<DifferenceView>,
+    details: Vec<String>,
+    explanations: Vec<ExplanationView>,
+    points: Option<f64>,
+    max_points: f64,
+    right_steps: u32,
+    steps: u32,
+    cpu_seconds: f64,
+    wall_seconds: f64,
+    memory_bytes: Option<u64>,
+    stdout: String,
+    stderr: String,
+    cached: bool,
+}
+
+/// Why the two rule books judge a scene differently.
+#[derive(Serialize)]
+struct DifferenceView {
+    key: &'static str,
+    text: String,
+}
+
+/// All grades in one document.
+pub(super) fn render(grades: &[Grade]) -> String {
+    let document =
+        Document { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades: grades.iter().map(view).collect() };
+    let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// One grade as one line, for JSON lines files.
+#[must_use]
+pub fn line(grade: &Grade) -> String {
+    let mut text = serde_json::to_string(&view(grade)).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+fn view(grade: &Grade) -> GradeView {
+    GradeView {
+        submission: plain(&grade.submission),
+        suite: plain(&grade.suite),
+        rules: grade.rules.name(),
+        official: grade.rules.official().name(),
+        verdict: grade.verdict.words(),
+        code: grade.verdict.code(),
+        points: grade.points,
+        max_points: grade.max_points,
+        wall_seconds: grade.wall.as_secs_f64(),
+        sandbox: grade.layers.clone(),
+        warnings: grade.warnings.iter().map(|warning| plain(warning)).collect(),
+        build: grade.build.as_ref().map(|build| BuildView {
+            succeeded: build.succeeded,
+            end: plain(&build.end),
+            output: plain(&build.output),
+        }),
+        likely_mistake: grade.likely_mistake().as_ref().map(ExplanationView::from),
+        groups: grade.groups.iter().map(group).collect(),
+    }
+}
+
+fn group(group: &GroupGrade) -> GroupView {
+    GroupView {
+        name: plain(&group.name),
+        visibility: group.visibility.key(),
+        verdict: group.verdict.words(),
+        points: group.points,
+        max_points: group.max_points,
+        scenes: group.scenes.iter().map(scene).collect(),
+    }
+}
+
+fn scene(scene: &SceneGrade) -> SceneView {
+    SceneView {
+        scene: plain(&scene.scene),
+        verdict: scene.verdict.words(),
+        code: scene.verdict.code(),
+        summary: plain(&scene.summary),
+        difference: scene.differs.map(|cause| DifferenceView { key: cause.key(), text: cause.to_string() }),
+        details: scene.details.iter().map(|detail| plain(detail)).collect(),
+        explanations: scene.explanations.iter().map(ExplanationView::from).collect(),
+        points: scene.points,
+        max_points: scene.max_points,
+        right_steps: scene.right_steps,
+        steps: scene.steps,
+        cpu_seconds: scene.cpu.as_secs_f64(),
+        wall_seconds: scene.wall.as_secs_f64(),
+        memory_bytes: scene.memory,
+        stdout: plain(&scene.stdout),
+        stderr: plain(&scene.stderr),
+        cached: scene.cached,
+    }
+}

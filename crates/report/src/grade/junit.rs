@@ -1,0 +1,59 @@
+//! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
+use super::{super::explain, difference, plain};
+use fosssim_grading::{Grade, SceneGrade, Verdict};
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+
+/// All grades in one report.
+pub(super) fn render(grades: &[Grade]) -> String {
+    let mut report = Report::new("fosssim-oracle");
+    for grade in grades {
+        for group in &grade.groups {
+            let mut suite = TestSuite::new(format!("{}: {}", plain(&grade.submission), plain(&group.name)));
+            for (number, warning) in grade.warnings.iter().enumerate() {
+                suite.add_property(quick_junit::Property::new(format!("warning.{number}"), plain(warning)));
+            }
+            for scene in &group.scenes {
+                // A case of its own has no place for what is neither its result nor the program's output.
+                if let Some(words) = difference(scene) {
+                    let name = format!("rules_differ.{}", plain(&scene.scene));
+                    suite.add_property(quick_junit::Property::new(name, words));
+                }
+                suite.add_test_case(case(grade, scene));
+            }
+            report.add_test_suite(suite);
+        }
+    }
+    report.to_string().unwrap_or_default()
+}
+
+fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
+    let status = match scene.verdict {
+        Verdict::Accepted => TestCaseStatus::success(),
+        Verdict::NotRun => TestCaseStatus::skipped(),
+        verdict => {
+            let kind = if verdict == Verdict::JudgeError { NonSuccessKind::Error } else { NonSuccessKind::Failure };
+            let mut status = TestCaseStatus::non_success(kind);
+            status.set_type(verdict.words());
+            status.set_message(plain(&scene.summary));
+            let mut description = scene.details.clone();
+            description.extend(explain::lines(&scene.explanations));
+            if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+                description.extend([build.end.clone(), build.output.clone()]);
+            }
+            if !description.is_empty() {
+                status.set_description(plain(&description.join("\n")));
+            }
+            status
+        }
+    };
+    let mut case = TestCase::new(plain(&scene.scene), status);
+    case.set_classname(plain(&grade.submission));
+    case.set_time(scene.wall);
+    if !scene.stdout.is_empty() {
+        case.set_system_out(plain(&scene.stdout));
+    }
+    if !scene.stderr.is_empty() {
+        case.set_system_err(plain(&scene.stderr));
+    }
+    case
+}

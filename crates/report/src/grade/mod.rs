@@ -1,0 +1,212 @@
+//! Grades in every format that courses use: pure functions from [`Grade`] to text.
+//!
+//! Names and program output are somebody else's words. [`plain`] takes control characters out of them before any
+//! format sees them; each format then escapes what its own syntax gives a meaning.
+
+mod csv_table;
+mod github;
+mod gradescope;
+mod json;
+mod junit;
+mod prairielearn;
+mod text;
+
+use crate::number::counted;
+use fosssim_grading::{
+    Grade, SceneGrade, SceneResult, Verdict,
+    config::{Credit, Visibility},
+    score::{self, Stakes},
+};
+use fosssim_judge::Rules;
+use fosssim_mistakes::diagnose::Explanation;
+
+/// The formats, in the order in which help lists them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// For people.
+    Text,
+    /// Our own, versioned (`schemas/grade.schema.json`).
+    Json,
+    /// JUnit XML (`schemas/junit.xsd`).
+    Junit,
+    /// Gradescope's results.json (`schemas/gradescope.schema.json`).
+    Gradescope,
+    /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
+    Prairielearn,
+    /// GitHub Actions annotations.
+    Github,
+    /// A Markdown summary, for GitHub's step summary.
+    Markdown,
+    /// One row per scene, for spreadsheets.
+    Csv,
+}
+
+impl Format {
+    /// All formats with the names under which the command line knows them.
+    pub const ALL: [(Self, &'static str); 8] = [
+        (Self::Text, "text"),
+        (Self::Json, "json"),
+        (Self::Junit, "junit"),
+        (Self::Gradescope, "gradescope"),
+        (Self::Prairielearn, "prairielearn"),
+        (Self::Github, "github"),
+        (Self::Markdown, "markdown"),
+        (Self::Csv, "csv"),
+    ];
+
+    /// The format with this name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(_, known)| *known == name).map(|(format, _)| format)
+    }
+
+    /// Whether one document holds the grades of several submissions.
+    #[must_use]
+    pub const fn takes_several(self) -> bool {
+        !matches!(self, Self::Gradescope | Self::Prairielearn)
+    }
+
+    /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
+    #[must_use]
+    pub fn render(self, grades: &[Grade]) -> String {
+        match self {
+            Self::Text => text::Text::default().render(grades),
+            Self::Json => json::render(grades),
+            Self::Junit => junit::render(grades),
+            Self::Gradescope => grades.first().map(gradescope::render).unwrap_or_default(),
+            Self::Prairielearn => grades.first().map(prairielearn::render).unwrap_or_default(),
+            Self::Github => github::annotations(grades),
+            Self::Markdown => github::summary(grades),
+            Self::Csv => csv_table::scenes(grades),
+        }
+    }
+}
+
+pub use csv_table::submissions as csv_of_submissions;
+pub use json::line as json_line;
+pub use text::{Advice, Shown, Text, changes, score, table as text_table};
+
+/// Somebody else's words without control characters: escape codes, bells and NULs become visible, line breaks and
+/// tabs stay, characters that XML 1.0 forbids are replaced.
+#[must_use]
+pub fn plain(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\t' => plain.push(c),
+            '\r' => {}
+            '\u{fffe}' | '\u{ffff}' => plain.push('\u{fffd}'),
+            // Marks that change the direction of the text could show a report's words in another order.
+            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' => plain.push('\u{fffd}'),
+            c if c.is_control() => plain.push_str(&format!("\\x{:02x}", u32::from(c))),
+            c => plain.push(c),
+        }
+    }
+    plain
+}
+
+/// One line about the mistake that explains most wrong scenes, where there are several.
+#[must_use]
+pub fn likely_mistake(grade: &Grade) -> Option<String> {
+    let likely = grade.likely_mistake()?;
+    let wrong = grade.count(Verdict::WrongAnswer);
+    let explained = grade.explained_by(&likely.key);
+    Some(format!("most likely mistake: {} (explains {explained} of {wrong} wrong scenes)", likely.what))
+}
+
+/// The likely mistakes, the one that explains most wrong scenes first, and how many scenes each explains.
+#[must_use]
+pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
+    // One scene's explanations stand for themselves.
+    let of_one = || grade.scenes().find_map(|scene| scene.explanations.first().cloned());
+    let likely = grade.likely_mistake().or_else(of_one).filter(|likely| likely.reproduced > 0);
+    likely.into_iter().map(|likely| (likely.clone(), grade.explained_by(&likely.key))).collect()
+}
+
+/// The sentence about a scene that the two rule books judge differently.
+#[must_use]
+pub fn difference(scene: &SceneGrade) -> Option<String> {
+    scene.differs.map(|cause| {
+        let verdicts = if cause.original_fails() {
+            "the original fails it, the fair rules accept it"
+        } else {
+            "the original passes it, the fair rules reject it"
+        };
+        format!("the rule books differ: {verdicts}: {cause}")
+    })
+}
+
+/// [`plain`] on one line.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    plain(text).replace(['\n', '\t'], " ")
+}
+
+/// Points without needless digits: `12.5`, `10`.
+#[must_use]
+pub fn points(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Points that may be missing: where the grader failed or was stopped nobody has a zero.
+#[must_use]
+pub fn reached(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), points)
+}
+
+/// Why a grade has no points.
+#[must_use]
+pub fn no_points(grade: &Grade) -> Option<String> {
+    if grade.points.is_some() {
+        None
+    } else if grade.is_our_fault() {
+        Some("no points: the grader failed, which is not the submission's fault".to_owned())
+    } else {
+        let (missing, all) = (grade.count(Verdict::NotRun), grade.scenes().count());
+        Some(format!("no points yet: {missing} of {} not run", counted(all as u64, "scene")))
+    }
+}
+
+/// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at hand,
+/// and not when a whole class's reports are written.
+pub fn rehearse(result: &SceneResult) {
+    let stakes = Stakes { points: 1.0, credit: Credit::Steps, visibility: Visibility::Visible };
+    let group = score::group("group", stakes, vec![(result.clone(), false)]);
+    let grade = Grade {
+        submission: "submission".to_owned(),
+        suite: "suite".to_owned(),
+        rules: Rules::Both,
+        verdict: result.verdict,
+        points: group.points,
+        max_points: group.max_points,
+        groups: vec![group],
+        shows_output: true,
+        build: None,
+        warnings: Vec::new(),
+        layers: Vec::new(),
+        wall: result.wall,
+    };
+    let grades = [grade];
+    for (format, _) in Format::ALL {
+        drop(format.render(&grades));
+    }
+    drop(csv_of_submissions(&grades));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_become_visible() {
+        assert_eq!(plain("a\u{1b}[31mb\0\u{7}\r\nc\td\u{202e}e"), "a\\x1b[31mb\\x00\\x07\nc\td\u{fffd}e");
+        assert_eq!(one_line("a\nb"), "a b");
+        assert_eq!((points(10.0), points(2.5), points(0.0)), ("10".into(), "2.5".into(), "0".into()));
+    }
+}
+
+#[cfg(test)]
+mod formats;
+#[cfg(test)]
+pub(crate) mod samples;

@@ -1,0 +1,91 @@
+//! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
+use super::{super::explain, difference, one_line, plain};
+use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
+use serde::Serialize;
+
+/// PrairieLearn refuses more than a megabyte; texts are cut long before.
+const LONGEST_TEXT: usize = 4000;
+
+#[derive(Serialize)]
+struct Results {
+    gradable: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    score: Option<f64>,
+    message: String,
+    output: String,
+    tests: Vec<Test>,
+}
+
+#[derive(Serialize)]
+struct Test {
+    name: String,
+    description: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<f64>,
+    max_points: f64,
+    message: String,
+    output: String,
+}
+
+/// The results of one submission.
+pub(super) fn render(grade: &Grade) -> String {
+    let tests = shown(grade)
+        .flat_map(|group| &group.scenes)
+        .map(|scene| Test {
+            name: one_line(&scene.scene),
+            description: scene.verdict.words().to_owned(),
+            points: scene.points,
+            max_points: scene.max_points,
+            message: cut(&scene.summary),
+            output: cut(&output(scene)),
+        })
+        .collect();
+    let build = grade.build.as_ref().filter(|build| !build.succeeded);
+    let results = Results {
+        gradable: grade.points.is_some(),
+        score: grade.points.map(|points| if grade.max_points > 0.0 { points / grade.max_points } else { 0.0 }),
+        message: match grade.verdict {
+            Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
+            _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),
+            // Groups that students do not see must not show through.
+            _ => shown_verdict(grade).words().to_owned(),
+        },
+        output: grade
+            .warnings
+            .iter()
+            .map(|warning| format!("warning: {warning}"))
+            .chain(build.map(|build| format!("{}\n{}", build.end, build.output)))
+            .map(|text| cut(&text))
+            .collect::<Vec<_>>()
+            .join("\n"),
+        tests,
+    };
+    let mut text = serde_json::to_string_pretty(&results).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// Everything about a scene that its message does not say.
+fn output(scene: &SceneGrade) -> String {
+    let mut lines: Vec<String> = difference(scene).into_iter().collect();
+    lines.extend(scene.details.iter().cloned());
+    lines.extend(explain::lines(&scene.explanations));
+    lines.join("\n")
+}
+
+/// The groups that students see at once.
+fn shown(grade: &Grade) -> impl Iterator<Item = &GroupGrade> {
+    grade.groups.iter().filter(|group| group.visibility == Visibility::Visible)
+}
+
+fn shown_verdict(grade: &Grade) -> Verdict {
+    shown(grade).map(|group| group.verdict).max().unwrap_or(Verdict::NotRun)
+}
+
+fn cut(text: &str) -> String {
+    let text = plain(text);
+    match text.char_indices().nth(LONGEST_TEXT) {
+        Some((end, _)) => format!("{} [cut short]", &text[..end]),
+        None => text,
+    }
+}

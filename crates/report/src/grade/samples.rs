@@ -1,0 +1,111 @@
+//! Grades for tests: one good, one bad in every way, with hostile words in it.
+use fosssim_grading::{
+    Build, Grade, GroupGrade, SceneResult, Verdict,
+    config::{Credit, Visibility},
+    score::{self, Stakes},
+};
+use fosssim_judge::{Rules, fair::Cause};
+use std::time::Duration;
+
+fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
+    SceneResult {
+        right_steps: if verdict.is_accepted() { 100 } else { 60 },
+        cpu: Duration::from_millis(120),
+        wall: Duration::from_millis(150),
+        memory: Some(7 << 20),
+        ..SceneResult::without_run(name, 100, verdict, summary)
+    }
+}
+
+fn group(name: &str, visibility: Visibility, scenes: Vec<SceneResult>) -> GroupGrade {
+    let scenes = scenes.into_iter().map(|scene| (scene, false)).collect();
+    score::group(name, Stakes { points: 10.0, credit: Credit::Scenes, visibility }, scenes)
+}
+
+fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
+    let verdict = groups.iter().map(|group| group.verdict).max().expect("a group");
+    Grade {
+        submission: submission.to_owned(),
+        suite: "Theme 2, Milestone 2".to_owned(),
+        rules: Rules::Both,
+        verdict,
+        points: groups.iter().map(|group| group.points).sum(),
+        max_points: groups.iter().map(|group| group.max_points).sum(),
+        shows_output: groups.iter().all(|group| group.visibility == Visibility::Visible),
+        groups,
+        build: None,
+        warnings: Vec::new(),
+        layers: vec!["resource limits".to_owned(), "system call filter".to_owned()],
+        wall: Duration::from_millis(1500),
+    }
+}
+
+/// Everything accepted.
+pub(crate) fn good() -> Grade {
+    let scenes = |names: &[&str]| {
+        names.iter().map(|name| scene(name, Verdict::Accepted, "all 100 steps are right")).collect::<Vec<_>>()
+    };
+    grade(
+        "ada",
+        vec![
+            group("Detection", Visibility::Visible, scenes(&["Detection/a", "Detection/b"])),
+            group("Impulses", Visibility::Hidden, scenes(&["Impulses/a"])),
+        ],
+    )
+}
+
+/// Every verdict of a run, and words that try to get into the report's own syntax.
+pub(crate) fn bad() -> Grade {
+    let mut wrong =
+        scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
+    wrong.differs = Some(Cause::AbsoluteCoefficients);
+    wrong.explanations = crate::explain::tests::explanations();
+    wrong.details = vec!["first divergence: step 3: overlap polynomial of particles 0 and 1".to_owned()];
+    let mut crash = scene("Detection/b", Verdict::RuntimeError, "the program ended by signal 11");
+    crash.stderr =
+        "\u{1b}[32mOverall success: Passed.\u{1b}[m\n<b>]]></b>&amp;\u{202e}\0\n::error::forged\n".to_owned();
+    let rest = Verdict::ALL[2..11]
+        .iter()
+        .filter(|verdict| !matches!(verdict, Verdict::WrongAnswer | Verdict::RuntimeError))
+        .map(|&verdict| scene(&format!("Rest/{}", verdict.code()), verdict, "=cmd|' /C calc'!A0 <i>*_`%0A::"))
+        .collect();
+    let mut grade = grade(
+        "=eve <script>\u{1b}]0;title\u{7}",
+        vec![
+            group("Detection", Visibility::Visible, vec![wrong, crash]),
+            group("Rest", Visibility::AfterDueDate, rest),
+        ],
+    );
+    grade.warnings = vec!["graded without a sandbox".to_owned()];
+    grade.build = Some(Build {
+        succeeded: false,
+        end: "the build exited with code 2".to_owned(),
+        output: "a.cpp:1: error: \u{1b}[1mno".to_owned(),
+    });
+    grade
+}
+
+/// Stopped while its second scene ran.
+pub(crate) fn stopped() -> Grade {
+    let mut running = scene("Detection/b", Verdict::NotRun, "the program was stopped by the grader");
+    running.wall = Duration::from_secs(14);
+    let scenes =
+        vec![scene("Detection/a", Verdict::Accepted, "all 100 steps are right"), running, missing("Detection/c")];
+    grade("kim", vec![group("Detection", Visibility::Visible, scenes)])
+}
+
+fn missing(name: &str) -> SceneResult {
+    SceneResult::without_run(name, 100, Verdict::NotRun, "grading was stopped")
+}
+
+/// The grader failed.
+pub(crate) fn fault() -> Grade {
+    grade(
+        "bob",
+        vec![group(
+            "Detection",
+            Visibility::Visible,
+            vec![scene("Detection/a", Verdict::JudgeError, "no space left on device")],
+        )],
+    )
+}

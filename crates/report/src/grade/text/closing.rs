@@ -1,0 +1,88 @@
+//! What a submission's grading comes to: short enough for a small terminal, and last, so that it stays in sight.
+use super::{Text, look};
+use crate::{
+    grade::{likely_mistakes, one_line, plain, points, reached},
+    number::counted,
+    style::Look,
+    table::{Align, Cell, Table},
+};
+use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
+use std::fmt::Write;
+
+/// So many groups are listed; of a suite with more of them those that are not accepted come first.
+const GROUPS: usize = 8;
+
+/// The closing lines. `alone` says that nothing stands above them.
+pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
+    let style = options.style;
+    let mut text = options.verdict(grade) + "\n";
+    if alone {
+        text += &options.circumstances(grade);
+    }
+    text += &groups(options, grade);
+    let mistakes = likely_mistakes(grade);
+    let wrong = grade.scenes().filter(|scene| is_wrong(scene)).count() as u64;
+    for (number, (mistake, explained)) in mistakes.iter().enumerate() {
+        if number == 0 {
+            let heading = if mistakes.len() == 1 { "Likely mistake" } else { "Likely mistakes" };
+            let _ = writeln!(text, "{}", style.paint(Look::Strong, heading));
+        }
+        let share = format!("(explains {explained} of {})", counted(wrong, "wrong scene"));
+        let _ = writeln!(text, "  - {} {share}", plain(&mistake.what));
+    }
+    let first = grade.scenes().find(|scene| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun));
+    if let Some(scene) = first {
+        let code = style.paint(look(scene.verdict), scene.verdict.code());
+        let _ = writeln!(text, "{}", style.paint(Look::Strong, "First scene that is not accepted"));
+        let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&scene.summary));
+        for line in options.closer.map(|closer| closer(grade, scene)).unwrap_or_default() {
+            let _ = writeln!(text, "  {line}");
+        }
+    }
+    text
+}
+
+/// Whether an explanation of what is wrong is to be looked for.
+fn is_wrong(scene: &SceneGrade) -> bool {
+    matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace)
+}
+
+/// A row per group: points, and how many scenes are accepted.
+fn groups(options: &Text<'_>, grade: &Grade) -> String {
+    let mut table = Table::new([Align::Left, Align::Right, Align::Left, Align::Left]);
+    let mut listed: Vec<&GroupGrade> = grade.groups.iter().collect();
+    if listed.len() > GROUPS {
+        listed.sort_by_key(|group| group.verdict.is_accepted());
+    }
+    for group in listed.iter().take(GROUPS) {
+        let name = one_line(&group.name);
+        let score = format!("{} of {}", reached(group.points), points(group.max_points));
+        table.row([
+            name.into(),
+            score.into(),
+            Cell::looking(look(group.verdict), group.verdict.code()),
+            share(group).into(),
+        ]);
+    }
+    let mut text = table.render(options.style);
+    if listed.len() > GROUPS {
+        let _ = writeln!(text, "  and {}", counted((listed.len() - GROUPS) as u64, "more group"));
+    }
+    text
+}
+
+/// `all 12 scenes`, `8 of 12 scenes, 2 not run`.
+fn share(group: &GroupGrade) -> String {
+    let all = group.scenes.len();
+    let of = |verdict: Verdict| group.scenes.iter().filter(|scene| scene.verdict == verdict).count();
+    let (accepted, not_run) = (of(Verdict::Accepted), of(Verdict::NotRun));
+    if accepted == all {
+        return match all {
+            1 => "its only scene accepted".to_owned(),
+            2 => "both scenes accepted".to_owned(),
+            _ => format!("all {all} scenes accepted"),
+        };
+    }
+    let rest = if not_run > 0 { format!(", {not_run} not run") } else { String::new() };
+    format!("{accepted} of {} accepted{rest}", counted(all as u64, "scene"))
+}

@@ -1,0 +1,143 @@
+//! Grades for people at a terminal: what went wrong, and at the end, where a terminal shows it, what it comes to.
+
+mod changes;
+mod closing;
+mod scenes;
+mod table;
+
+pub use changes::changes;
+pub use table::table;
+
+use super::{super::style::Style, no_points, one_line, plain, points};
+use crate::{number::counted, style::Look};
+use fosssim_grading::{Grade, SceneGrade, Verdict};
+use fosssim_judge::Rules;
+use std::fmt::Write;
+
+/// Program output is shown up to so many lines.
+const SHOWN_LINES: usize = 10;
+
+/// How much is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Shown {
+    /// A line per submission.
+    Line,
+    /// What each submission's grading comes to.
+    Closing,
+    /// Also every scene that is not accepted.
+    #[default]
+    Wrong,
+    /// Every scene.
+    All,
+}
+
+/// Lines that say what to type next about a scene. Those that begin with `$ ` are commands.
+pub type Advice<'a> = &'a dyn Fn(&Grade, &SceneGrade) -> Vec<String>;
+
+/// What the text shows, and how.
+#[derive(Clone, Copy, Default)]
+pub struct Text<'a> {
+    /// The decoration.
+    pub style: Style,
+    /// How much of each submission.
+    pub shown: Shown,
+    /// The room for tables, in columns; without it there is no limit.
+    pub width: Option<usize>,
+    /// What to type to grade one scene again, shown with each scene that is wrong.
+    pub again: Option<Advice<'a>>,
+    /// What to type to look closer at the first wrong scene.
+    pub closer: Option<Advice<'a>>,
+}
+
+impl Text<'_> {
+    /// The whole report.
+    #[must_use]
+    pub fn render(&self, grades: &[Grade]) -> String {
+        let mut text = String::new();
+        for grade in grades {
+            if self.shown == Shown::Line {
+                let _ = writeln!(text, "{}", self.verdict(grade));
+            } else {
+                self.submission(&mut text, grade);
+            }
+        }
+        if grades.len() > 1 && self.shown > Shown::Line {
+            text += &table(grades, self.width, self.style);
+        }
+        text
+    }
+
+    fn submission(&self, text: &mut String, grade: &Grade) {
+        let details = scenes::render(self, grade);
+        if !details.is_empty() {
+            let _ = writeln!(text, "{}", self.verdict(grade));
+            *text += &self.circumstances(grade);
+            *text += &details;
+            text.push('\n');
+        }
+        *text += &closing::render(self, grade, details.is_empty());
+        text.push('\n');
+    }
+
+    /// The submission, its verdict and its points.
+    fn verdict(&self, grade: &Grade) -> String {
+        let look = if grade.verdict.is_accepted() { Look::Good } else { Look::Bad };
+        let (name, verdict) = (one_line(&grade.submission), grade.verdict.words());
+        let reached = match grade.points {
+            Some(reached) => score(reached, grade.max_points),
+            None => no_points(grade).unwrap_or_default(),
+        };
+        format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
+    }
+
+    /// The suite, what weakened the sandbox, and a build that failed.
+    fn circumstances(&self, grade: &Grade) -> String {
+        let mut text = format!("suite {}{}\n", one_line(&grade.suite), rules(grade));
+        for warning in &grade.warnings {
+            let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
+        }
+        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+            let most = if self.shown < Shown::Wrong { SHOWN_LINES } else { usize::MAX };
+            let _ = writeln!(text, "\n{}\n{}", plain(&build.end), output(&build.output, most));
+        }
+        text
+    }
+}
+
+/// `12.5 of 20 points`.
+#[must_use]
+pub fn score(reached: f64, most: f64) -> String {
+    let plural = if points(most) == "1" { "" } else { "s" };
+    format!("{} of {} point{plural}", points(reached), points(most))
+}
+
+/// The book that counts, where a reader might take it for the other: nothing where both agree.
+fn rules(grade: &Grade) -> String {
+    match (grade.rules, grade.differing() as u64) {
+        (Rules::Parity, _) => ", by the original's rules".to_owned(),
+        (Rules::Fair, _) => ", by the fair rules".to_owned(),
+        (Rules::Both, 0) => String::new(),
+        (Rules::Both, differing) => {
+            format!(", by the original's rules (the fair rules differ in {})", counted(differing, "scene"))
+        }
+    }
+}
+
+/// The look of a scene's verdict.
+const fn look(verdict: Verdict) -> Look {
+    match verdict {
+        Verdict::Accepted => Look::Good,
+        Verdict::NotRun => Look::Notice,
+        _ => Look::Bad,
+    }
+}
+
+/// Lines of program output, marked so that they can't be taken for ours.
+fn output(output: &str, most: usize) -> String {
+    let output = plain(output);
+    let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();
+    if output.lines().count() > most {
+        lines.push("      | ...".to_owned());
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,132 @@
+//! The scenes of a submission, group by group: what is accepted is counted, what is not is told, and what is told of many
+//! scenes in the same words is told once.
+use super::{Shown, Text, look, output};
+use crate::{
+    explain,
+    grade::{difference, one_line, points, reached, text::SHOWN_LINES},
+    number::counted,
+    style::Look,
+    wrap::columns,
+};
+use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
+use std::{collections::BTreeMap, fmt::Write};
+
+/// So many scenes that end the same way are named.
+const NAMED: usize = 3;
+
+/// The groups that have something to show.
+pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
+    if options.shown < Shown::Wrong {
+        return String::new();
+    }
+    let shown = |scene: &SceneGrade| options.shown == Shown::All || !scene.verdict.is_accepted();
+    let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| columns(&one_line(&scene.scene)));
+    let width = names.max().unwrap_or(0);
+    let mut scenes = Scenes { options, grade, width, told: BTreeMap::new(), alike: alike(grade) };
+    let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
+    groups.map(|group| scenes.group(group)).collect()
+}
+
+/// What is told of a scene whose program failed: scenes of which the same is told are told of once.
+type Words<'a> = (Verdict, &'a str, &'a [String]);
+
+/// A wrong trace differs from scene to scene; a program that does not run ends in the same words each time.
+fn words(scene: &SceneGrade) -> Option<Words<'_>> {
+    let fails = !matches!(scene.verdict, Verdict::Accepted | Verdict::WrongAnswer | Verdict::BadTrace);
+    fails.then_some((scene.verdict, scene.summary.as_str(), scene.details.as_slice()))
+}
+
+/// The scenes of which the same is told.
+fn alike(grade: &Grade) -> BTreeMap<Words<'_>, Vec<&str>> {
+    let mut alike: BTreeMap<Words<'_>, Vec<&str>> = BTreeMap::new();
+    for scene in grade.scenes() {
+        if let Some(words) = words(scene) {
+            alike.entry(words).or_default().push(&scene.scene);
+        }
+    }
+    alike
+}
+
+struct Scenes<'a, 'b> {
+    options: &'b Text<'b>,
+    grade: &'a Grade,
+    /// Columns of the longest name.
+    width: usize,
+    /// How often a scene's words have been told.
+    told: BTreeMap<Words<'a>, usize>,
+    alike: BTreeMap<Words<'a>, Vec<&'a str>>,
+}
+
+impl<'a> Scenes<'a, '_> {
+    fn group(&mut self, group: &'a GroupGrade) -> String {
+        let style = self.options.style;
+        let name = style.paint(Look::Strong, &one_line(&group.name));
+        let mut text = format!("\n{name} ({} of {})\n", reached(group.points), points(group.max_points));
+        let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
+        let folds = self.options.shown < Shown::All;
+        if folds && accepted > 0 {
+            let code = style.paint(Look::Good, "AC ");
+            let _ = writeln!(text, "  {code} {}", counted(accepted as u64, "scene"));
+        }
+        for scene in &group.scenes {
+            if !(folds && scene.verdict.is_accepted()) {
+                text += &self.scene(scene, folds);
+            }
+        }
+        text
+    }
+
+    fn scene(&mut self, scene: &'a SceneGrade, folds: bool) -> String {
+        let seen = words(scene).map_or(0, |words| {
+            let times = self.told.entry(words).or_default();
+            *times += 1;
+            *times - 1
+        });
+        let mut text = String::new();
+        if seen == 0 || !folds {
+            text += &self.row(scene);
+        }
+        if seen == 0 {
+            text += &self.details(scene);
+        }
+        text
+    }
+
+    fn row(&self, scene: &SceneGrade) -> String {
+        let (name, style) = (one_line(&scene.scene), self.options.style);
+        let code = style.paint(look(scene.verdict), &format!("{:<3}", scene.verdict.code()));
+        let blanks = " ".repeat(self.width.saturating_sub(columns(&name)));
+        format!("  {code} {name}{blanks}  {} of {}\n", reached(scene.points), points(scene.max_points))
+    }
+
+    fn details(&self, scene: &SceneGrade) -> String {
+        let mut lines = Vec::new();
+        if !scene.verdict.is_accepted() {
+            lines.push(one_line(&scene.summary));
+        }
+        lines.extend(difference(scene));
+        lines.extend(scene.details.iter().map(|line| one_line(line)));
+        lines.extend(explain::lines(&scene.explanations).iter().map(|line| one_line(line)));
+        let alike = words(scene).and_then(|words| self.alike.get(&words)).map_or(&[][..], |names| &names[1..]);
+        if !alike.is_empty() {
+            lines.push(the_same(alike));
+        }
+        if !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun)
+            && let Some(again) = self.options.again
+        {
+            lines.extend(again(self.grade, scene));
+        }
+        let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();
+        if scene.verdict >= Verdict::NoOutput && !scene.stderr.trim().is_empty() {
+            let _ = writeln!(text, "      its error output:\n{}", output(&scene.stderr, SHOWN_LINES));
+        }
+        text
+    }
+}
+
+/// `the same in 5 more scenes: a, b, c and 2 more`.
+fn the_same(names: &[&str]) -> String {
+    let shown: Vec<_> = names.iter().take(NAMED).map(|name| one_line(name)).collect();
+    let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
+    format!("the same in {}: {}{more}", counted(names.len() as u64, "more scene"), shown.join(", "))
+}

@@ -1,0 +1,85 @@
+//! A class at a glance: one row per submission.
+use crate::{
+    grade::{one_line, reached},
+    style::{Look, Style},
+    wrap::columns,
+};
+use fosssim_grading::{Grade, GroupGrade};
+
+/// A column's cells, its heading first, and where they stand.
+struct Column {
+    cells: Vec<String>,
+    right: bool,
+}
+
+/// One row per submission: points, worst verdict, scenes per group, time. Columns that the width has no room for are left
+/// out: first the time, then the groups, in whose place all scenes are counted together.
+#[must_use]
+pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
+    let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
+        let cells = std::iter::once(heading.to_owned()).chain(grades.iter().map(cell)).collect();
+        Column { cells, right }
+    };
+    let name = of("submission", false, &|grade| one_line(&grade.submission));
+    let score = of("points", true, &|grade| reached(grade.points));
+    let verdict = of("verdict", false, &|grade| grade.verdict.words().to_owned());
+    let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
+    let groups = grades.first().map_or(0, |grade| grade.groups.len());
+    let groups: Vec<Column> = (0..groups)
+        .map(|number| {
+            let heading: String = one_line(&grades[0].groups[number].name).chars().take(8).collect();
+            of(&heading, false, &|grade| grade.groups.get(number).map_or_else(String::new, cell))
+        })
+        .collect();
+    let scenes = of("scenes", true, &|grade| {
+        let accepted = grade.scenes().filter(|scene| scene.verdict.is_accepted()).count();
+        format!("{accepted}/{}", grade.scenes().count())
+    });
+    let base = [&name, &score, &verdict];
+    let whole: Vec<&Column> = base.into_iter().chain(&groups).chain([&seconds]).collect();
+    let without_time: Vec<&Column> = base.into_iter().chain(&groups).collect();
+    let short: Vec<&Column> = base.into_iter().chain([&scenes]).collect();
+    let fits = |columns: &[&Column]| width.is_none_or(|width| total(columns) <= width);
+    let chosen = [whole, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
+    rows(&chosen, grades, style)
+}
+
+fn widest(column: &Column) -> usize {
+    column.cells.iter().map(|cell| columns(cell)).max().unwrap_or(0)
+}
+
+fn total(columns: &[&Column]) -> usize {
+    columns.iter().map(|column| widest(column) + 2).sum::<usize>().saturating_sub(2)
+}
+
+fn rows(columns_of: &[&Column], grades: &[Grade], style: Style) -> String {
+    let mut text = String::new();
+    for row in 0..=grades.len() {
+        let mut line = String::new();
+        for (number, column) in columns_of.iter().enumerate() {
+            let cell = &column.cells[row];
+            let blanks = " ".repeat(widest(column) - columns(cell));
+            let look = match row.checked_sub(1) {
+                None => Some(Look::Faint),
+                // The verdict.
+                Some(grade) if number == 2 => Some(super::look(grades[grade].verdict)),
+                Some(_) => None,
+            };
+            let cell = look.map_or_else(|| cell.clone(), |look| style.paint(look, cell));
+            line += &if column.right { format!("{blanks}{cell}  ") } else { format!("{cell}{blanks}  ") };
+        }
+        text += line.trim_end();
+        text += "\n";
+    }
+    text
+}
+
+/// `AC`, or the worst verdict and how many scenes are accepted.
+fn cell(group: &GroupGrade) -> String {
+    let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
+    if accepted == group.scenes.len() {
+        "AC".to_owned()
+    } else {
+        format!("{} {accepted}/{}", group.verdict.code(), group.scenes.len())
+    }
+}

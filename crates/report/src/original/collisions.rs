@@ -1,0 +1,64 @@
+//! The original's words about collisions that do not match (oracle-behaviour.md 6.1).
+use super::super::number::general;
+use fosssim_judge::parity::Remark;
+use fosssim_model::trace::LoggedImpulse;
+use fosssim_num::vector::Vec2;
+
+/// The line above the collisions of a step.
+pub(super) const HEADER: &str = "Collision Detection Error: \n";
+
+/// The line about one collision; `None` when the remark is about polynomials.
+pub(super) fn line(remark: &Remark) -> Option<String> {
+    match remark {
+        Remark::Missed(expected) => Some(format!("  Missed collision: {}\n", words(&LoggedImpulse::from(*expected)))),
+        Remark::Superfluous(actual) => Some(format!("  Superfluous collision: {}\n", words(actual))),
+        Remark::WrongNormal { actual, expected } => {
+            let (actual, expected) = (words(actual), words(&LoggedImpulse::from(*expected)));
+            Some(format!("  Collision with wrong normal: {actual} should be {expected}\n"))
+        }
+        Remark::Polynomials(..) => None,
+    }
+}
+
+/// `Particle A - Edge B with normal = X Y`; nothing for an unknown kind of pair.
+fn words(impulse: &LoggedImpulse) -> String {
+    let second = match impulse.kind {
+        0 => "Particle",
+        1 => "Edge",
+        2 => "Halfplane",
+        _ => return String::new(),
+    };
+    let normal = direction(impulse.normal);
+    format!("Particle {} - {second} {} with normal = {normal}", impulse.first, impulse.second)
+}
+
+/// Both components; the first is padded to the length of the second, never the other way round.
+fn direction(normal: Vec2) -> String {
+    let (x, y) = (general(normal.x), general(normal.y));
+    format!("{x:>width$} {y}", width = y.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn logged(kind: i32, x: f64, y: f64) -> LoggedImpulse {
+        LoggedImpulse { kind, first: 3, second: -7, normal: Vec2::new(x, y), time: 0.5 }
+    }
+
+    #[test]
+    fn pairs_are_named_and_only_the_first_component_is_padded() {
+        assert_eq!(words(&logged(0, 0.4, 0.0)), "Particle 3 - Particle -7 with normal = 0.4 0");
+        assert_eq!(words(&logged(1, 0.25, -1e-7)), "Particle 3 - Edge -7 with normal =   0.25 -1e-07");
+        assert_eq!(
+            words(&logged(2, -0.0, f64::NAN.copysign(-1.0))),
+            "Particle 3 - Halfplane -7 with normal =   -0 -nan"
+        );
+    }
+
+    #[test]
+    fn an_unknown_kind_has_no_words() {
+        let line = line(&Remark::Superfluous(logged(9, 1.0, 2.0))).unwrap();
+        assert_eq!(line, "  Superfluous collision: \n");
+    }
+}

@@ -1,0 +1,369 @@
+//! The original's standard output as a state machine over events (oracle-behaviour.md 3, 5, 6).
+use super::super::number::general;
+use super::{BLUE, GREEN, PINK, PLAIN, RED, collisions, verdict};
+use fosssim_judge::{
+    Outcome, Residuals, Stop, Unreadable,
+    parity::{Progress, Remark},
+};
+use fosssim_model::scene::{Collision, Integrator, Scene};
+use std::io::{self, Write};
+
+/// What the original shows above a run.
+#[derive(Debug, Clone, Copy)]
+pub struct Heading<'a> {
+    /// The scene argument as typed.
+    pub scene_name: &'a [u8],
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The description as the file has it.
+    pub description: &'a [u8],
+    /// What is to be done.
+    pub task: Task<'a>,
+}
+
+/// What the original is asked to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Task<'a> {
+    /// Simulate and keep nothing.
+    Run,
+    /// Record a trace in this file.
+    Record(&'a [u8]),
+    /// Grade the trace in this file.
+    Grade(&'a [u8]),
+}
+
+/// Writes the original's standard output to a stream, event by event.
+///
+/// Grading: hand it to `judge` as its [`Progress`], then call [`Transcript::graded`]. Recording and plain runs: call
+/// `begins`, `step_begins` per step, then [`Transcript::completes`] and [`Transcript::closes`]. The first error of the
+/// stream is kept until [`Transcript::finish`]; what follows it is dropped.
+#[derive(Debug)]
+pub struct Transcript<'a, W: Write> {
+    stream: W,
+    heading: Heading<'a>,
+    steps: u32,
+    threshold: f64,
+    error: Option<io::Error>,
+}
+
+/// A dot appears each time another fiftieth of the steps is done.
+const DOT: f64 = 0.02;
+
+const BANNER: [&str; 7] = [
+    "------------------------------------------    ",
+    "  _____ ___  ____ ____ ____  _                ",
+    " |  ___/ _ \\/ ___/ ___/ ___|(_)_ __ ___      ",
+    " | |_ | | | \\___ \\___ \\___ \\| | '_ ` _ \\ ",
+    " |  _|| |_| |___) |__) |__) | | | | | | |     ",
+    " |_|   \\___/|____/____/____/|_|_| |_| |_|    ",
+    "------------------------------------------    ",
+];
+
+impl<'a, W: Write> Transcript<'a, W> {
+    /// A transcript that has said nothing yet.
+    pub fn new(stream: W, heading: Heading<'a>) -> Self {
+        Self { stream, heading, steps: heading.scene.steps(), threshold: DOT, error: None }
+    }
+
+    /// All steps are done.
+    pub fn completes(&mut self) {
+        self.dot(self.steps);
+        let time = f64::from(self.steps) * self.heading.scene.time_step;
+        self.message(&format!("Simulation complete at time {}. Exiting.", general(time)));
+    }
+
+    /// The exit handler of a recording: the file is closed. Says nothing otherwise.
+    pub fn closes(&mut self) {
+        if let Task::Record(file) = self.heading.task {
+            self.message_about("Saved simulation to file '", file, "'.");
+        }
+    }
+
+    /// Grading is over: the completion message or the reason for stopping, then the exit handler's lines.
+    pub fn graded(&mut self, outcome: &Outcome) {
+        match &outcome.stop {
+            None => self.completes(),
+            Some(Stop::Trace { cause: Unreadable::State, .. }) => {
+                let text = format!("{RED}Error in TwoDSceneSerialized: {PLAIN}Failed to load timestep. Exiting.\n");
+                self.write(text.as_bytes());
+            }
+            Some(Stop::Trace { cause: Unreadable::Impulses, .. }) => {
+                // The original never switches this colour off.
+                let text = format!("{RED}Error while trying to deserialize time step impulses. Exiting.\n");
+                self.write(text.as_bytes());
+            }
+            // Here the original dies or hangs; the reason is for standard error, but the run is closed in an orderly way.
+            Some(
+                Stop::Trace { cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io, .. } | Stop::Step(_),
+            ) => self.write(b"\n"),
+        }
+        if let Task::Grade(file) = self.heading.task {
+            self.message_about("Colsing benchmarked simulation file '", file, "'.");
+        }
+        self.write(verdict::lines(outcome).as_bytes());
+    }
+
+    /// The exit handler's lines when the trace could not even be opened; no banner comes before them.
+    pub fn not_opened(&mut self) {
+        self.write(verdict::incomplete(&Residuals::default()).as_bytes());
+    }
+
+    /// Flushes and gives the stream back.
+    ///
+    /// # Errors
+    /// The first error of the stream.
+    pub fn finish(mut self) -> io::Result<W> {
+        if let Some(error) = self.error {
+            return Err(error);
+        }
+        self.stream.flush()?;
+        Ok(self.stream)
+    }
+
+    fn banner(&mut self) {
+        self.write(format!("{GREEN}{}{PLAIN}\n\n", BANNER.join("\n")).as_bytes());
+        self.entry("FOSSSim Version", b"Fall 2010 v.A");
+        self.entry("Build type", b"Release");
+        self.entry("Vectorization", b"Enabled");
+        self.entry("Scene", self.heading.scene_name);
+        self.entry("Integrator", integrator_name(self.heading.scene.integrator).as_bytes());
+        self.entry("Collision Handling", collision_name(&self.heading.scene.collision).as_bytes());
+        self.entry("Description", self.heading.description);
+        match self.heading.task {
+            Task::Run => {}
+            Task::Record(file) => self.message_about("Saving simulation to: ", file, ""),
+            Task::Grade(file) => self.message_about("Benchmarking simulation in: ", file, ""),
+        }
+        self.write(format!("{PINK}Progress: {PLAIN}{}\n{}", "-".repeat(50), " ".repeat(10)).as_bytes());
+    }
+
+    /// A dot when the next threshold is reached; never more than one. Without steps the quotient is NaN: no dot.
+    fn dot(&mut self, steps_done: u32) {
+        if f64::from(steps_done) / f64::from(self.steps) >= self.threshold {
+            self.threshold += DOT;
+            self.write(b".");
+        }
+    }
+
+    fn entry(&mut self, name: &str, value: &[u8]) {
+        self.write(format!("{BLUE}{name}: {PLAIN}").as_bytes());
+        self.write(value);
+        self.write(b"\n");
+    }
+
+    fn message(&mut self, text: &str) {
+        self.message_about(text, b"", "");
+    }
+
+    fn message_about(&mut self, before: &str, file: &[u8], after: &str) {
+        self.write(format!("{PINK}FOSSSim message: {PLAIN}{before}").as_bytes());
+        self.write(file);
+        self.write(after.as_bytes());
+        self.write(b"\n");
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        if self.error.is_none() {
+            self.error = self.stream.write_all(bytes).err();
+        }
+    }
+}
+
+impl<W: Write> Progress for Transcript<'_, W> {
+    fn begins(&mut self) {
+        self.banner();
+    }
+
+    fn step_begins(&mut self, step: u32) {
+        self.dot(step.saturating_sub(1));
+    }
+
+    fn step_judged(&mut self, _step: u32, remarks: &[Remark]) {
+        let mut header_due = true;
+        for remark in remarks {
+            if let Some(line) = collisions::line(remark) {
+                if std::mem::take(&mut header_due) {
+                    self.write(collisions::HEADER.as_bytes());
+                }
+                self.write(line.as_bytes());
+            } else if let Remark::Polynomials(kind, count) = remark
+                && let Some(message) = kind.original_message()
+            {
+                for _ in 0..*count {
+                    self.write(message.as_bytes());
+                    self.write(b"\n");
+                }
+            }
+        }
+    }
+}
+
+/// The integrator's printed name (simulation.md 4).
+const fn integrator_name(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::ExplicitEuler => "Explicit Euler",
+        Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler => "Forward-Backward Euler",
+        Integrator::ImplicitEuler => "Implicit Euler",
+        Integrator::LinearizedImplicitEuler => "Linearized Implicit Euler",
+    }
+}
+
+/// The collision handling's printed name (oracle-behaviour.md 3).
+const fn collision_name(collision: &Collision) -> &'static str {
+    match collision {
+        Collision::None | Collision::Penalty { .. } => "Collisions disabled",
+        Collision::Simple { .. } => "Simple Collision Handling",
+        Collision::ContinuousTime { .. } => "Continuous-Time Collision Handling",
+        Collision::Hybrid { .. } => "Hybrid Collision Handling",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_judge::{Counts, Kind, Overall};
+    use fosssim_model::sim::{Impulse, Pair, PairKind, SearchCounts};
+    use fosssim_num::vector::Vec2;
+
+    fn scene(steps: u32) -> Scene {
+        Scene {
+            duration: f64::from(steps) * 0.01,
+            time_step: 0.01,
+            integrator: Integrator::SymplecticEuler,
+            collision: Collision::ContinuousTime { restitution: 1.0 },
+            particles: Vec::new(),
+            edges: Vec::new(),
+            half_planes: Vec::new(),
+            forces: Vec::new(),
+            description: None,
+            display: fosssim_model::scene::Display::default(),
+        }
+    }
+
+    fn outcome(overall: Overall, stop: Option<Stop>) -> Outcome {
+        Outcome {
+            overall,
+            residuals: Residuals { accumulated_position: 0.002_828_427, maximum_position: 1e-10, ..Default::default() },
+            collisions_passed: (overall != Overall::None).then_some(false),
+            counts: Counts::default(),
+            wrong_steps: 0,
+            examples: Vec::new(),
+            first_divergence: None,
+            steps_judged: 0,
+            steps: 0,
+            records_per_step: 1,
+            stop,
+            damage: None,
+            damaged_steps: 0,
+            trailing_bytes: false,
+            searches: SearchCounts::default(),
+            fair: None,
+        }
+    }
+
+    /// The transcript of `scene`, from `Progress` on.
+    fn after_heading(scene: &Scene, task: Task<'_>, act: impl FnOnce(&mut Transcript<'_, Vec<u8>>)) -> String {
+        let heading = Heading { scene_name: b"s.xml", scene, description: b"none", task };
+        let mut transcript = Transcript::new(Vec::new(), heading);
+        act(&mut transcript);
+        let text = String::from_utf8(transcript.finish().unwrap()).unwrap();
+        let at = text.find("\x1b[35;1mProgress").unwrap_or(0);
+        text[at..].to_owned()
+    }
+
+    fn steps(transcript: &mut Transcript<'_, Vec<u8>>, steps: std::ops::RangeInclusive<u32>) {
+        for step in steps {
+            transcript.step_begins(step);
+            transcript.step_judged(step, &[]);
+        }
+    }
+
+    #[test]
+    fn the_banner_names_scene_integrator_and_collision_handling() {
+        let scene = scene(1);
+        let heading =
+            Heading { scene_name: b"a/\xff.xml", scene: &scene, description: b"d\xe9", task: Task::Record(b"o") };
+        let mut transcript = Transcript::new(Vec::new(), heading);
+        transcript.begins();
+        let bytes = transcript.finish().unwrap();
+        let start = "\x1b[32;1m------------------------------------------    \n  _____ ___  ____ ____ ____  _                \n";
+        assert!(bytes.starts_with(start.as_bytes()));
+        let end = b"------------------------------------------    \x1b[m\n\n\
+            \x1b[34;1mFOSSSim Version: \x1b[mFall 2010 v.A\n\x1b[34;1mBuild type: \x1b[mRelease\n\
+            \x1b[34;1mVectorization: \x1b[mEnabled\n\x1b[34;1mScene: \x1b[ma/\xff.xml\n\
+            \x1b[34;1mIntegrator: \x1b[mForward-Backward Euler\n\
+            \x1b[34;1mCollision Handling: \x1b[mContinuous-Time Collision Handling\n\
+            \x1b[34;1mDescription: \x1b[md\xe9\n\x1b[35;1mFOSSSim message: \x1b[mSaving simulation to: o\n\
+            \x1b[35;1mProgress: \x1b[m--------------------------------------------------\n          ";
+        assert!(bytes.ends_with(end), "{}", String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn a_long_run_has_forty_nine_dots_and_a_short_one_a_dot_per_step() {
+        for (count, dots) in [(200, 49), (50, 49), (34, 34), (5, 5), (0, 0)] {
+            let scene = scene(count);
+            let text = after_heading(&scene, Task::Run, |transcript| {
+                transcript.begins();
+                steps(transcript, 1..=count);
+                transcript.completes();
+                transcript.closes();
+            });
+            let line = text.lines().nth(1).unwrap();
+            let shown = line.trim_start().bytes().take_while(|&byte| byte == b'.').count();
+            assert_eq!(shown, dots, "{count} steps");
+        }
+    }
+
+    #[test]
+    fn remarks_continue_the_line_of_dots() {
+        let scene = scene(200);
+        let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
+        let missed = Remark::Missed(Impulse { pair, normal: Vec2::new(0.4, 0.0), time: 0.25 });
+        let text = after_heading(&scene, Task::Grade(b"m.bin"), |transcript| {
+            transcript.begins();
+            steps(transcript, 1..=59);
+            transcript.step_begins(60);
+            transcript.step_judged(60, &[missed, Remark::Polynomials(Kind::PolynomialDegree, 2)]);
+            steps(transcript, 61..=200);
+            transcript.graded(&outcome(Overall::Failed, None));
+        });
+        let expected = "\x1b[35;1mProgress: \x1b[m--------------------------------------------------\n          \
+            ..............Collision Detection Error: \n\
+            \x20 Missed collision: Particle 0 - Particle 1 with normal = 0.4 0\n\
+            Wrong polynomial degree!\nWrong polynomial degree!\n\
+            ...................................\x1b[35;1mFOSSSim message: \x1b[mSimulation complete at time 2. Exiting.\n\
+            \x1b[35;1mFOSSSim message: \x1b[mColsing benchmarked simulation file 'm.bin'.\n\
+            Accumulated Position Residual: 0.00282843   Failed.\nAccumulated Velocity Residual: 0   Passed.\n\
+            Maximum Position Residual: 1e-10   Failed.\nMaximum Velocity Residual: 0   Passed.\n\
+            Collisions Passed: No.\nOverall success: Failed.\n\
+            \x1b[35;1mFOSSSim message: \x1b[mSaved residual to residual.txt.\n";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn an_unreadable_first_record_leaves_no_banner() {
+        let scene = scene(3);
+        let cause = Unreadable::State;
+        let stop = Stop::Trace { frame: 0, step: 0, cause, offset: 0, message: "the file is empty".to_owned() };
+        let text = after_heading(&scene, Task::Grade(b"e"), |transcript| {
+            transcript.graded(&outcome(Overall::None, Some(stop)));
+        });
+        assert!(text.starts_with("\x1b[31;1mError in TwoDSceneSerialized: \x1b[mFailed to load timestep. Exiting.\n"));
+        assert!(text.contains("Colsing benchmarked simulation file 'e'.\nAccumulated Position Residual: 0.00282843\n"));
+        assert!(text.ends_with("Simulation did not run to completion. No pass/fail status will be reported.\n"));
+    }
+
+    #[test]
+    fn a_backward_run_completes_at_minus_zero() {
+        let mut scene = scene(0);
+        scene.time_step = -0.01;
+        let text = after_heading(&scene, Task::Record(b"o"), |transcript| {
+            transcript.begins();
+            transcript.completes();
+            transcript.closes();
+        });
+        assert!(text.ends_with(
+            "Simulation complete at time -0. Exiting.\n\x1b[35;1mFOSSSim message: \x1b[mSaved simulation to file 'o'.\n"
+        ));
+    }
+}

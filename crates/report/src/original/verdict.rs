@@ -1,0 +1,55 @@
+//! The original's closing words about residuals, and the text of `residual.txt` (oracle-behaviour.md 6).
+use super::super::number::general;
+use super::{PINK, PLAIN};
+use fosssim_judge::{Outcome, Overall, Residuals};
+
+/// What the original calls the residuals, in its order.
+const NAMES: [&str; 4] = [
+    "Accumulated Position Residual",
+    "Accumulated Velocity Residual",
+    "Maximum Position Residual",
+    "Maximum Velocity Residual",
+];
+
+/// The lines after the file has been closed: with verdict, or without one when grading did not come to its end.
+pub(super) fn lines(outcome: &Outcome) -> String {
+    if outcome.overall == Overall::None {
+        return incomplete(&outcome.residuals);
+    }
+    let mut text = String::new();
+    for (name, (value, bound)) in NAMES.into_iter().zip(outcome.residuals.with_bounds()) {
+        text += &format!("{name}: {}   {}\n", general(value), passed(value < bound));
+    }
+    let collisions = if outcome.collisions_passed == Some(true) { "Yes." } else { "No." };
+    text += &format!("Collisions Passed: {collisions}\n");
+    text += &format!("Overall success: {}\n", passed(outcome.overall == Overall::Passed));
+    text += &format!("{PINK}FOSSSim message: {PLAIN}Saved residual to residual.txt.\n");
+    text
+}
+
+/// The lines of a run that ended early.
+pub(super) fn incomplete(residuals: &Residuals) -> String {
+    let mut text = String::new();
+    for (name, (value, _)) in NAMES.into_iter().zip(residuals.with_bounds()) {
+        text += &format!("{name}: {}\n", general(value));
+    }
+    text += &format!(
+        "{PINK}FOSSSim message: {PLAIN}Simulation did not run to completion. No pass/fail status will be reported.\n"
+    );
+    text
+}
+
+/// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value. `None` when grading did not come to its
+/// end; the file is not written then.
+#[must_use]
+pub fn residual_file(outcome: &Outcome) -> Option<String> {
+    if outcome.overall == Overall::None {
+        return None;
+    }
+    let line = |(value, bound): (f64, f64)| format!("{}   {}\n", u8::from(value < bound), general(value));
+    Some(outcome.residuals.with_bounds().into_iter().map(line).collect())
+}
+
+const fn passed(yes: bool) -> &'static str {
+    if yes { "Passed." } else { "Failed." }
+}

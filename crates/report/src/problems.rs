@@ -1,0 +1,158 @@
+//! Problems of a scene drawn under the lines that they are about.
+use fosssim_model::scene::{Problem, Problems, Severity};
+
+/// At most this many characters of a source line are shown.
+const WIDEST: usize = 100;
+
+/// No more bytes than these on either side of a place can be shown: a character takes four at most. Lines may be
+/// megabytes long.
+const REACH: usize = 4 * WIDEST + 8;
+
+/// Everything that is wrong with a refused scene: a head line, then each problem with its source line.
+///
+/// `name` is how messages call the scene, `source` its bytes.
+#[must_use]
+pub fn errors(name: &str, source: &[u8], refused: &Problems) -> String {
+    let count = refused.list.iter().filter(|problem| problem.severity == Severity::Error).count();
+    let plural = if count == 1 { "error" } else { "errors" };
+    let mut text = format!("the scene {name} has {count} {plural}\n");
+    for problem in &refused.list {
+        text += &format!("\n{}", block(name, source, problem));
+    }
+    if refused.omitted > 0 {
+        text += &format!("\nand {} more\n", refused.omitted);
+    }
+    text
+}
+
+/// The warnings about an accepted scene; nothing when there is none.
+#[must_use]
+pub fn warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
+    list.iter().map(|problem| block(name, source, problem) + "\n").collect()
+}
+
+/// One problem:
+///
+/// ```text
+/// scene.xml:3:14: `m` of particle 0 is not a number
+///   3 | <particle m="x"/>
+///     |              ^ a number such as 0.5
+/// ```
+fn block(name: &str, source: &[u8], problem: &Problem) -> String {
+    let Problem { line, column, span, message, help, .. } = problem;
+    let warning = if problem.severity == Severity::Warning { "warning: " } else { "" };
+    let mut text = format!("{name}:{line}:{column}: {warning}{message}\n");
+    let start = span.start.min(source.len());
+    let from = start.saturating_sub(REACH);
+    let line_start = source[from..start].iter().rposition(|&byte| byte == b'\n').map_or(from, |at| from + at + 1);
+    let end = span.end.clamp(start, line_end(source, start));
+    let before = shown(&source[line_start..start]);
+    let marked = shown(&source[start..end]);
+    let after = shown(&source[end..line_end(source, end)]);
+    let advice = help.as_ref().map(|help| format!(" {help}")).unwrap_or_default();
+    if before.is_empty() && marked.is_empty() && after.is_empty() {
+        // There is nothing to point at: an empty file, or an empty line.
+        if !advice.is_empty() {
+            text += &format!("    = {}\n", advice.trim_start());
+        }
+        return text;
+    }
+    // Long lines are cut on both sides of the place.
+    let cut = before.chars().count().saturating_sub(WIDEST / 2);
+    let (dots, indent) = if cut > 0 { ("...", 3) } else { ("", 0) };
+    let before: String = before.chars().skip(cut).collect();
+    let room = WIDEST.saturating_sub(before.chars().count());
+    let marked: String = marked.chars().take(room.max(1)).collect();
+    let tail_room = room.saturating_sub(marked.chars().count());
+    let more = if after.chars().count() > tail_room { "..." } else { "" };
+    let after: String = after.chars().take(tail_room).collect();
+    let width = line.to_string().len();
+    let blanks = " ".repeat(indent + before.chars().count());
+    let carets = "^".repeat(marked.chars().count().max(1));
+    text += &format!("  {line} | {dots}{before}{marked}{after}{more}\n");
+    text += &format!("  {:width$} | {blanks}{carets}{advice}\n", "");
+    text
+}
+
+/// The end of the line behind `at`, or of what can be shown of it.
+fn line_end(source: &[u8], at: usize) -> usize {
+    let to = source.len().min(at + REACH);
+    source[at..to].iter().position(|&byte| byte == b'\n').map_or(to, |found| at + found)
+}
+
+/// A piece of the source as a terminal may show it: one column per character, no control characters.
+fn shown(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\r');
+    text.chars()
+        .map(|c| {
+            if c == '\t' {
+                ' '
+            } else if c.is_control() {
+                '\u{fffd}'
+            } else {
+                c
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(source: &str, at: &str, line: usize, column: usize) -> Problem {
+        let start = source.find(at).unwrap();
+        Problem {
+            severity: Severity::Error,
+            line,
+            column,
+            span: start..start + at.len(),
+            element: None,
+            attribute: None,
+            message: "it is wrong".to_owned(),
+            help: Some("do better".to_owned()),
+        }
+    }
+
+    #[test]
+    fn carets_stand_under_the_place_in_characters() {
+        let source = "<a>\n\t<ü b=\"x\"/>\r\n</a>";
+        let text = block("s.xml", source.as_bytes(), &problem(source, "x", 2, 8));
+        assert_eq!(text, "s.xml:2:8: it is wrong\n  2 |  <ü b=\"x\"/>\n    |        ^ do better\n");
+    }
+
+    #[test]
+    fn long_lines_are_cut_around_the_place() {
+        let source = format!("{}HERE{}", "a".repeat(500), "b".repeat(500));
+        let text = block("s", source.as_bytes(), &problem(&source, "HERE", 1, 501));
+        let lines: Vec<_> = text.lines().collect();
+        assert!(lines[1].len() < WIDEST + 15, "{text}");
+        assert_eq!(lines[1].find("HERE"), lines[2].find("^^^^"), "{text}");
+    }
+
+    #[test]
+    fn a_very_long_line_is_cut_like_a_long_one() {
+        let around = |count: usize| {
+            let source = format!("{}HERE{}", "\u{1f600}".repeat(count), "\u{1f600}".repeat(count));
+            block("s", source.as_bytes(), &problem(&source, "HERE", 1, 9))
+        };
+        assert!(around(200).contains("...") && around(200).lines().nth(1).unwrap().ends_with("..."));
+        assert_eq!(around(100_001), around(200));
+        let marked = "x".repeat(100_000);
+        assert_eq!(block("s", marked.as_bytes(), &problem(&marked, &marked, 1, 1)).lines().nth(1).unwrap().len(), 109);
+    }
+
+    #[test]
+    fn an_empty_source_has_no_line_to_show() {
+        let mut empty = problem("x", "x", 1, 1);
+        empty.span = 0..0;
+        assert_eq!(block("s", b"", &empty), "s:1:1: it is wrong\n    = do better\n");
+    }
+
+    #[test]
+    fn control_characters_do_not_reach_the_terminal() {
+        let source = "a\u{1b}[31mb";
+        assert!(!block("s", source.as_bytes(), &problem(source, "b", 1, 7)).contains('\u{1b}'));
+    }
+}

@@ -1,0 +1,53 @@
+//! Scenes as a list: a line on each.
+use super::{
+    grade::one_line,
+    number::counted,
+    style::{Look, Style},
+    wrap,
+};
+use fosssim_model::scene::Scene;
+
+/// One line per scene: its name under `asset:`, how large it is, and the first sentence of its description.
+#[must_use]
+pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
+    let width = scenes.iter().map(|(name, _)| wrap::columns(name)).max().unwrap_or(0);
+    let line = |(name, scene): &(&str, Scene)| {
+        let blanks = " ".repeat(width - wrap::columns(name));
+        let size = style.paint(Look::Faint, &format!("({})", size(scene)));
+        let words = scene.description.as_deref().map(|text| one_line(sentence(text)) + " ").unwrap_or_default();
+        format!("asset:{name}{blanks}  {words}{size}\n")
+    };
+    scenes.iter().map(line).collect()
+}
+
+/// `3 particles, 1 edge, 20 steps`; what a scene has none of is left out.
+fn size(scene: &Scene) -> String {
+    let parts = [
+        (scene.particles.len() as u64, "particle"),
+        (scene.edges.len() as u64, "edge"),
+        (scene.half_planes.len() as u64, "half-plane"),
+        (scene.steps().into(), "step"),
+    ];
+    let told = parts.iter().filter(|(many, _)| *many > 0).map(|(many, noun)| counted(*many, noun));
+    told.collect::<Vec<_>>().join(", ")
+}
+
+/// The first sentence of a text.
+fn sentence(text: &str) -> &str {
+    let text = text.trim();
+    text.match_indices(['.', ';', ':'])
+        .find(|(at, _)| text[at + 1..].starts_with(' '))
+        .map_or(text, |(at, _)| if text[at..].starts_with('.') { &text[..=at] } else { &text[..at] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_sentence_ends_at_a_stop_before_a_blank() {
+        assert_eq!(sentence("Two balls meet at t = 0.5. A wrong program misses."), "Two balls meet at t = 0.5.");
+        assert_eq!(sentence("A cue ball breaks; cushions on four sides."), "A cue ball breaks");
+        assert_eq!(sentence("one"), "one");
+    }
+}

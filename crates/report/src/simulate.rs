@@ -1,0 +1,116 @@
+//! The summary of a simulation.
+use super::{
+    number::count,
+    style::{Look, Style},
+    table::{Align, Table},
+    view::{SCHEMA, pair_kind},
+};
+use fosssim_model::{
+    sim::{PairKind, SearchCounts},
+    trace::{Counts, Written},
+};
+use serde_json::json;
+
+/// What a simulation did.
+#[derive(Debug, Clone, Copy)]
+pub struct Summary<'a> {
+    /// The scene as typed.
+    pub scene: &'a str,
+    /// The trace as typed; `None` when nothing was kept.
+    pub output: Option<&'a str>,
+    /// Steps of the scene.
+    pub steps: u32,
+    /// What happened in the steps.
+    pub counts: Counts,
+    /// Size of the trace.
+    pub written: Written,
+    /// The root searches, when they were audited.
+    pub audited: Option<SearchCounts>,
+}
+
+const KINDS: [PairKind; 3] = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
+
+impl Summary<'_> {
+    /// For people.
+    #[must_use]
+    pub fn text(&self, style: Style) -> String {
+        let counts = &self.counts;
+        let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
+        table.row(["steps".into(), count(u64::from(self.steps)).into(), "".into()]);
+        let passes: Vec<_> = [
+            (counts.simple_passes, "simple"),
+            (counts.continuous_time_passes, "continuous-time"),
+            (counts.impulse_passes, "impulse"),
+            (counts.geometric_passes, "geometric"),
+        ]
+        .into_iter()
+        .filter(|(number, _)| *number > 0)
+        .map(|(number, name)| format!("{} {name}", count(number)))
+        .collect();
+        table.row(["detection passes".into(), count(counts.passes()).into(), passes.join(", ").into()]);
+        for (kind, (calls, hits)) in KINDS.into_iter().zip(counts.calls.into_iter().zip(counts.hits)) {
+            let hits = if calls > 0 { format!("{} collide", count(hits)) } else { String::new() };
+            table.row([format!("{} calls", pair_kind(kind)).into(), count(calls).into(), hits.into()]);
+        }
+        table.row(["impulses".into(), count(counts.impulses).into(), "".into()]);
+        let zones = if counts.failsafes > 0 {
+            format!(
+                "in {} steps, largest zone of {} particles",
+                count(counts.geometric_steps),
+                count(counts.largest_zone)
+            )
+        } else {
+            String::new()
+        };
+        table.row(["rigid failsafes".into(), count(counts.failsafes).into(), zones.into()]);
+        table.row(["polynomials".into(), count(counts.polynomials).into(), "".into()]);
+        let records = format!("in {} records", count(self.written.records));
+        table.row(["bytes".into(), count(self.written.bytes).into(), records.into()]);
+        if let Some(searches) = self.audited {
+            let excluded = format!("{} excluded by a certificate", count(searches.excluded));
+            table.row(["root searches".into(), count(searches.searched).into(), excluded.into()]);
+            table.row(["disagreements".into(), count(searches.disagreements).into(), "".into()]);
+        }
+        let end = self.output.map_or_else(|| "; nothing was kept".to_owned(), |name| format!(" into {name}"));
+        let heading = format!("Simulated {}{end}", self.scene);
+        format!("{}\n{}", style.paint(Look::Strong, &heading), table.render(style))
+    }
+
+    /// For programs: one JSON object, indented, with a line feed at its end.
+    #[must_use]
+    pub fn json(&self) -> String {
+        let counts = &self.counts;
+        let calls: serde_json::Map<_, _> = KINDS
+            .into_iter()
+            .zip(counts.calls.into_iter().zip(counts.hits))
+            .map(|(kind, (calls, hits))| (pair_kind(kind).to_owned(), json!({ "calls": calls, "hits": hits })))
+            .collect();
+        let value = json!({
+            "schema": SCHEMA,
+            "scene": self.scene,
+            "trace": self.output,
+            "steps": self.steps,
+            "passes": {
+                "simple": counts.simple_passes,
+                "continuous-time": counts.continuous_time_passes,
+                "impulses": counts.impulse_passes,
+                "geometric": counts.geometric_passes,
+            },
+            "pairs": calls,
+            "impulses": counts.impulses,
+            "geometric_steps": counts.geometric_steps,
+            "failsafes": counts.failsafes,
+            "largest_zone": counts.largest_zone,
+            "polynomials": counts.polynomials,
+            "records": self.written.records,
+            "bytes": self.written.bytes,
+            "root_searches": self.audited.map(|searches| json!({
+                "calls": searches.calls,
+                "searched": searches.searched,
+                "excluded": searches.excluded,
+                "disagreements": searches.disagreements,
+            })),
+        });
+        format!("{value:#}\n")
+    }
+}

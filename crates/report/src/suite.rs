@@ -1,0 +1,133 @@
+//! What a suite would grade, and what is worth knowing before it does: the text of `suite check`.
+use super::{
+    grade::{one_line, points},
+    number::counted,
+    style::{Look, Style},
+};
+use fosssim_grading::{
+    config::Credit,
+    plan::{Plan, PlannedGroup},
+};
+use fosssim_judge::{PairWords, PassWords, Rules, fair::Borderline};
+use fosssim_model::sim::StepError;
+use std::fmt::Write;
+
+/// A scene and those of the reference's decisions that round-off may flip, or why it has no run.
+pub type Undecided = (String, Result<Vec<Borderline>, StepError>);
+
+/// So many decisions of a scene are listed.
+const LISTED: usize = 3;
+
+/// The whole report; `undecided` holds the scenes of which there is something to say.
+#[must_use]
+pub fn text(plan: &Plan, undecided: &[Undecided], style: Style) -> String {
+    let mut text = head(plan, style);
+    for group in &plan.groups {
+        text += &of_group(group, style);
+    }
+    for (scene, found) in undecided {
+        text += &note(scene, found, style);
+    }
+    let notes = match undecided.len() {
+        0 => String::new(),
+        notes => format!("; {} above", counted(notes as u64, "note")),
+    };
+    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(Look::Good, "The suite is sound"), size(plan));
+    text
+}
+
+/// `12 scenes, 100 points`.
+fn size(plan: &Plan) -> String {
+    format!("{}, {}", counted(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
+}
+
+/// `1 point`, `12.5 points`.
+#[must_use]
+pub fn counted_points(value: f64) -> String {
+    let words = points(value);
+    let plural = if words == "1" { "" } else { "s" };
+    format!("{words} point{plural}")
+}
+
+/// What the choice of rule books means.
+const fn rules(rules: Rules) -> &'static str {
+    match rules {
+        Rules::Parity => "parity: the original's verdict counts, the fair rules are not asked",
+        Rules::Fair => "fair: the fair rules' verdict counts",
+        Rules::Both => "both: the original's verdict counts, reports say where the fair rules differ and why",
+    }
+}
+
+/// What partial success counts.
+const fn credit(credit: Credit) -> &'static str {
+    match credit {
+        Credit::Scenes => "credit per scene",
+        Credit::Steps => "credit per step",
+        Credit::All => "all or nothing",
+    }
+}
+
+fn head(plan: &Plan, style: Style) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "{}: {}", style.paint(Look::Strong, &one_line(&plan.name)), size(plan));
+    let _ = writeln!(text, "run: {}", one_line(&plan.run.join(" ")));
+    if let Some(build) = &plan.build {
+        let _ = writeln!(
+            text,
+            "build: {} (makes {}), {} s, {} MiB",
+            one_line(&build.command.join(" ")),
+            one_line(&build.program),
+            build.wall.as_secs_f64(),
+            build.memory >> 20
+        );
+    }
+    let limits = &plan.limits;
+    let _ = writeln!(
+        text,
+        "limits: {} s of processor, {} s on the clock, {} MiB of memory, {} MiB of output, {} MiB of trace",
+        limits.cpu.as_secs_f64(),
+        limits.wall.as_secs_f64(),
+        limits.memory >> 20,
+        limits.output >> 20,
+        limits.trace >> 20,
+    );
+    let _ = writeln!(text, "rules: {}", rules(plan.rules));
+    let (hints, meaning) = plan.hints.words();
+    let _ = writeln!(text, "hints: {hints}: {meaning}");
+    text
+}
+
+fn of_group(group: &PlannedGroup, style: Style) -> String {
+    let stakes = &group.stakes;
+    let (points, visibility) = (counted_points(stakes.points), stakes.visibility.key().replace('_', " "));
+    let name = style.paint(Look::Strong, &one_line(&group.name));
+    let mut text = format!("\n{name}: {points}, {}, {visibility}\n", credit(stakes.credit));
+    for task in &group.scenes {
+        let particles = counted(task.scene.particles.len() as u64, "particle");
+        let steps = counted(task.scene.steps().into(), "step");
+        let _ = writeln!(text, "  {} ({particles}, {steps})", one_line(&task.name));
+    }
+    text
+}
+
+/// What is no error, but worth knowing before a class is graded.
+fn note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
+    let (note, scene) = (style.paint(Look::Notice, "note"), one_line(scene));
+    let found = match found {
+        Ok(found) => found,
+        Err(error) => return format!("\n{note}: {scene} can't be simulated to its end: {error}\n"),
+    };
+    let plural = if found.len() == 1 { "a decision" } else { "decisions" };
+    let mut text = format!(
+        "\n{note}: {scene} has {plural} that round-off may flip; by the original's rules correct programs may fail\n"
+    );
+    for decision in found.iter().take(LISTED) {
+        let word = if decision.collides { "collide" } else { "do not collide" };
+        let (pair, pass) = (PairWords(decision.pair), PassWords(decision.pass));
+        let _ = writeln!(text, "  step {}: {pair} {word} ({pass})", decision.step);
+    }
+    if found.len() > LISTED {
+        let _ = writeln!(text, "  and {} more", found.len() - LISTED);
+    }
+    text
+}

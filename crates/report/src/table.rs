@@ -1,0 +1,107 @@
+//! Columns of text that line up.
+use super::{
+    style::{Look, Style},
+    wrap::columns,
+};
+
+/// A cell: its text, and perhaps how it looks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cell {
+    text: String,
+    look: Option<Look>,
+}
+
+impl Cell {
+    /// A cell that looks like this.
+    pub fn looking(look: Look, text: impl Into<String>) -> Self {
+        Self { text: text.into(), look: Some(look) }
+    }
+}
+
+impl<T: Into<String>> From<T> for Cell {
+    fn from(text: T) -> Self {
+        Self { text: text.into(), look: None }
+    }
+}
+
+/// Where the text of a column stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// At its left edge.
+    Left,
+    /// At its right edge: numbers.
+    Right,
+}
+
+/// Rows of cells under a fixed list of columns.
+#[derive(Debug, Clone)]
+pub struct Table<const COLUMNS: usize> {
+    columns: [Align; COLUMNS],
+    rows: Vec<[Cell; COLUMNS]>,
+}
+
+impl<const COLUMNS: usize> Table<COLUMNS> {
+    /// A table without rows.
+    #[must_use]
+    pub const fn new(columns: [Align; COLUMNS]) -> Self {
+        Self { columns, rows: Vec::new() }
+    }
+
+    /// Appends a row.
+    pub fn row(&mut self, cells: [Cell; COLUMNS]) {
+        self.rows.push(cells);
+    }
+
+    /// Appends a row of headings.
+    pub fn heading(&mut self, titles: [&str; COLUMNS]) {
+        self.row(titles.map(|title| Cell::looking(Look::Faint, title)));
+    }
+
+    /// The rows as lines, indented by two spaces, columns three spaces apart, without blanks at the ends of lines.
+    #[must_use]
+    pub fn render(&self, style: Style) -> String {
+        let width = |column: usize| self.rows.iter().map(|row| columns(&row[column].text)).max().unwrap_or_default();
+        let widths: [usize; COLUMNS] = std::array::from_fn(width);
+        let mut text = String::new();
+        for row in &self.rows {
+            let mut line = String::from(" ");
+            let mut gap = 1;
+            for ((cell, align), width) in row.iter().zip(self.columns).zip(widths) {
+                let blanks = width - columns(&cell.text);
+                let (before, after) = if align == Align::Right { (blanks, 0) } else { (0, blanks) };
+                if !cell.text.is_empty() {
+                    line += &" ".repeat(gap + before);
+                    line += &cell.look.map_or_else(|| cell.text.clone(), |look| style.paint(look, &cell.text));
+                    gap = after + 3;
+                } else {
+                    gap += width + 3;
+                }
+            }
+            text += &line;
+            text += "\n";
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_line_up_and_lines_have_no_trailing_blanks() {
+        let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
+        table.heading(["name", "n", "note"]);
+        table.row(["a".into(), "100".into(), "".into()]);
+        table.row(["longer".into(), "".into(), Cell::looking(Look::Bad, "no")]);
+        assert_eq!(table.render(Style::Plain), "  name       n   note\n  a        100\n  longer         no\n");
+    }
+
+    #[test]
+    fn colours_do_not_move_columns() {
+        let mut table = Table::new([Align::Right, Align::Left]);
+        table.row([Cell::looking(Look::Good, "1"), "x".into()]);
+        table.row(["10".into(), "y".into()]);
+        assert_eq!(table.render(Style::Colour), "   \x1b[1;32m1\x1b[0m   x\n  10   y\n");
+    }
+}

@@ -1,0 +1,37 @@
+//! What a trace holds, for programs. For people the summary's own text is the report.
+use super::super::view::SCHEMA;
+use fosssim_model::trace::{Summary, TraceError};
+use serde_json::{Value, json};
+
+/// One JSON object, indented, with a line feed at its end.
+#[must_use]
+pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
+    let layout = summary.layout;
+    let collision = |(step, impulse): &(u32, fosssim_model::trace::LoggedImpulse)| json!({ "step": step, "collision": super::super::view::CollisionView::from(impulse) });
+    let value = json!({
+        "schema": SCHEMA,
+        "scene": scene,
+        "trace": trace,
+        "collision": summary.collision,
+        "particles": layout.particles,
+        "edges": summary.edges,
+        "half_planes": summary.half_planes,
+        "steps": layout.steps,
+        "records": summary.records,
+        "records_expected": layout.records(),
+        "bytes": summary.bytes,
+        "all_bytes_read": !summary.unread,
+        "sha256": (!summary.unread).then(|| summary.sha256.to_string()),
+        "trailing_bytes": summary.trailing,
+        "damage": summary.stopped.as_ref().map(place),
+        "oddities": { "count": summary.notes.0, "first": summary.notes.1.as_ref().map(place) },
+        "polynomials_per_pass": summary.polynomials_per_pass,
+        "first_collisions": summary.collisions.iter().map(collision).collect::<Vec<_>>(),
+    });
+    format!("{value:#}\n")
+}
+
+/// A malformation and its place.
+pub(super) fn place(error: &TraceError) -> Value {
+    json!({ "offset": error.offset, "frame": error.frame, "step": error.step, "message": error.what.to_string() })
+}

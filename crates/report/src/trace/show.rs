@@ -1,0 +1,150 @@
+//! One step of a trace, in words or as JSON.
+use super::super::{
+    detect::polynomial,
+    number::exact,
+    style::{Look, Style},
+    table::{Align, Table},
+    view::{CollisionView, PairView, PassView, SCHEMA, numbers},
+};
+use fosssim_judge::{PairWords, PassWords, Role};
+use fosssim_model::trace::{Frame, Label};
+use serde_json::{Value, json};
+
+/// A record of the step.
+#[derive(Debug, Clone)]
+pub struct Record {
+    /// Its number in the trace, from 0.
+    pub number: u64,
+    /// Byte offset of its beginning.
+    pub offset: u64,
+    /// Whether it is the step's mid record.
+    pub mid: bool,
+    /// Its content.
+    pub frame: Frame,
+    /// What is odd about it, in words.
+    pub notes: Vec<String>,
+}
+
+/// A step to be shown.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'a> {
+    /// The step, from 1; 0 is the initial record.
+    pub step: u32,
+    /// Steps of the scene.
+    pub steps: u32,
+    /// Its records.
+    pub records: &'a [Record],
+    /// Where the reference's polynomials of the step come from.
+    pub labels: &'a [Label],
+}
+
+impl Shown<'_> {
+    /// For people: both records, the end record alone when the mid record says the same.
+    #[must_use]
+    pub fn text(&self, style: Style) -> String {
+        let heading = match self.step {
+            0 => "Initial record".to_owned(),
+            step => format!("Step {step} of {}", self.steps),
+        };
+        let mut text = style.paint(Look::Strong, &heading) + "\n";
+        let same =
+            matches!(self.records, [mid, end] if fosssim_model::trace::difference(&mid.frame, &end.frame).is_none());
+        for record in self.records {
+            if record.mid && same {
+                text += &format!(
+                    "  frame {} (mid record), byte {}: the same as the end record\n",
+                    record.number, record.offset
+                );
+                continue;
+            }
+            text += &self.record(record, style);
+        }
+        text
+    }
+
+    fn record(&self, record: &Record, style: Style) -> String {
+        let kind = if record.mid {
+            "mid record"
+        } else if self.step == 0 {
+            "initial record"
+        } else {
+            "end record"
+        };
+        let mut text = format!("  frame {} ({kind}), byte {}\n", record.number, record.offset);
+        for note in &record.notes {
+            text += &format!("  {}\n", style.paint(Look::Notice, &format!("odd: {note}")));
+        }
+        let frame = &record.frame;
+        let mut table = Table::new([Align::Right; 5]);
+        table.heading(["particle", "x", "y", "vx", "vy"]);
+        let pairs = frame.state.positions.chunks(2).zip(frame.state.velocities.chunks(2));
+        for (particle, (position, velocity)) in pairs.enumerate() {
+            let cell = |values: &[f64], axis: usize| values.get(axis).copied().map(exact).unwrap_or_default().into();
+            let (x, y) = (cell(position, 0), cell(position, 1));
+            table.row([particle.to_string().into(), x, y, cell(velocity, 0), cell(velocity, 1)]);
+        }
+        text += &table.render(style);
+        text += &format!("  impulses: {}\n", frame.impulses.len());
+        for impulse in &frame.impulses {
+            text += &format!("    {impulse}\n");
+        }
+        let count = frame.polynomials.len();
+        text += &format!("  polynomials: {count}");
+        if !record.mid && !self.labels.is_empty() && self.labels.len() != count {
+            text += &format!("; the reference logs {} here", self.labels.len());
+        }
+        text += "\n";
+        let mut pass = None;
+        for (index, coefficients) in frame.polynomials.iter().enumerate() {
+            let label = self.labels.get(index);
+            if let Some(label) = label
+                && pass != Some(label.pass)
+            {
+                pass = Some(label.pass);
+                text += &format!("    {}\n", style.paint(Look::Faint, &PassWords(label.pass).to_string()));
+            }
+            let place = label.map_or_else(String::new, |label| {
+                format!("{}, {}: ", PairWords(label.pair), Role::of(label.pair.kind, label.number))
+            });
+            text += &format!("    {index}  {place}{}\n", polynomial(coefficients));
+        }
+        text
+    }
+
+    /// For programs: one JSON object, indented, with a line feed at its end.
+    #[must_use]
+    pub fn json(&self, scene: &str, trace: &str) -> String {
+        let value = json!({
+            "schema": SCHEMA,
+            "scene": scene,
+            "trace": trace,
+            "step": self.step,
+            "records": self.records.iter().map(|record| self.record_view(record)).collect::<Vec<_>>(),
+        });
+        format!("{value:#}\n")
+    }
+
+    fn record_view(&self, record: &Record) -> Value {
+        let frame = &record.frame;
+        let polynomial = |(index, coefficients): (usize, &[f64])| {
+            let label = self.labels.get(index);
+            json!({
+                "index": index,
+                "pass": label.map(|label| PassView::from(label.pass)),
+                "pair": label.map(|label| PairView::from(label.pair)),
+                "role": label.map(|label| Role::of(label.pair.kind, label.number).key()),
+                "coefficients": numbers(coefficients),
+            })
+        };
+        json!({
+            "frame": record.number,
+            "offset": record.offset,
+            "mid": record.mid,
+            "positions": numbers(&frame.state.positions),
+            "velocities": numbers(&frame.state.velocities),
+            "impulses": frame.impulses.iter().map(CollisionView::from).collect::<Vec<_>>(),
+            "polynomials": frame.polynomials.iter().enumerate().map(polynomial).collect::<Vec<_>>(),
+            "oddities": record.notes,
+        })
+    }
+}

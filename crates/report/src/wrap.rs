@@ -1,0 +1,133 @@
+//! Lines broken at blanks where a terminal would break them anywhere.
+//!
+//! Works on finished text, so that no renderer has to know a width: what continues is indented under what it continues.
+//! Colour codes take no room. A word that is too long stays whole, and so does a line that is meant to be copied: those
+//! begin with `$ `. Lines of a program's output keep their mark (`| `) on every line, so that none can be taken for ours.
+use unicode_width::UnicodeWidthChar;
+
+/// The last column of a line keeps its indentation when at least so many columns are left to it.
+const ROOM: usize = 30;
+
+/// The text with no line wider than `width`, as far as words allow.
+#[must_use]
+pub fn wrapped(text: &str, width: usize) -> String {
+    let mut result = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        let (line, end) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\n"));
+        broken(&mut result, line, width);
+        result += end;
+    }
+    result
+}
+
+/// So many columns a text takes; colour codes take none.
+#[must_use]
+pub fn columns(text: &str) -> usize {
+    let mut inside_code = false;
+    text.chars()
+        .map(|c| match c {
+            '\x1b' => {
+                inside_code = true;
+                0
+            }
+            'm' if inside_code => {
+                inside_code = false;
+                0
+            }
+            _ if inside_code => 0,
+            c => c.width().unwrap_or(0),
+        })
+        .sum()
+}
+
+fn broken(result: &mut String, line: &str, width: usize) {
+    let body = line.trim_start_matches(' ');
+    if columns(line) <= width || body.starts_with("$ ") {
+        *result += line;
+        return;
+    }
+    let (indent, mark) = continuation(line, body, width);
+    let mut at = 0;
+    let mut fresh = true;
+    for piece in line.split_inclusive(' ') {
+        let (word, wide) = (piece.trim_end_matches(' '), columns(piece));
+        // A blank at the end of a line needs no room.
+        if !fresh && !word.is_empty() && at + columns(word) > width {
+            result.truncate(result.trim_end_matches(' ').len());
+            result.push('\n');
+            *result += &" ".repeat(indent);
+            *result += mark;
+            at = indent + mark.len();
+        }
+        *result += piece;
+        at += wide;
+        fresh = fresh && word.is_empty();
+    }
+}
+
+/// What stands before each further line: so many blanks, and the mark of a program's output.
+fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
+    let lead = line.len() - body.len();
+    if body.starts_with("| ") {
+        return (lead, "| ");
+    }
+    if body.starts_with("- ") {
+        return (lead + 2, "");
+    }
+    // A row of a table goes on under its last column, when there is room.
+    let gaps = line.match_indices("  ").map(|(at, _)| at).filter(|at| *at > lead);
+    let columns_at = gaps.filter_map(|at| {
+        let rest = line[at..].trim_start_matches(' ');
+        (!rest.is_empty()).then(|| columns(&line[..line.len() - rest.len()]))
+    });
+    let last = columns_at.take_while(|at| *at < width).last().filter(|at| at + ROOM <= width);
+    (last.unwrap_or(lead + 4), "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_broken_at_blanks_and_indented_under_what_they_continue() {
+        let text = "short\n  likely mistake: the sum of radii is not squared anywhere\n- one two three four five six\n";
+        assert_eq!(
+            wrapped(text, 24),
+            "short\n  likely mistake: the\n      sum of radii is\n      not squared\n      anywhere\n- one two three four\n  five six\n"
+        );
+    }
+
+    #[test]
+    fn rows_go_on_under_their_last_column_when_there_is_room() {
+        let row = "  WA  Group/scene   10  forty of a hundred steps are wrong, the first is step three\n";
+        assert_eq!(
+            wrapped(row, 60),
+            "  WA  Group/scene   10  forty of a hundred steps are wrong,\n                        the first is step three\n"
+        );
+        let narrow = wrapped(row, 50);
+        assert!(narrow.lines().all(|line| line.len() <= 50), "{narrow}");
+        assert_eq!(narrow.lines().nth(1).map(|line| line.len() - line.trim_start().len()), Some(6), "{narrow}");
+    }
+
+    #[test]
+    fn colours_take_no_room_and_wide_letters_take_two_columns() {
+        let painted = "\x1b[1;31mone two\x1b[0m three";
+        assert_eq!(wrapped(painted, 13), painted);
+        assert_eq!(wrapped(painted, 12), "\x1b[1;31mone two\x1b[0m\n    three");
+        assert_eq!(columns("学生"), 4);
+        assert_eq!(wrapped("学生 学生 学生", 9), "学生 学生\n    学生");
+    }
+
+    #[test]
+    fn commands_and_long_words_stay_whole_and_output_keeps_its_mark() {
+        let command = "    $ fosssim-oracle grade ./FOSSSim --scene Group/name --hints full";
+        assert_eq!(wrapped(command, 30), command);
+        assert_eq!(wrapped("a-word-that-is-too-long for it", 10), "a-word-that-is-too-long\n    for it");
+        assert_eq!(
+            wrapped("      | error: no such thing here", 20),
+            "      | error: no\n      | such thing\n      | here"
+        );
+        assert_eq!(wrapped("", 10), "");
+        assert_eq!(wrapped("\n\n", 10), "\n\n");
+    }
+}

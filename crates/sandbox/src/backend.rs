@@ -1,0 +1,462 @@
+//! How programs are run on this host, and the grader's side of a start.
+
+use std::ffi::{CString, OsString};
+use std::fs::File;
+use std::io::{self, Read};
+use std::os::fd::AsFd;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::FileTypeExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::bubblewrap;
+use super::fake::FakeRun;
+use super::job::{Identity, Job, Policy};
+use super::layers::{self, Layer, LayerReport};
+use super::outcome::StartProblem;
+use super::program;
+use super::running::Running;
+use super::supervisor::{MODE_PROBE, MODE_RUN};
+use super::sys;
+use super::wire::{self, Event, Order, Probe, SUPERVISOR_ARGUMENT, Walls};
+
+/// Faults of ours or of the host; never the program's.
+#[derive(Debug, thiserror::Error)]
+pub enum SandboxError {
+    /// This host lacks a required wall.
+    #[error("this host cannot run programs safely:\n{missing}")]
+    Missing {
+        /// One line per missing wall, with what to do.
+        missing: String,
+    },
+    /// The supervisor could not be started.
+    #[error("cannot start the sandbox's supervisor {program}: {source}")]
+    Supervisor {
+        /// The supervisor's program.
+        program: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The supervisor ended without a report.
+    #[error("the sandbox's supervisor was lost ({how}); what it ran has been ended")]
+    Lost {
+        /// What is known about its end.
+        how: String,
+    },
+    /// A step of the set-up failed.
+    #[error("the sandbox could not {stage}: {source}")]
+    SetUp {
+        /// The step.
+        stage: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The working folder cannot be used.
+    #[error("the working folder {folder}: {source}")]
+    Folder {
+        /// The folder.
+        folder: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A path that the program should be able to read is not there.
+    #[error("{path}, which the program is to read: {source}")]
+    Readable {
+        /// The path.
+        path: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The name of the trace pipe is taken or is not a plain name.
+    #[error("the trace pipe {name}: {source}; give every run a fresh folder")]
+    Pipe {
+        /// The name.
+        name: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The system refuses to execute a program that is in order.
+    #[error(
+        "{program} could not be executed: {source}; the temporary folder may be mounted noexec: name another one by TMPDIR"
+    )]
+    NotExecuted {
+        /// The program.
+        program: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The program is not the one that was staged.
+    #[error("{program} was changed or removed by somebody else while it was graded")]
+    Changed {
+        /// The program.
+        program: String,
+    },
+    /// Processes could not be ended.
+    #[error("{count} processes of the program could not be ended; look for processes in state D on this host")]
+    Survivors {
+        /// How many.
+        count: u32,
+    },
+}
+
+/// The program that is started as the supervisor: one whose `main` calls [`supervisor_main`](super::supervisor_main).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Supervisor {
+    program: PathBuf,
+}
+
+impl Supervisor {
+    /// This very program, even when its file has been replaced or removed since it was started.
+    #[must_use]
+    pub fn this_program() -> Self {
+        Self { program: "/proc/self/exe".into() }
+    }
+
+    /// Another program, for tests.
+    #[must_use]
+    pub fn at(program: impl Into<PathBuf>) -> Self {
+        Self { program: program.into() }
+    }
+
+    /// The grader's files that nobody may run: this process's and the supervisor's.
+    fn own_files(&self) -> [PathBuf; 2] {
+        ["/proc/self/exe".into(), self.program.clone()]
+    }
+
+    fn command(&self, mode: &str) -> Command {
+        let mut command = Command::new(&self.program);
+        command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
+        // Copies of programs lie there, which the probe tries.
+        command.env("TMPDIR", std::env::temp_dir());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    /// The same inside bubblewrap, if it is there, with a folder that may be changed.
+    fn wrapped(&self, mode: &str, folder: Option<&Path>) -> io::Result<Command> {
+        let bwrap = bubblewrap::installed().ok_or_else(|| io::Error::other("bwrap is not installed"))?;
+        // Inside, our own entry in /proc would be another program's.
+        let program = self.program.canonicalize()?;
+        let mut command = bubblewrap::command(&bwrap, &program, folder, sys::user() == 0);
+        command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        Ok(command)
+    }
+
+    /// Starts it for a run, with what the run's walls ask for.
+    fn spawn_for(&self, order: &Order) -> Result<Child, SandboxError> {
+        if !order.walls.bubblewrap {
+            return self.spawn(MODE_RUN);
+        }
+        let child = self.wrapped(MODE_RUN, Some(&wire::path(&order.folder))).and_then(|mut command| command.spawn());
+        child.map_err(|source| SandboxError::Supervisor { program: "in bubblewrap".into(), source })
+    }
+
+    fn spawn(&self, mode: &str) -> Result<Child, SandboxError> {
+        self.command(mode)
+            .spawn()
+            .map_err(|source| SandboxError::Supervisor { program: self.program.display().to_string(), source })
+    }
+
+    /// Has every wall tried once.
+    pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
+        let mut probe = Self::answer(self.spawn(MODE_PROBE)?)?;
+        if probe.namespaces.is_some() {
+            probe.bubblewrap = self.try_bubblewrap(&probe).err();
+        }
+        Ok(probe)
+    }
+
+    /// Whether all walls of this probe hold inside bubblewrap as well; the error is why not.
+    fn try_bubblewrap(&self, outside: &Probe) -> Result<(), String> {
+        let child = self.wrapped(MODE_PROBE, None).and_then(|mut command| command.spawn());
+        let inside = Self::answer(child.map_err(|error| error.to_string())?).map_err(|error| error.to_string())?;
+        let walls = |probe: &Probe| {
+            let active = |report: &LayerReport| report.active.then_some(report.layer);
+            layers::reports(probe).iter().filter_map(active).collect::<Vec<_>>()
+        };
+        let (inside, outside) = (walls(&inside), walls(outside));
+        // The temporary folder can't be changed inside, so that nothing can be tried there.
+        let own = [Layer::Namespaces, Layer::Bubblewrap, Layer::Execution];
+        match outside.iter().find(|layer| !own.contains(layer) && !inside.contains(layer)) {
+            Some(layer) => Err(format!("it takes away: {}", layer.name())),
+            None => Ok(()),
+        }
+    }
+
+    /// What a prober says.
+    fn answer(child: Child) -> Result<Probe, SandboxError> {
+        let output = child.wait_with_output();
+        let lost = |how: String| SandboxError::Lost { how };
+        let output = output.map_err(|error| lost(error.to_string()))?;
+        wire::receive(&output.stdout[..]).map_err(|_| {
+            let text = String::from_utf8_lossy(&output.stderr).trim().to_string();
+            lost(format!("the probe ended with {}: {text}", output.status))
+        })
+    }
+}
+
+/// A way to run programs. Cheap to clone; runs from several threads do not disturb each other.
+#[derive(Clone)]
+pub struct Backend {
+    kind: Kind,
+    layers: Arc<[LayerReport]>,
+}
+
+#[derive(Clone)]
+enum Kind {
+    Launcher { supervisor: Supervisor, walls: Walls },
+    Fake(Arc<dyn Fn(&Job) -> FakeRun + Send + Sync>),
+}
+
+impl std::fmt::Debug for Backend {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let kind = match &self.kind {
+            Kind::Launcher { walls, .. } => format!("{walls:?}"),
+            Kind::Fake(_) => "Fake".into(),
+        };
+        formatter.debug_struct("Backend").field("kind", &kind).finish_non_exhaustive()
+    }
+}
+
+impl Backend {
+    /// The launcher with every wall that holds on this host. Probes once.
+    ///
+    /// # Errors
+    ///
+    /// [`SandboxError::Missing`] below the required set: no new privileges, limits, reaper, system call filter, and
+    /// file rules (or, for root, a user per program). Nothing is run then; see [`Backend::unsandboxed`].
+    pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
+        let reports = layers::reports(&supervisor.probe()?);
+        let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
+        Ok(Self { kind: Kind::Launcher { supervisor, walls }, layers: reports.into() })
+    }
+
+    /// The same without one of its walls, to prove what the others hold alone. Reports state it.
+    ///
+    /// # Errors
+    ///
+    /// [`SandboxError::Missing`] when the wall is required on this host.
+    pub fn without(&self, layer: Layer) -> Result<Self, SandboxError> {
+        let reports = layers::without(&self.layers, layer);
+        let kind = match &self.kind {
+            Kind::Launcher { supervisor, .. } => {
+                let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
+                Kind::Launcher { supervisor: supervisor.clone(), walls }
+            }
+            Kind::Fake(script) => Kind::Fake(script.clone()),
+        };
+        Ok(Self { kind, layers: reports.into() })
+    }
+
+    /// The same with bubblewrap in place of the grader's own namespaces, to prove that it holds, too. By itself a backend
+    /// takes bubblewrap only where the grader cannot make namespaces.
+    ///
+    /// # Errors
+    ///
+    /// [`SandboxError::Missing`] when bubblewrap is not installed or takes other walls away.
+    pub fn in_bubblewrap(&self) -> Result<Self, SandboxError> {
+        let missing = |missing| SandboxError::Missing { missing };
+        let Kind::Launcher { supervisor, .. } = &self.kind else { return Ok(self.clone()) };
+        let probe = Supervisor::answer(supervisor.spawn(MODE_PROBE)?)?;
+        supervisor.try_bubblewrap(&probe).map_err(missing)?;
+        let reports = layers::in_bubblewrap(&self.layers);
+        let walls = layers::walls(&reports).map_err(missing)?;
+        Ok(Self { kind: Kind::Launcher { supervisor: supervisor.clone(), walls }, layers: reports.into() })
+    }
+
+    /// Every wall that holds on this host, however few: nothing is refused for a missing one. For
+    /// `--unsafe-no-sandbox`. The layers say what is missing, see [`Backend::weaknesses`].
+    ///
+    /// # Errors
+    ///
+    /// [`SandboxError::Missing`] when we are root and cannot become another user: a program is never run as root. Also
+    /// when the supervisor does not start.
+    pub fn unsandboxed(supervisor: Supervisor) -> Result<Self, SandboxError> {
+        let reports = layers::reports(&supervisor.probe()?);
+        let walls = layers::whatever_holds(&reports).map_err(|missing| SandboxError::Missing { missing })?;
+        Ok(Self { kind: Kind::Launcher { supervisor, walls }, layers: reports.into() })
+    }
+
+    /// Whether every wall holds that this host may not grade without.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.layers.iter().all(|report| report.active || !report.required)
+    }
+
+    /// One line per required wall that does not hold; none for a complete sandbox.
+    #[must_use]
+    pub fn weaknesses(&self) -> Vec<String> {
+        layers::missing(&self.layers)
+    }
+
+    /// A backend that runs nothing and answers as scripted, for tests of whatever uses the sandbox.
+    #[must_use]
+    pub fn fake(script: impl Fn(&Job) -> FakeRun + Send + Sync + 'static) -> Self {
+        Self { kind: Kind::Fake(Arc::new(script)), layers: layers::none() }
+    }
+
+    /// The walls, active or not.
+    #[must_use]
+    pub fn layers(&self) -> &[LayerReport] {
+        &self.layers
+    }
+
+    /// Starts the program. It may have ended by the time that this returns; a program that cannot be started is an
+    /// [`Outcome`](super::Outcome) and not an error.
+    ///
+    /// # Errors
+    ///
+    /// Faults of ours or of the host.
+    pub fn start(&self, job: &Job) -> Result<Running, SandboxError> {
+        let (supervisor, walls) = match &self.kind {
+            Kind::Launcher { supervisor, walls } => (supervisor, *walls),
+            Kind::Fake(script) => return Ok(script(job).into_running(job, self.layers.clone())),
+        };
+        if let Some(staged) = &job.staged
+            && Identity::of(&job.program).as_ref() != Some(staged)
+        {
+            return Err(SandboxError::Changed { program: job.program.display().to_string() });
+        }
+        let examined = match program::examine(&job.program, &supervisor.own_files()) {
+            Ok(examined) => examined,
+            Err(problem) => return Ok(FakeRun::could_not_start(problem).into_running(job, self.layers.clone())),
+        };
+        if examined.sanitised && !job.sanitisers {
+            return Ok(FakeRun::could_not_start(StartProblem::Sanitised).into_running(job, self.layers.clone()));
+        }
+        let order = order(job, walls, examined)?;
+        let pipe = match &job.trace_pipe {
+            Some(name) => Some(TracePipe::make(&wire::path(&order.folder), name)?),
+            None => None,
+        };
+        let mut child = supervisor.spawn_for(&order)?;
+        let sent = child.stdin.as_mut().map_or(Ok(()), |stdin| wire::send(stdin, &order));
+        let first = match (sent, child.stdout.as_mut()) {
+            (Ok(()), Some(stdout)) => wire::receive(stdout),
+            (Err(error), _) => Err(error),
+            (Ok(()), None) => Err(io::ErrorKind::BrokenPipe.into()),
+        };
+        match first {
+            Ok(Event::Ready { session, user }) => {
+                // From here on the supervisor holds the pipe open; when it lets go, the reader sees the end.
+                let reader = pipe.map(|pipe| pipe.reader);
+                Ok(Running::new(child, session, user, order, reader, job.limits.trace_bytes, self.layers.clone()))
+            }
+            Ok(Event::Failed(failure)) => {
+                let _ = child.wait();
+                Err(set_up_failed(failure))
+            }
+            Ok(Event::Done(_)) | Err(_) => {
+                let _ = child.kill();
+                Err(lost(child))
+            }
+        }
+    }
+}
+
+/// A failure that the supervisor told.
+pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
+    let source = match failure.errno {
+        0 => io::Error::other("no further reason"),
+        errno => io::Error::from_raw_os_error(errno),
+    };
+    SandboxError::SetUp { stage: failure.stage, source }
+}
+
+/// What is known about a supervisor that ended without a word.
+pub(super) fn lost(mut child: Child) -> SandboxError {
+    // Closing its input ends a supervisor that is merely confused.
+    drop(child.stdin.take());
+    let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
+    let mut text = String::new();
+    if let Some(stderr) = child.stderr.take() {
+        // Its last words are a help, not a need.
+        let _ = stderr.take(2000).read_to_string(&mut text);
+    }
+    let text = text.trim();
+    SandboxError::Lost { how: if text.is_empty() { status } else { format!("{status}: {text}") } }
+}
+
+/// The order for a job, with absolute paths.
+fn order(job: &Job, walls: Walls, examined: program::Program) -> Result<Order, SandboxError> {
+    let folder = job.folder.canonicalize().and_then(|folder| match folder.is_dir() {
+        true => Ok(folder),
+        false => Err(io::ErrorKind::NotADirectory.into()),
+    });
+    let folder = folder.map_err(|source| SandboxError::Folder { folder: job.folder.display().to_string(), source })?;
+    let mut readable = Vec::new();
+    for path in &job.readable {
+        let found = std::path::absolute(path).and_then(|path| path.metadata().map(|_| path));
+        let path = found.map_err(|source| SandboxError::Readable { path: path.display().to_string(), source })?;
+        readable.push(wire::raw(&path));
+    }
+    let bytes = |text: &OsString| text.as_bytes().to_vec();
+    let given = job.environment.iter().map(|(name, value)| (bytes(name), bytes(value)));
+    let set = examined.script.iter().flat_map(|script| &script.environment);
+    let set = set.map(|(name, value)| (name.as_bytes().to_vec(), value.as_bytes().to_vec()));
+    let environment = given.chain(set).collect();
+    let program = std::path::absolute(&job.program).unwrap_or_else(|_| job.program.clone());
+    let limits = &job.limits;
+    Ok(Order {
+        program: wire::raw(&program),
+        folder: wire::raw(&folder),
+        arguments: job.arguments.iter().map(bytes).collect(),
+        environment,
+        readable,
+        executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
+        named: examined.named.iter().map(|path| wire::raw(path)).collect(),
+        pipe: job.trace_pipe.as_ref().map(|name| name.as_bytes().to_vec()),
+        tools: job.policy == Policy::Tools,
+        interpreter: examined.script.as_ref().map(|script| wire::raw(&script.interpreter)),
+        words: examined.script.iter().flat_map(|script| &script.words).map(|word| word.as_bytes().to_vec()).collect(),
+        sanitised: examined.sanitised,
+        walls,
+        cpu_micros: micros(limits.cpu),
+        wall_micros: micros(limits.wall),
+        memory: limits.memory,
+        output_bytes: limits.output_bytes,
+        folder_bytes: limits.folder_bytes,
+        folder_files: limits.folder_files,
+        processes: limits.processes,
+        open_files: limits.open_files,
+    })
+}
+
+fn micros(time: Duration) -> u64 {
+    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
+}
+
+/// The two ends of the trace pipe while a run starts.
+struct TracePipe {
+    reader: File,
+    /// Without a writer, a read would see the end of the pipe before the program has opened it.
+    _writer: File,
+}
+
+impl TracePipe {
+    /// A larger pipe means fewer switches between the program and the grader.
+    const BYTES: i32 = 1 << 20;
+
+    /// Makes the pipe in the folder; a pipe that an earlier run left there is replaced.
+    fn make(folder: &Path, name: &str) -> Result<Self, SandboxError> {
+        let failed = |source: io::Error| SandboxError::Pipe { name: name.escape_debug().to_string(), source };
+        let plain = !name.is_empty() && !name.contains('/') && name != "." && name != "..";
+        let c_name = CString::new(name).ok().filter(|_| plain);
+        let c_name = c_name.ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
+        let path = folder.join(name);
+        if path.symlink_metadata().is_ok_and(|metadata| metadata.file_type().is_fifo()) {
+            std::fs::remove_file(&path).map_err(failed)?;
+        }
+        let folder = File::open(folder).map_err(failed)?;
+        sys::make_fifo(folder.as_fd(), &c_name).map_err(failed)?;
+        let open = |flags| sys::open_beneath(folder.as_fd(), &c_name, flags | libc::O_NONBLOCK).map(File::from);
+        let reader = open(libc::O_RDONLY).map_err(failed)?;
+        let writer = open(libc::O_WRONLY).map_err(failed)?;
+        sys::set_blocking(reader.as_fd(), true).map_err(failed)?;
+        sys::enlarge_pipe(reader.as_fd(), Self::BYTES);
+        Ok(Self { reader, _writer: writer })
+    }
+}

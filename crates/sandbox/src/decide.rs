@@ -1,0 +1,195 @@
+//! From the supervisor's facts to how a run ended.
+//!
+//! The kernel's word comes first: what the supervisor killed for, the wait status, the counters. What the program
+//! printed is consulted only to explain a failure: why it did not come to run, and whether it gave up for want of
+//! memory. Nobody gains by forging that; it is one failure instead of another.
+
+use super::outcome::{Ended, StartProblem, Stream};
+use super::wire::{Cause, Order, Report};
+
+/// The exit code of the dynamic loader when it finds no library.
+const LOADER_FAILED: i32 = 127;
+
+/// How the run of `order` ended, given the facts and what the program wrote to standard error.
+pub(super) fn ended(order: &Order, report: &Report, stderr: &[u8]) -> Ended {
+    if let Some(errno) = report.exec_errno {
+        return Ended::CouldNotStart(start_problem(errno));
+    }
+    if let Some(cause) = &report.cause {
+        return match cause {
+            Cause::Cpu => Ended::CpuLimit,
+            Cause::Wall => Ended::WallLimit,
+            Cause::Memory => Ended::MemoryLimit,
+            Cause::Stdout => Ended::OutputLimit(Stream::Stdout),
+            Cause::Stderr => Ended::OutputLimit(Stream::Stderr),
+            Cause::Trace => Ended::OutputLimit(Stream::Trace),
+            Cause::Processes => Ended::ProcessLimit,
+            Cause::Folder => Ended::FolderLimit,
+            Cause::Call(call) => Ended::Violation { call: call.clone() },
+            Cause::Cancelled => Ended::Cancelled,
+        };
+    }
+    let signal = libc::WIFSIGNALED(report.status).then(|| libc::WTERMSIG(report.status));
+    match signal {
+        Some(libc::SIGXCPU) => return Ended::CpuLimit,
+        Some(libc::SIGXFSZ) => return Ended::FolderLimit,
+        Some(libc::SIGSYS) => return Ended::Violation { call: "a call of another architecture (32 bits)".into() },
+        _ => {}
+    }
+    // A short run can pass a limit and end between two looks.
+    if report.peak_memory > order.memory {
+        return Ended::MemoryLimit;
+    }
+    if report.cpu_micros > order.cpu_micros {
+        return Ended::CpuLimit;
+    }
+    if report.stdout_truncated {
+        return Ended::OutputLimit(Stream::Stdout);
+    }
+    if report.stderr_truncated {
+        return Ended::OutputLimit(Stream::Stderr);
+    }
+    if report.folder_over {
+        return Ended::FolderLimit;
+    }
+    let text = String::from_utf8_lossy(stderr);
+    if let Some(signal) = signal {
+        let refused = signal == libc::SIGABRT && wants_memory(&text);
+        return if refused { Ended::MemoryLimit } else { Ended::Signalled(signal) };
+    }
+    let code = libc::WEXITSTATUS(report.status);
+    if code != 0 && wants_memory(&text) {
+        return Ended::MemoryLimit;
+    }
+    if code == LOADER_FAILED
+        && let Some(library) = missing_library(&text)
+    {
+        return Ended::CouldNotStart(StartProblem::MissingLibrary { library });
+    }
+    if code != 0 && wants_display(&text) {
+        return Ended::CouldNotStart(StartProblem::NeedsDisplay);
+    }
+    Ended::Exited(code)
+}
+
+/// What the kernel's refusal to execute means.
+fn start_problem(errno: i32) -> StartProblem {
+    match errno {
+        libc::ENOENT => StartProblem::NotFound,
+        libc::EACCES | libc::EPERM => StartProblem::NotPermitted,
+        libc::ETXTBSY => StartProblem::Busy,
+        libc::ENOEXEC => StartProblem::NotAProgram,
+        _ => StartProblem::Refused(std::io::Error::from_raw_os_error(errno).to_string()),
+    }
+}
+
+/// The library that the loader of glibc or musl says it did not find.
+fn missing_library(stderr: &str) -> Option<String> {
+    let (_, after) = stderr
+        .split_once("error while loading shared libraries: ")
+        .or_else(|| stderr.split_once("Error loading shared library "))?;
+    let name = after.split([':', '\n']).next()?.trim();
+    (!name.is_empty()).then(|| name.chars().take(200).flat_map(char::escape_default).collect())
+}
+
+/// Whether its last words are those of a runtime whose request for memory was refused. A single request beyond the
+/// limit of address space fails without any memory in use, so that no counter shows it.
+fn wants_memory(stderr: &str) -> bool {
+    // C++, Rust, Python, Java, Node and the sanitisers.
+    const COMPLAINTS: [&str; 6] = [
+        "what():  std::bad_alloc",
+        "memory allocation of ",
+        "MemoryError",
+        "java.lang.OutOfMemoryError",
+        "JavaScript heap out of memory",
+        "AddressSanitizer: out of memory",
+    ];
+    const LAST_LINES: usize = 4;
+    let last = stderr.lines().rev().filter(|line| !line.trim().is_empty()).take(LAST_LINES);
+    { last }.any(|line| COMPLAINTS.iter().any(|complaint| line.contains(complaint)))
+}
+
+fn wants_display(stderr: &str) -> bool {
+    let text = stderr.to_lowercase();
+    ["cannot open display", "failed to open display", "can't open display", "could not open display"]
+        .iter()
+        .any(|complaint| text.contains(complaint))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn order() -> Order {
+        serde_json::from_value(serde_json::json!({
+            "program": [], "folder": [], "arguments": [], "environment": [], "readable": [], "executable": [], "named": [],
+            "pipe": null, "interpreter": null, "words": [], "tools": false, "sanitised": false,
+            "walls": {"landlock": true, "scopes": true, "seccomp": true, "notify": true, "own_user": true, "namespaces": true, "group": true, "bubblewrap": false},
+            "cpu_micros": 1_000_000, "wall_micros": 2_000_000, "memory": 1000, "output_bytes": 10,
+            "folder_bytes": 10, "folder_files": 10, "processes": 1, "open_files": 10,
+        }))
+        .unwrap()
+    }
+
+    fn exit(code: i32) -> Report {
+        Report { status: code << 8, ..Report::default() }
+    }
+
+    #[test]
+    fn the_reason_to_kill_outranks_the_kill() {
+        let report = Report { status: libc::SIGKILL, cause: Some(Cause::Wall), ..Report::default() };
+        assert_eq!(ended(&order(), &report, b""), Ended::WallLimit);
+        assert_eq!(ended(&order(), &Report { cause: None, ..report }, b""), Ended::Signalled(libc::SIGKILL));
+    }
+
+    #[test]
+    fn signals_of_limits_are_limits() {
+        for (signal, expected) in [
+            (libc::SIGXCPU, Ended::CpuLimit),
+            (libc::SIGXFSZ, Ended::FolderLimit),
+            (libc::SIGSEGV, Ended::Signalled(libc::SIGSEGV)),
+        ] {
+            assert_eq!(ended(&order(), &Report { status: signal, ..Report::default() }, b""), expected);
+        }
+    }
+
+    #[test]
+    fn a_limit_passed_between_two_looks_is_still_passed() {
+        assert_eq!(ended(&order(), &Report { peak_memory: 1001, ..exit(0) }, b""), Ended::MemoryLimit);
+        assert_eq!(ended(&order(), &Report { cpu_micros: 1_000_001, ..exit(0) }, b""), Ended::CpuLimit);
+        assert_eq!(ended(&order(), &Report { folder_over: true, ..exit(0) }, b""), Ended::FolderLimit);
+        assert_eq!(ended(&order(), &exit(0), b""), Ended::Exited(0));
+    }
+
+    #[test]
+    fn loaders_and_displays_explain_a_failure_and_never_a_success() {
+        let loader = b"./FOSSSim: error while loading shared libraries: libglut.so.3: cannot open shared object file";
+        let missing = Ended::CouldNotStart(StartProblem::MissingLibrary { library: "libglut.so.3".into() });
+        assert_eq!(ended(&order(), &exit(127), loader), missing);
+        assert_eq!(ended(&order(), &exit(1), loader), Ended::Exited(1));
+        let display = b"freeglut (./FOSSSim): failed to open display ''";
+        assert_eq!(ended(&order(), &exit(1), display), Ended::CouldNotStart(StartProblem::NeedsDisplay));
+        assert_eq!(ended(&order(), &exit(0), display), Ended::Exited(0));
+    }
+
+    #[test]
+    fn who_gives_up_for_want_of_memory_has_met_the_memory_limit() {
+        let aborted = Report { status: libc::SIGABRT, ..Report::default() };
+        let words = b"terminate called after throwing an instance of 'std::bad_alloc'\n  what():  std::bad_alloc\n";
+        assert_eq!(ended(&order(), &aborted, words), Ended::MemoryLimit);
+        assert_eq!(ended(&order(), &aborted, b"a.cpp:3: Assertion `x' failed.\n"), Ended::Signalled(libc::SIGABRT));
+        assert_eq!(ended(&order(), &exit(1), b"Traceback\n  x = [0] * 10**12\nMemoryError\n"), Ended::MemoryLimit);
+        assert_eq!(ended(&order(), &exit(0), b"MemoryError\n"), Ended::Exited(0));
+        let long_ago = [&words[..], b"caught it\n1\n2\n3\n"].concat();
+        assert_eq!(ended(&order(), &aborted, &long_ago), Ended::Signalled(libc::SIGABRT));
+        let crashed = Report { status: libc::SIGSEGV, ..Report::default() };
+        assert_eq!(ended(&order(), &crashed, words), Ended::Signalled(libc::SIGSEGV));
+    }
+
+    #[test]
+    fn a_refusal_of_the_kernel_is_translated() {
+        let refused = |errno| ended(&order(), &Report { exec_errno: Some(errno), ..Report::default() }, b"");
+        assert_eq!(refused(libc::ETXTBSY), Ended::CouldNotStart(StartProblem::Busy));
+        assert_eq!(refused(libc::ENOEXEC), Ended::CouldNotStart(StartProblem::NotAProgram));
+    }
+}

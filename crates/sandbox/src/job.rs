@@ -1,0 +1,182 @@
+//! What to run and within which limits.
+//!
+//! A [`Job`] is a description; nothing here runs a process.
+
+use std::ffi::OsString;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// What a program may do, beyond computing and writing into its working folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Policy {
+    /// A student's program: threads, but no other process and no second program.
+    Submission,
+    /// Compilers and build tools: they may start processes and the system's programs, within the same limits.
+    Tools,
+}
+
+/// The limits of one run. Every limit is always enforced; there is no "unlimited".
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Limits {
+    /// Processor time of all the program's threads and processes together.
+    pub cpu: Duration,
+    /// Time on the clock, from the start to the end. While the trace pipe is full the clock stands still, because the
+    /// program then waits for its reader; that may last [`Limits::PATIENCE`] times as long as the limit at most.
+    pub wall: Duration,
+    /// Resident memory in bytes, of all processes together. The stack of the main thread ends at 8 MiB in any case.
+    pub memory: u64,
+    /// Bytes of standard output, and separately of standard error.
+    pub output_bytes: u64,
+    /// Bytes through the trace pipe.
+    pub trace_bytes: u64,
+    /// Bytes on disk in the working folder (blocks in use, so that holes do not count), what was there at the start
+    /// included.
+    pub folder_bytes: u64,
+    /// Files and folders in the working folder, what was there at the start included.
+    pub folder_files: u64,
+    /// Threads and processes at one time.
+    pub processes: u32,
+    /// Descriptors that one process may hold.
+    pub open_files: u32,
+}
+
+impl Limits {
+    /// How many times its own time on the clock a program may wait for the reader of its trace.
+    pub const PATIENCE: u32 = 9;
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        const MIB: u64 = 1 << 20;
+        Self {
+            cpu: Duration::from_secs(10),
+            wall: Duration::from_secs(30),
+            memory: 512 * MIB,
+            output_bytes: MIB,
+            trace_bytes: 256 * MIB,
+            folder_bytes: 256 * MIB,
+            folder_files: 2000,
+            processes: 64,
+            open_files: 64,
+        }
+    }
+}
+
+/// Which file lies at a path, and that nobody has written to it since.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Identity([i64; 5]);
+
+impl Identity {
+    /// The identity of the regular file at the path, links followed; `None` where there is none.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        let metadata = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
+        let (device, inode) = (metadata.dev().cast_signed(), metadata.ino().cast_signed());
+        Some(Self([device, inode, metadata.size().cast_signed(), metadata.mtime(), metadata.mtime_nsec()]))
+    }
+}
+
+/// One program to run once.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Job {
+    /// The program's file.
+    pub program: PathBuf,
+    /// The working folder.
+    pub folder: PathBuf,
+    pub(crate) arguments: Vec<OsString>,
+    pub(crate) readable: Vec<PathBuf>,
+    pub(crate) trace_pipe: Option<String>,
+    pub(crate) policy: Policy,
+    pub(crate) environment: Vec<(OsString, OsString)>,
+    pub(crate) sanitisers: bool,
+    pub(crate) staged: Option<Identity>,
+    pub(crate) limits: Limits,
+}
+
+impl Job {
+    /// A job that runs `program` in the existing working folder `folder`, which the program may change at will.
+    ///
+    /// Standard input is empty. A relative `program` is looked up from the grader's current folder, never on `PATH`.
+    #[must_use]
+    pub fn new(program: impl Into<PathBuf>, folder: impl Into<PathBuf>) -> Self {
+        Self {
+            program: program.into(),
+            folder: folder.into(),
+            arguments: Vec::new(),
+            readable: Vec::new(),
+            trace_pipe: None,
+            policy: Policy::Submission,
+            environment: Vec::new(),
+            sanitisers: false,
+            staged: None,
+            limits: Limits::default(),
+        }
+    }
+
+    /// The program's arguments, without its own name.
+    #[must_use]
+    pub fn arguments<A: Into<OsString>>(mut self, arguments: impl IntoIterator<Item = A>) -> Self {
+        self.arguments = arguments.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// Files and folders outside the working folder that the program may read (not change, not execute).
+    ///
+    /// When the grader is root the program runs as another user, so that these paths must be reachable by everybody.
+    #[must_use]
+    pub fn readable<P: Into<PathBuf>>(mut self, paths: impl IntoIterator<Item = P>) -> Self {
+        self.readable = paths.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// Makes `name` in the working folder a pipe to the grader: what the program writes there arrives at
+    /// [`Running::trace`](crate::Running::trace) and never on disk. A program that removes or replaces the
+    /// pipe has written nothing. Without this, the program writes an ordinary file, for [`collect`](super::collect).
+    #[must_use]
+    pub fn trace_pipe(mut self, name: impl Into<String>) -> Self {
+        self.trace_pipe = Some(name.into());
+        self
+    }
+
+    /// What the program may do.
+    #[must_use]
+    pub fn policy(mut self, policy: Policy) -> Self {
+        self.policy = policy;
+        self
+    }
+
+    /// Environment variables, on top of the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`). The
+    /// grader's own environment never reaches the program.
+    #[must_use]
+    pub fn environment<N: Into<OsString>, V: Into<OsString>>(
+        mut self,
+        variables: impl IntoIterator<Item = (N, V)>,
+    ) -> Self {
+        self.environment = variables.into_iter().map(|(name, value)| (name.into(), value.into())).collect();
+        self
+    }
+
+    /// Whether a program that was built with an address, thread or memory sanitiser may run. Sanitisers reserve terabytes of
+    /// address space, so that for such a program memory is limited only by what is seen in use, a moment later.
+    #[must_use]
+    pub fn sanitisers(mut self, allowed: bool) -> Self {
+        self.sanitisers = allowed;
+        self
+    }
+
+    /// Says that the program is a copy of ours, with this identity: when it is gone or another file at the start, that is
+    /// our fault and not the program's.
+    #[must_use]
+    pub fn staged(mut self, identity: Option<Identity>) -> Self {
+        self.staged = identity;
+        self
+    }
+
+    /// The limits.
+    #[must_use]
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.limits = limits;
+        self
+    }
+}

@@ -1,0 +1,427 @@
+//! The walls of the sandbox, and which of them hold on this host.
+//!
+//! Pure data: `doctor` and reports print it. A wall counts as active only when a probe process has put it up here.
+
+use std::sync::Arc;
+
+use super::backend::Supervisor;
+use super::wire::{Probe, Walls};
+
+/// One wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Layer {
+    /// Executing a program never gains privileges.
+    NoNewPrivileges,
+    /// Resource limits, clocks and counters.
+    Limits,
+    /// The supervisor adopts orphans, so that nothing outlives a run.
+    Reaper,
+    /// Copies of programs can be executed: not a wall, but nothing can be graded without.
+    Execution,
+    /// The list of allowed system calls (seccomp).
+    CallFilter,
+    /// Forbidden calls are named in the outcome.
+    NamedCalls,
+    /// Landlock's rules for files.
+    FileRules,
+    /// Landlock's rules for signals and abstract sockets.
+    Scopes,
+    /// Another user for every running program; only root can do this.
+    OwnUser,
+    /// Namespaces: a world without other processes, without network, and with few files.
+    Namespaces,
+    /// A control group per run: the kernel's own counts, and an end for all at one word.
+    ControlGroup,
+    /// Bubblewrap, in place of namespaces that the grader cannot make by itself.
+    Bubblewrap,
+}
+
+impl Layer {
+    /// All of them, in the order of a report.
+    pub const ALL: [Self; 12] = [
+        Self::NoNewPrivileges,
+        Self::Limits,
+        Self::Reaper,
+        Self::Execution,
+        Self::CallFilter,
+        Self::NamedCalls,
+        Self::FileRules,
+        Self::Scopes,
+        Self::OwnUser,
+        Self::Namespaces,
+        Self::ControlGroup,
+        Self::Bubblewrap,
+    ];
+
+    /// The name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NoNewPrivileges => "no new privileges",
+            Self::Limits => "resource limits",
+            Self::Reaper => "reaper of orphans",
+            Self::Execution => "executable copies",
+            Self::CallFilter => "system call filter",
+            Self::NamedCalls => "named violations",
+            Self::FileRules => "file rules (Landlock)",
+            Self::Scopes => "signal scope (Landlock)",
+            Self::OwnUser => "a user per program",
+            Self::Namespaces => "namespaces",
+            Self::ControlGroup => "control group",
+            Self::Bubblewrap => "bubblewrap",
+        }
+    }
+}
+
+/// Whether one wall holds on this host.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LayerReport {
+    /// Which wall.
+    pub layer: Layer,
+    /// Whether it holds.
+    pub active: bool,
+    /// Whether this host may not grade without it.
+    pub required: bool,
+    /// What holds, or why it does not.
+    pub detail: String,
+    /// What to install or enable, when it does not hold and something can be done.
+    pub remedy: Option<&'static str>,
+}
+
+/// Which walls hold on this host, tried once by starting this very program as a supervisor.
+///
+/// The program must call [`supervisor_main`](super::supervisor_main) first of all. When not even the supervisor
+/// starts, every wall is reported as missing with that reason.
+#[must_use]
+pub fn doctor() -> Vec<LayerReport> {
+    match Supervisor::this_program().probe() {
+        Ok(probe) => reports(&probe),
+        Err(error) => Layer::ALL
+            .into_iter()
+            .map(|layer| LayerReport { layer, active: false, required: true, detail: error.to_string(), remedy: None })
+            .collect(),
+    }
+}
+
+/// The reports of a probe.
+pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
+    let landlock = probe.landlock.is_none();
+    let user = probe.root && probe.own_user.is_none();
+    let hidden = probe.namespaces.is_none();
+    let report = |layer, problem: Option<String>, held: &str, required, remedy| LayerReport {
+        layer,
+        active: problem.is_none(),
+        required,
+        remedy: problem.is_some().then_some(remedy),
+        detail: problem.unwrap_or_else(|| held.to_string()),
+    };
+    let scopes = match (landlock, probe.landlock_abi) {
+        (true, 6..) => None,
+        (true, abi) => Some(format!("Landlock here is version {abi}; signals are confined from version 6 on")),
+        (false, _) => Some("there is no Landlock".into()),
+    };
+    let own_user = match (probe.root, probe.roots_group) {
+        (true, _) => probe.own_user.clone(),
+        (false, true) => Some("the grader is not root, but in root's group, and so are the programs".into()),
+        (false, false) => Some("the grader is not root".into()),
+    };
+    vec![
+        report(
+            Layer::NoNewPrivileges,
+            probe.no_new_privileges.clone(),
+            "executing a program gains nothing",
+            true,
+            "use Linux 3.5 or newer",
+        ),
+        report(
+            Layer::Limits,
+            probe.limits.clone(),
+            "processor and clock time, memory, output, folder, processes",
+            true,
+            "allow setrlimit in the container's profile",
+        ),
+        report(
+            Layer::Reaper,
+            probe.reaper.clone(),
+            "nothing outlives a run",
+            true,
+            "allow prctl in the container's profile",
+        ),
+        report(
+            Layer::Execution,
+            probe.execution.clone(),
+            if probe.from_memory {
+                "in memory, because the temporary folder is mounted noexec; build steps can't run what they built there"
+            } else {
+                "programs run from copies in the temporary folder"
+            },
+            true,
+            "name a temporary folder by TMPDIR in which programs may be executed",
+        ),
+        report(
+            Layer::CallFilter,
+            probe.seccomp.clone(),
+            "an allow list; all other calls are refused",
+            true,
+            "use a kernel with CONFIG_SECCOMP_FILTER on x86_64 or aarch64, and allow seccomp in the container's profile",
+        ),
+        report(
+            Layer::NamedCalls,
+            probe.notify.clone(),
+            "a violation is reported with the call's name",
+            false,
+            "use Linux 5.5 or newer; until then a violation is reported without its name, build steps cannot lock files, \
+             and an ordinary user's cannot set permission bits",
+        ),
+        report(
+            Layer::FileRules,
+            probe.landlock.clone(),
+            &format!("version {}", probe.landlock_abi),
+            !(user && hidden),
+            if user && hidden {
+                "use Linux 5.13 or newer with landlock among the kernel's lsm=; until then namespaces alone hide the host's \
+                 files"
+            } else if user {
+                "use Linux 5.13 or newer with landlock among the kernel's lsm=, or let the grader make namespaces: without \
+                 either, programs read whatever every user can read, this grader included"
+            } else {
+                "use Linux 5.13 or newer with landlock among the kernel's lsm=, or grade as root"
+            },
+        ),
+        report(
+            Layer::Scopes,
+            scopes,
+            "programs signal nobody but themselves",
+            false,
+            "use Linux 6.12 or newer; until then the system call filter alone confines signals",
+        ),
+        LayerReport {
+            layer: Layer::OwnUser,
+            active: user,
+            required: probe.root,
+            detail: own_user.clone().unwrap_or_else(|| "every running program has a user of its own".into()),
+            remedy: match (probe.root, own_user) {
+                (true, Some(_)) => {
+                    Some("grade as an ordinary user, or let root change its user (CAP_SETUID, CAP_SETGID, CAP_CHOWN)")
+                }
+                _ if probe.roots_group => Some("name a group, too, for example by --user 1000:1000 in a container"),
+                _ => None,
+            },
+        },
+        report(
+            Layer::Namespaces,
+            probe.namespaces.clone(),
+            "a run sees its own processes and files only, and no network",
+            false,
+            "use Linux 5.12 or newer and let the grader make namespaces: in a container by its profile, for an ordinary \
+             user by the kernel's settings (kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu)",
+        ),
+        report(
+            Layer::ControlGroup,
+            probe.group.clone(),
+            &match &probe.group_controls[..] {
+                [] => "a run ends as a whole; no controller for memory or processes is to be had".to_string(),
+                controls => format!("a run ends as a whole; the kernel limits {}", controls.join(", ")),
+            },
+            false,
+            "use Linux 5.14 or newer with version 2, and start the grader in a group of its own, for example by \
+             systemd-run --user --scope -p Delegate=yes",
+        ),
+        match (&probe.namespaces, &probe.bubblewrap) {
+            (None, _) => LayerReport {
+                layer: Layer::Bubblewrap,
+                active: false,
+                required: false,
+                detail: "not needed: the grader makes namespaces by itself".into(),
+                remedy: None,
+            },
+            (Some(_), problem) => report(
+                Layer::Bubblewrap,
+                problem.clone(),
+                "a run sees its own processes only, no network, and can change its folder only",
+                false,
+                "install bubblewrap; some systems allow it the namespaces that they refuse to others",
+            ),
+        },
+    ]
+}
+
+/// The same reports with one wall taken away, and with it what stands on it.
+pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport> {
+    let mut reports = reports.to_vec();
+    for report in &mut reports {
+        if report.layer == layer || (layer == Layer::FileRules && report.layer == Layer::Scopes) {
+            report.active = false;
+            report.detail = "switched off on request".into();
+            report.remedy = None;
+        }
+    }
+    // Root may do without file rules where nothing of the host is in sight.
+    if [Layer::FileRules, Layer::Namespaces].contains(&layer) {
+        let active = |layer| reports.iter().any(|report| report.layer == layer && report.active);
+        let hidden = active(Layer::OwnUser) && active(Layer::Namespaces);
+        for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules) {
+            report.required = !hidden;
+        }
+    }
+    reports
+}
+
+/// The same reports with bubblewrap in place of the grader's own namespaces.
+pub(super) fn in_bubblewrap(reports: &[LayerReport]) -> Vec<LayerReport> {
+    let mut reports = without(reports, Layer::Namespaces);
+    for report in reports.iter_mut().filter(|report| report.layer == Layer::Bubblewrap) {
+        report.active = true;
+        report.detail = "switched on on request".into();
+    }
+    reports
+}
+
+/// The walls that the supervisor puts up, given the reports; `None` without the required set, with what is missing.
+pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
+    let missing = missing(reports);
+    if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
+}
+
+/// The walls that hold, without regard to the required set. Only root must not run programs as itself: the error says
+/// why it would.
+pub(super) fn whatever_holds(reports: &[LayerReport]) -> Result<Walls, String> {
+    match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
+        Some(report) => Err(line(report)),
+        None => Ok(active(reports)),
+    }
+}
+
+/// One line per required wall that does not hold.
+pub(super) fn missing(reports: &[LayerReport]) -> Vec<String> {
+    reports.iter().filter(|report| report.required && !report.active).map(line).collect()
+}
+
+fn line(report: &LayerReport) -> String {
+    let remedy = report.remedy.map(|remedy| format!("; {remedy}")).unwrap_or_default();
+    format!("{}: {}{remedy}", report.layer.name(), report.detail)
+}
+
+fn active(reports: &[LayerReport]) -> Walls {
+    let active = |layer| reports.iter().any(|report| report.layer == layer && report.active);
+    Walls {
+        landlock: active(Layer::FileRules),
+        scopes: active(Layer::Scopes),
+        seccomp: active(Layer::CallFilter),
+        // A listener belongs to the filter.
+        notify: active(Layer::NamedCalls) && active(Layer::CallFilter),
+        own_user: active(Layer::OwnUser),
+        namespaces: active(Layer::Namespaces),
+        group: active(Layer::ControlGroup),
+        bubblewrap: active(Layer::Bubblewrap),
+    }
+}
+
+/// What a report says of a run that never happened.
+pub(super) fn none() -> Arc<[LayerReport]> {
+    let off = |layer| LayerReport {
+        layer,
+        active: matches!(layer, Layer::Limits | Layer::Reaper),
+        required: false,
+        detail: match layer {
+            Layer::Limits => "processor and clock time, memory, output and folder only".into(),
+            Layer::Reaper => "nothing outlives a run".into(),
+            _ => "switched off on request".to_string(),
+        },
+        remedy: None,
+    };
+    Layer::ALL.map(off).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn healthy(root: bool) -> Probe {
+        Probe { root, landlock_abi: 7, ..Probe::default() }
+    }
+
+    #[test]
+    fn a_healthy_host_has_every_wall_that_it_can_have() {
+        let all = Walls {
+            landlock: true,
+            scopes: true,
+            seccomp: true,
+            notify: true,
+            own_user: true,
+            namespaces: true,
+            group: true,
+            bubblewrap: false,
+        };
+        assert_eq!(walls(&reports(&healthy(true))), Ok(all));
+        assert_eq!(walls(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
+        assert_eq!(reports(&healthy(true)).iter().map(|report| report.layer).collect::<Vec<_>>(), Layer::ALL);
+    }
+
+    #[test]
+    fn bubblewrap_steps_in_where_the_grader_makes_no_namespaces() {
+        let refused = Probe { namespaces: Some("not permitted".into()), ..healthy(false) };
+        let walls = super::walls(&reports(&refused)).unwrap();
+        assert!(walls.bubblewrap && !walls.namespaces);
+        let neither = Probe { bubblewrap: Some("it is not installed".into()), ..refused };
+        let walls = super::walls(&reports(&neither)).unwrap();
+        assert!(!walls.bubblewrap && walls.landlock, "it is never required");
+        let walls = super::walls(&in_bubblewrap(&reports(&healthy(true)))).unwrap();
+        assert!(walls.bubblewrap && !walls.namespaces && walls.own_user);
+    }
+
+    #[test]
+    fn without_landlock_only_root_with_namespaces_may_grade() {
+        let lacking = |root| Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(root) };
+        assert!(!walls(&reports(&lacking(true))).unwrap().landlock);
+        let bare = Probe { namespaces: Some("not permitted".into()), ..lacking(true) };
+        let missing = walls(&reports(&bare)).unwrap_err();
+        assert!(missing.contains("file rules") && missing.contains("this grader included"), "{missing}");
+        // Bubblewrap shows the host's files.
+        assert!(walls(&in_bubblewrap(&reports(&lacking(true)))).is_err());
+        let bare = without(&without(&reports(&healthy(true)), Layer::Namespaces), Layer::FileRules);
+        assert!(walls(&bare).is_err());
+        let missing = walls(&reports(&lacking(false))).unwrap_err();
+        assert!(missing.contains("file rules") && missing.contains("5.13"), "{missing}");
+    }
+
+    #[test]
+    fn root_that_cannot_change_its_user_is_refused() {
+        let bound = Probe { own_user: Some("invalid argument".into()), ..healthy(true) };
+        assert!(walls(&reports(&bound)).unwrap_err().contains("ordinary user"));
+    }
+
+    #[test]
+    fn without_the_required_set_whatever_holds_stays_up() {
+        let lacking = Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(false) };
+        let walls = whatever_holds(&reports(&lacking)).unwrap();
+        assert!(!walls.landlock && walls.seccomp && walls.notify);
+        assert_eq!(missing(&reports(&lacking)).len(), 1);
+        assert_eq!(whatever_holds(&reports(&healthy(true))), super::walls(&reports(&healthy(true))));
+        let filterless = Probe { seccomp: Some("none".into()), ..healthy(true) };
+        let walls = whatever_holds(&reports(&filterless)).unwrap();
+        assert!(walls.own_user && walls.landlock && !walls.seccomp && !walls.notify);
+    }
+
+    #[test]
+    fn root_never_runs_programs_as_itself() {
+        let bound = Probe { own_user: Some("not permitted".into()), ..healthy(true) };
+        assert!(whatever_holds(&reports(&bound)).unwrap_err().contains("a user per program"));
+    }
+
+    #[test]
+    fn a_required_wall_cannot_be_taken_away() {
+        let healthy = |root| reports(&healthy(root));
+        assert!(walls(&without(&healthy(true), Layer::CallFilter)).is_err());
+        assert!(walls(&without(&healthy(false), Layer::FileRules)).is_err());
+        let walls = walls(&without(&healthy(true), Layer::FileRules)).unwrap();
+        assert!(!walls.landlock && !walls.scopes && walls.seccomp);
+    }
+
+    #[test]
+    fn an_old_landlock_confines_files_and_not_signals() {
+        let old = Probe { landlock_abi: 2, ..healthy(false) };
+        let walls = walls(&reports(&old)).unwrap();
+        assert!(walls.landlock && !walls.scopes);
+    }
+}

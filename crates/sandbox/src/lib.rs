@@ -1,0 +1,50 @@
+//! Runs one program under limits and says how it ended.
+//!
+//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and an [`Outcome`] says what the kernel
+//! saw. [`Job`] is what to run, [`Backend`] is how, [`Running`] is a program at work.
+//!
+//! How it works: the grader starts its own binary again with a hidden first argument ([`supervisor_main`]). That
+//! fresh, single-threaded process is the *supervisor*: it makes itself the reaper of everything below it, forks, shuts
+//! the child in (own session, other user when it is root, resource limits, no new privileges, Landlock, seccomp) and
+//! executes the program. It watches clocks, memory, output and the working folder, kills the whole tree, and reports
+//! only when every process is dead. The child dies with the supervisor, and the supervisor's tree dies with the
+//! grader, whatever kills them.
+//!
+//! Where the kernel lets it, the supervisor first moves into namespaces of its own, in which only the run's processes
+//! and files exist and no network; whatever dies there takes all below it along. This is a further wall, never the only
+//! one: everything else holds without it.
+//!
+//! What it never does: trust a path the program could change, read a result while the program lives, or go on
+//! silently when a required layer is missing ([`Backend::best`] refuses).
+
+mod backend;
+mod bubblewrap;
+pub mod collect;
+mod decide;
+mod fake;
+mod job;
+mod layers;
+mod mounts;
+mod outcome;
+mod own;
+mod program;
+mod running;
+pub mod selftest;
+mod supervisor;
+mod sys;
+mod wire;
+
+pub use backend::{Backend, SandboxError, Supervisor};
+pub use fake::FakeRun;
+pub use job::{Identity, Job, Limits, Policy};
+pub use layers::{Layer, LayerReport, doctor};
+pub use outcome::{Captured, Ended, Outcome, StartProblem, Stream};
+pub use own::is_own;
+pub use running::{Canceller, Running, TraceReader, TraceTooLong};
+pub use supervisor::supervisor_main;
+
+/// Has this process's own writes beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
+/// instead of ending it. The programs that it runs keep the signal, which then ends them.
+pub fn let_large_writes_fail() {
+    sys::ignore_file_size_signal();
+}

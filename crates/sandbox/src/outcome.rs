@@ -1,0 +1,257 @@
+//! How a run ended, as the kernel saw it.
+
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::layers::LayerReport;
+
+/// One of the streams that a program writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stream {
+    /// Standard output.
+    Stdout,
+    /// Standard error.
+    Stderr,
+    /// The trace pipe.
+    Trace,
+}
+
+impl fmt::Display for Stream {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Stdout => "standard output",
+            Self::Stderr => "standard error",
+            Self::Trace => "the trace",
+        })
+    }
+}
+
+/// How a run ended. Every variant but [`Ended::Exited`] and [`Ended::Signalled`] is a decision of the sandbox.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Ended {
+    /// It ended by itself with this exit code.
+    Exited(i32),
+    /// It was ended by this signal, of its own making (a crash, an abort).
+    Signalled(i32),
+    /// It used up its processor time.
+    CpuLimit,
+    /// It used up its time on the clock.
+    WallLimit,
+    /// It held more memory than allowed, or gave up because it was refused memory that it asked for.
+    MemoryLimit,
+    /// It wrote more than allowed to one stream.
+    OutputLimit(Stream),
+    /// It had more threads and processes than allowed.
+    ProcessLimit,
+    /// It put more bytes or files into its working folder than allowed.
+    FolderLimit,
+    /// It used a system call that no submission needs.
+    Violation {
+        /// The call, by its usual name (`ptrace`), or words when the name is not known.
+        call: String,
+    },
+    /// It never ran.
+    CouldNotStart(StartProblem),
+    /// The grader stopped it through a [`Canceller`](super::Canceller).
+    Cancelled,
+}
+
+impl Ended {
+    /// The variant's name for machines and for the attack suite: `exited`, `cpu`, `violation` and so on.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Exited(_) => "exited",
+            Self::Signalled(_) => "signalled",
+            Self::CpuLimit => "cpu",
+            Self::WallLimit => "wall",
+            Self::MemoryLimit => "memory",
+            Self::OutputLimit(_) => "output",
+            Self::ProcessLimit => "processes",
+            Self::FolderLimit => "folder",
+            Self::Violation { .. } => "violation",
+            Self::CouldNotStart(_) => "could-not-start",
+            Self::Cancelled => "cancelled",
+        }
+    }
+}
+
+impl fmt::Display for Ended {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Exited(code) => write!(formatter, "exited with code {code}"),
+            Self::Signalled(signal) => write!(formatter, "ended by signal {signal} ({})", signal_name(*signal)),
+            Self::CpuLimit => formatter.write_str("used up its processor time"),
+            Self::WallLimit => formatter.write_str("used up its time on the clock"),
+            Self::MemoryLimit => formatter.write_str("needed more memory than allowed"),
+            Self::OutputLimit(stream) => write!(formatter, "wrote more than allowed to {stream}"),
+            Self::ProcessLimit => formatter.write_str("had more threads and processes than allowed"),
+            Self::FolderLimit => formatter.write_str("put more into its working folder than allowed"),
+            Self::Violation { call } => write!(formatter, "used a forbidden system call: {call}"),
+            Self::CouldNotStart(problem) => write!(formatter, "could not start: {problem}"),
+            Self::Cancelled => formatter.write_str("was stopped by the grader"),
+        }
+    }
+}
+
+/// The usual name and meaning of a signal that ends programs.
+#[must_use]
+pub fn signal_name(signal: i32) -> &'static str {
+    match signal {
+        libc::SIGSEGV => "SIGSEGV: it used memory that is not its own",
+        libc::SIGABRT => "SIGABRT: it gave up, by a failed assertion or an uncaught exception",
+        libc::SIGFPE => "SIGFPE: an integer division by zero",
+        libc::SIGILL => "SIGILL: an instruction that this processor does not have",
+        libc::SIGBUS => "SIGBUS: it used memory that is not there",
+        libc::SIGPIPE => "SIGPIPE: it wrote where nobody reads",
+        libc::SIGTRAP => "SIGTRAP: a breakpoint",
+        libc::SIGTERM => "SIGTERM: it ended itself",
+        libc::SIGKILL => "SIGKILL: killed by itself or by the system",
+        libc::SIGXCPU => "SIGXCPU: processor time",
+        libc::SIGXFSZ => "SIGXFSZ: file size",
+        libc::SIGSYS => "SIGSYS: a forbidden system call",
+        libc::SIGHUP => "SIGHUP",
+        libc::SIGINT => "SIGINT",
+        libc::SIGALRM => "SIGALRM: a timer of its own",
+        _ => "unnamed",
+    }
+}
+
+/// Why a program never ran. The text says what is wrong and what to do.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StartProblem {
+    /// There is no such file.
+    #[error("there is no such program; check the path and build the program first")]
+    NotFound,
+    /// The path names a folder.
+    #[error("this is a folder, not a program; name the program inside it")]
+    IsFolder,
+    /// The path names something that is neither a file nor a folder.
+    #[error("this is not a regular file")]
+    NotAFile,
+    /// The file has no execute permission.
+    #[error("the file is not executable; if it is the program, run chmod +x on it")]
+    NotExecutable,
+    /// The user the program runs as may not reach the file.
+    #[error("permission denied; put the program where every user may read and execute it")]
+    NotPermitted,
+    /// The file is neither an ELF program nor a script.
+    #[error("the file is not a program: neither ELF nor a script that begins with #!; upload what the linker wrote")]
+    NotAProgram,
+    /// An ELF file that is not a program, for example an object file or a core dump.
+    #[error("the file is {what}, not a linked program; upload what the linker wrote")]
+    NotLinked {
+        /// What it is instead.
+        what: &'static str,
+    },
+    /// A 32-bit program.
+    #[error("this is a 32-bit program; build it for 64 bits (without -m32)")]
+    ThirtyTwoBit,
+    /// A program for another processor.
+    #[error("this program was built for {machine}, but this machine is {here}; build it on the grading platform")]
+    WrongMachine {
+        /// What it was built for.
+        machine: String,
+        /// What this machine is.
+        here: &'static str,
+    },
+    /// The program names a dynamic loader that is not here.
+    #[error("the program needs the loader {loader}, which is not on this machine; build it on the grading platform")]
+    MissingLoader {
+        /// The loader's path.
+        loader: String,
+    },
+    /// A shared library is missing.
+    #[error("the shared library {library} is missing; install it, or link it statically")]
+    MissingLibrary {
+        /// The library's file name, as the loader printed it.
+        library: String,
+    },
+    /// A script whose `#!` line is empty.
+    #[error("the script's first line names no interpreter; it must look like #!/bin/sh")]
+    NoInterpreter,
+    /// A script whose interpreter is missing.
+    #[error("the script's interpreter {interpreter} is not on this machine{hint}")]
+    MissingInterpreter {
+        /// The interpreter's path.
+        interpreter: String,
+        /// Advice, or nothing.
+        hint: &'static str,
+    },
+    /// The loader or interpreter is not one of the system's.
+    #[error(
+        "it asks to be run by {path}, which is not an interpreter or loader of the system; \
+         begin a script with #!/usr/bin/env NAME or #!/bin/sh, and link a program with the system's compiler"
+    )]
+    NotTheSystems {
+        /// The path that the program names.
+        path: String,
+    },
+    /// The program was built with a sanitiser, and nobody has said that such programs may run.
+    #[error(
+        "the program was built with a sanitiser (-fsanitize), for which memory can't be limited; build it without, \
+         or allow it in the suite"
+    )]
+    Sanitised,
+    /// The file is the grader itself.
+    #[error("this is the grader's own program, not a submission; name the submission's program")]
+    GradersOwn,
+    /// Somebody has the file open for writing.
+    #[error("the file is still being written (text file busy); wait for the build or the copy to end")]
+    Busy,
+    /// It wanted a window.
+    #[error("the program needs a display; run it without one: pass -d 0")]
+    NeedsDisplay,
+    /// Another answer of the kernel.
+    #[error("the system refused to execute it: {0}")]
+    Refused(String),
+}
+
+/// What a program wrote to one stream.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Captured {
+    /// The first bytes, up to the limit. They are the program's words: escape them before they are shown.
+    pub bytes: Vec<u8>,
+    /// Whether there was more.
+    pub truncated: bool,
+}
+
+/// Everything about one run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Outcome {
+    /// How it ended.
+    pub ended: Ended,
+    /// Processor time, user and system, of the whole tree.
+    pub cpu: Duration,
+    /// Time on the clock, without the time that the program waited for the reader of its trace.
+    pub wall: Duration,
+    /// Peak of the resident memory in bytes.
+    pub peak_memory: u64,
+    /// Bytes written: both streams, the trace pipe, and what the working folder holds beyond what was there before.
+    pub bytes_written: u64,
+    /// Standard output.
+    pub stdout: Captured,
+    /// Standard error.
+    pub stderr: Captured,
+    /// The layers that were active; a report states those that were not.
+    pub layers: Arc<[LayerReport]>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ending_reads_as_a_sentence_about_the_program() {
+        assert_eq!(
+            Ended::Signalled(libc::SIGSEGV).to_string(),
+            "ended by signal 11 (SIGSEGV: it used memory that is not its own)"
+        );
+        assert_eq!(Ended::OutputLimit(Stream::Trace).to_string(), "wrote more than allowed to the trace");
+        assert_eq!(
+            Ended::CouldNotStart(StartProblem::NotExecutable).to_string(),
+            "could not start: the file is not executable; if it is the program, run chmod +x on it"
+        );
+    }
+}

@@ -1,0 +1,121 @@
+//! The grader's own files, which no program that it runs may read or execute.
+//!
+//! They hold the answers: the grader computes the original's traces, and the sample is a right submission. Landlock
+//! only ever allows, so that a folder with such a file in it is allowed entry by entry.
+
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+/// How the name of the sample begins.
+const SAMPLE: &str = "fosssim-sample";
+/// How the names of the grader's programs begin.
+const NAMES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
+/// Where they are usually installed.
+const FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
+
+/// Whether the file's name is one of the grader's programs.
+pub(super) fn is_name(path: &Path) -> bool {
+    let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
+    NAMES.iter().any(|own| name.starts_with(own))
+}
+
+/// The resolved paths of this very program, of its siblings beside it, and of those that are installed.
+pub(super) fn files() -> Vec<PathBuf> {
+    let this = std::fs::read_link("/proc/self/exe").ok();
+    let beside = this.as_deref().and_then(Path::parent).map(Path::to_path_buf);
+    let installed = FOLDERS.into_iter().map(PathBuf::from).chain(beside);
+    let entries = installed.flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let named = entries.map(|entry| entry.path()).filter(|path| is_name(path));
+    let mut files: Vec<PathBuf> = named.chain(this).filter_map(|path| path.canonicalize().ok()).collect();
+    files.sort();
+    files.dedup();
+    files
+}
+
+/// Whether a file of this length and digest is one of the grader's own programs. The sample may be graded where it lies
+/// (`itself`), to show that all works; a copy of it, or the grader in any form, is nobody's submission.
+#[must_use]
+pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
+    files().into_iter().any(|path| {
+        let Ok(metadata) = path.metadata() else { return false };
+        let sample = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(SAMPLE));
+        // What it is called matters less than what it does: the grader answers to other names, too.
+        let shown = sample && (metadata.dev(), metadata.ino()) == itself;
+        metadata.len() == length && !shown && digest_of(&path).is_some_and(|own| own == *digest)
+    })
+}
+
+fn digest_of(path: &Path) -> Option<blake3::Hash> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(path).ok()?).ok()?;
+    Some(hasher.finalize())
+}
+
+/// A path that may be allowed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Allowed {
+    /// With all that lies beneath it.
+    Whole(PathBuf),
+    /// A folder that may only be listed, with all beneath it.
+    Listing(PathBuf),
+}
+
+/// What to allow so that everything at and beneath `path` is allowed except the files `own` (resolved paths).
+///
+/// Links beneath a folder that is split are left out: what they lead to is allowed where it lies, or not at all.
+pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<Allowed> {
+    let Ok(path) = path.canonicalize() else { return Vec::new() };
+    let mut allowed = Vec::new();
+    let mut left = vec![path];
+    while let Some(path) = left.pop() {
+        if own.contains(&path) {
+            continue;
+        }
+        if !own.iter().any(|own| own.starts_with(&path)) {
+            allowed.push(Allowed::Whole(path));
+            continue;
+        }
+        let entries = std::fs::read_dir(&path).into_iter().flatten().flatten();
+        let real = entries.filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
+        left.extend(real.map(|entry| entry.path()));
+        allowed.push(Allowed::Listing(path));
+    }
+    allowed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_around_the_graders_file_is_allowed_and_not_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().canonicalize().unwrap();
+        std::fs::create_dir_all(root.join("local/bin")).unwrap();
+        std::fs::create_dir_all(root.join("lib/gcc")).unwrap();
+        for name in ["local/bin/fosssim-oracle", "local/bin/python3", "lib/gcc/cc1"] {
+            std::fs::write(root.join(name), "").unwrap();
+        }
+        std::os::unix::fs::symlink("fosssim-oracle", root.join("local/bin/innocent")).unwrap();
+        let own = [root.join("local/bin/fosssim-oracle")];
+        let whole: Vec<PathBuf> = around(&root, &own)
+            .into_iter()
+            .filter_map(|allowed| match allowed {
+                Allowed::Whole(path) => Some(path),
+                Allowed::Listing(_) => None,
+            })
+            .collect();
+        assert_eq!(whole.len(), 2, "{whole:?}");
+        assert!(whole.contains(&root.join("lib")) && whole.contains(&root.join("local/bin/python3")));
+        assert_eq!(around(&own[0], &own), []);
+        assert_eq!(around(&root.join("lib"), &own), [Allowed::Whole(root.join("lib"))]);
+    }
+
+    #[test]
+    fn this_program_is_among_the_graders_files() {
+        let this = std::fs::read_link("/proc/self/exe").unwrap().canonicalize().unwrap();
+        assert!(files().contains(&this));
+        assert!(is_name(Path::new("/x/FOSSSimOracle2")) && is_name(Path::new("fosssim-sample.pp-no-two")));
+        assert!(!is_name(Path::new("/x/FOSSSim")) && !is_name(Path::new("python3")));
+    }
+}

@@ -1,0 +1,465 @@
+//! What kind of program a file is, read from its first bytes before anything is executed.
+//!
+//! The kernel's own answers are poor ("no such file or directory" for a missing loader, "exec format error" for a
+//! foreign processor), so the headers are read here: ELF class, machine, type, interpreter and the names in the
+//! dynamic string table. Every offset in a file is distrusted.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::path::{Path, PathBuf};
+
+use super::outcome::StartProblem;
+use super::own;
+
+const ELF_MAGIC: &[u8] = b"\x7fELF";
+const PT_LOAD: u32 = 1;
+const PT_DYNAMIC: u32 = 2;
+const PT_INTERP: u32 = 3;
+const DT_STRTAB: u64 = 5;
+const DT_STRSZ: u64 = 10;
+/// Names that the runtimes of the address, thread and memory sanitisers define.
+const SANITISER_NAMES: [&[u8]; 4] = [b"__asan_init", b"__tsan_init", b"__msan_init", b"libasan.so"];
+/// No header, path or table of a sane program is longer than these.
+const LONGEST_PATH: u64 = 4096;
+const LONGEST_TABLE: u64 = 16 << 20;
+/// Where the system keeps the programs that a script may name, in the order of the sandbox's `PATH`.
+const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
+/// Where the system keeps loaders, and interpreters that are linked from the folders of programs.
+const LIBRARIES: [&str; 8] =
+    ["/lib", "/lib32", "/lib64", "/libx32", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/libexec"];
+
+/// What the sandbox must know of a program before it starts it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Program {
+    /// Loaders and interpreters that the kernel executes on the way to it.
+    pub(super) executable: Vec<PathBuf>,
+    /// The same under the names by which they are asked for, which may be links.
+    pub(super) named: Vec<PathBuf>,
+    /// How a script is run.
+    pub(super) script: Option<Script>,
+    /// Whether it carries a sanitiser, which reserves terabytes of address space.
+    pub(super) sanitised: bool,
+}
+
+/// The program that reads a script, as the kernel and `env` would find it. It is executed in their place, so that a script
+/// needs no execution but the one that starts it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Script {
+    /// The interpreter's file.
+    pub(super) interpreter: PathBuf,
+    /// Its name for itself, and its arguments before the script.
+    pub(super) words: Vec<String>,
+    /// Variables that the first line sets.
+    pub(super) environment: Vec<(String, String)>,
+}
+
+/// Looks at the file at `path`, following symbolic links. `own` are the grader's own programs, which are never run as
+/// a submission, an interpreter or a loader.
+///
+/// # Errors
+///
+/// The reason why it cannot be started on this machine.
+pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProblem> {
+    let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::PermissionDenied => StartProblem::NotPermitted,
+        _ => StartProblem::NotFound,
+    })?;
+    if metadata.is_dir() {
+        return Err(StartProblem::IsFolder);
+    }
+    if !metadata.is_file() {
+        return Err(StartProblem::NotAFile);
+    }
+    if is_one_of(path, own) {
+        return Err(StartProblem::GradersOwn);
+    }
+    if metadata.permissions().mode() & 0o111 == 0 {
+        return Err(StartProblem::NotExecutable);
+    }
+    // A program that may be executed and not read would also be closed to the supervisor's looks.
+    let mut file = File::open(path).map_err(|_| StartProblem::NotPermitted)?;
+    let start = read_at(&mut file, 0, 256).unwrap_or_default();
+    if start.starts_with(ELF_MAGIC) {
+        elf(&mut file, &start, own)
+    } else if let Some(line) = start.strip_prefix(b"#!") {
+        script(line, own)
+    } else {
+        Err(StartProblem::NotAProgram)
+    }
+}
+
+/// The way to a script's interpreter, given its first line without `#!`.
+///
+/// Whatever is named here becomes executable for the submission. So it must be one of the system's own programs, after
+/// all links and `..` are resolved: a script that names the grader's program would be graded by its own answers.
+fn script(line: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
+    interpreted(line, own, 0)
+}
+
+fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
+    /// An interpreter may be a script itself; the kernel, too, follows so many.
+    const DEEPEST: u32 = 4;
+    let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
+    let hint = if line.ends_with('\r') {
+        " (its lines end in CR LF: convert them with dos2unix)"
+    } else {
+        "; install it, or name another one"
+    };
+    let missing =
+        |name: &str, hint| StartProblem::MissingInterpreter { interpreter: name.escape_default().to_string(), hint };
+    let line = line.trim();
+    let (interpreter, rest) =
+        line.split_once(char::is_whitespace).map_or((line, ""), |(name, rest)| (name, rest.trim()));
+    if interpreter.is_empty() {
+        return Err(StartProblem::NoInterpreter);
+    }
+    let mut found = existing(Path::new(interpreter)).ok_or_else(|| missing(interpreter, hint))?;
+    let folders = || PROGRAMS.into_iter().chain(LIBRARIES);
+    let mut resolved = systems(&found, folders(), own)?;
+    let mut script = Script { words: vec![interpreter.to_owned()], ..Script::default() };
+    if interpreter.ends_with("/env") {
+        let (name, arguments) = by_env(rest, &mut script.environment)?;
+        if name.contains('/') {
+            return Err(StartProblem::NotTheSystems { path: name.escape_default().to_string() });
+        }
+        if name.starts_with('-') {
+            return Err(missing(&name, "; of the options of env only -S is known here"));
+        }
+        let place = PROGRAMS.iter().find_map(|folder| existing(&Path::new(folder).join(&name)));
+        found = place.ok_or_else(|| missing(&name, hint))?;
+        resolved = systems(&found, folders(), own)?;
+        script.words = [vec![name], arguments].concat();
+    } else if !rest.is_empty() {
+        script.words.push(rest.to_owned());
+    }
+    let mut file = File::open(&resolved).map_err(|_| StartProblem::NotPermitted)?;
+    let start = read_at(&mut file, 0, 256).unwrap_or_default();
+    let mut program = match start.strip_prefix(b"#!") {
+        Some(line) if depth < DEEPEST => {
+            let outer = interpreted(line, own, depth + 1)?;
+            let inner = std::mem::take(&mut script.words);
+            let by = outer.script.clone().unwrap_or_default();
+            script.words = [by.words, vec![found.to_string_lossy().into_owned()], inner[1..].to_vec()].concat();
+            script.environment.extend(by.environment);
+            script.interpreter = by.interpreter;
+            outer
+        }
+        _ => {
+            script.interpreter.clone_from(&found);
+            if start.starts_with(ELF_MAGIC) { elf(&mut file, &start, own)? } else { Program::default() }
+        }
+    };
+    program.executable.insert(0, resolved);
+    program.named.insert(0, found);
+    Ok(Program { script: Some(script), sanitised: false, ..program })
+}
+
+/// The command that `env` would look up, with its arguments, given what follows `env` in a script's first line.
+fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String, Vec<String>), StartProblem> {
+    // Without -S the kernel passes all that follows as one word.
+    let Some(split) = rest.strip_prefix("-S").or_else(|| rest.strip_prefix("--split-string=")) else {
+        return match rest {
+            "" => Err(StartProblem::NoInterpreter),
+            name => Ok((name.to_owned(), Vec::new())),
+        };
+    };
+    let mut words = split.split_whitespace().peekable();
+    while let Some((name, value)) = words.peek().and_then(|word| word.split_once('=')) {
+        environment.push((name.to_owned(), value.to_owned()));
+        words.next();
+    }
+    let name = words.next().ok_or(StartProblem::NoInterpreter)?;
+    Ok((name.to_owned(), words.map(str::to_owned).collect()))
+}
+
+fn existing(path: &Path) -> Option<PathBuf> {
+    path.is_file().then(|| path.to_path_buf())
+}
+
+/// The resolved path of a loader or an interpreter, which must be the system's: beneath one of `folders`, and not the
+/// grader's.
+fn systems(
+    path: &Path,
+    mut folders: impl Iterator<Item = &'static str>,
+    own: &[PathBuf],
+) -> Result<PathBuf, StartProblem> {
+    let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
+    // A relative path would be looked up in the program's folder, and one in /proc means whoever looks.
+    let resolved = path.canonicalize().map_err(|_| refused())?;
+    let beneath = |folder: &str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
+    // What every user may execute. A file that its owner keeps to himself would be refused only when it is too late.
+    const EXECUTE: u32 = 0o001;
+    let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE != 0);
+    if !resolved.ancestors().all(open) {
+        return Err(refused());
+    }
+    let named = [path, &resolved].into_iter().any(own::is_name);
+    if !path.is_absolute() || path.starts_with("/proc") || named || is_one_of(&resolved, own) || !folders.any(beneath) {
+        return Err(refused());
+    }
+    Ok(resolved)
+}
+
+/// Whether the path leads to one of these files, whatever its name.
+fn is_one_of(path: &Path, own: &[PathBuf]) -> bool {
+    let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
+    let here = identity(path);
+    here.is_some() && own.iter().any(|own| identity(own) == here)
+}
+
+/// The facts of an ELF file whose first bytes are `start`.
+fn elf(file: &mut File, start: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
+    if start.get(4) == Some(&1) {
+        return Err(StartProblem::ThirtyTwoBit);
+    }
+    let half =
+        |offset: usize| start.get(offset..offset + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+    let (machine, here) = (half(18), this_machine());
+    if start.get(5) != Some(&1) || machine != here {
+        return Err(StartProblem::WrongMachine { machine: machine_name(machine), here: std::env::consts::ARCH });
+    }
+    match half(16) {
+        2 | 3 => {}
+        1 => return Err(StartProblem::NotLinked { what: "an object file" }),
+        4 => return Err(StartProblem::NotLinked { what: "a core dump" }),
+        _ => return Err(StartProblem::NotAProgram),
+    }
+    let mut program = Program::default();
+    let segments = segments(file, start);
+    if let Some(interpreter) = segments.iter().find(|segment| segment.kind == PT_INTERP) {
+        let bytes = read_at(file, interpreter.offset, interpreter.size.min(LONGEST_PATH)).unwrap_or_default();
+        let text = String::from_utf8_lossy(bytes.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned();
+        let loader = PathBuf::from(&text);
+        if !loader.is_file() {
+            return Err(StartProblem::MissingLoader { loader: text.escape_default().to_string() });
+        }
+        program.executable.push(systems(&loader, LIBRARIES.into_iter(), own)?);
+        program.named.push(loader);
+    }
+    program.sanitised =
+        dynamic_names(file, &segments).is_some_and(|table| SANITISER_NAMES.iter().any(|name| contains(&table, name)));
+    Ok(program)
+}
+
+/// A segment of the program header table.
+struct Segment {
+    kind: u32,
+    offset: u64,
+    address: u64,
+    size: u64,
+}
+
+fn segments(file: &mut File, start: &[u8]) -> Vec<Segment> {
+    let Some(offset) = word(start, 32) else { return Vec::new() };
+    let count = start.get(56..58).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+    let table = read_at(file, offset, u64::from(count.min(256)) * 56).unwrap_or_default();
+    let segment = |entry: &[u8]| {
+        let kind = u32::from_le_bytes(entry.get(..4)?.try_into().ok()?);
+        Some(Segment { kind, offset: word(entry, 8)?, address: word(entry, 16)?, size: word(entry, 32)? })
+    };
+    table.chunks_exact(56).filter_map(segment).collect()
+}
+
+/// The string table of the dynamic section: names of libraries and of symbols that are looked up at run time.
+fn dynamic_names(file: &mut File, segments: &[Segment]) -> Option<Vec<u8>> {
+    let dynamic = segments.iter().find(|segment| segment.kind == PT_DYNAMIC)?;
+    let entries = read_at(file, dynamic.offset, dynamic.size.min(LONGEST_TABLE))?;
+    let value = |tag: u64| entries.chunks_exact(16).find(|entry| word(entry, 0) == Some(tag)).and_then(|e| word(e, 8));
+    let (address, size) = (value(DT_STRTAB)?, value(DT_STRSZ)?);
+    let holds = |segment: &&Segment| {
+        segment.kind == PT_LOAD && address >= segment.address && address - segment.address < segment.size
+    };
+    let load = segments.iter().find(holds)?;
+    read_at(file, load.offset.checked_add(address - load.address)?, size.min(LONGEST_TABLE))
+}
+
+fn word(bytes: &[u8], offset: usize) -> Option<u64> {
+    Some(u64::from_le_bytes(bytes.get(offset..offset + 8)?.try_into().ok()?))
+}
+
+/// Up to `length` bytes at `offset`; fewer at the end of the file.
+fn read_at(file: &mut File, offset: u64, length: u64) -> Option<Vec<u8>> {
+    file.seek(SeekFrom::Start(offset)).ok()?;
+    let mut bytes = Vec::new();
+    file.take(length).read_to_end(&mut bytes).ok()?;
+    Some(bytes)
+}
+
+fn contains(table: &[u8], name: &[u8]) -> bool {
+    table.windows(name.len()).any(|window| window == name)
+}
+
+fn this_machine() -> u16 {
+    match std::env::consts::ARCH {
+        "aarch64" => 183,
+        "riscv64" => 243,
+        _ => 62,
+    }
+}
+
+fn machine_name(machine: u16) -> String {
+    match machine {
+        3 => "x86 (32 bits)".into(),
+        8 => "MIPS".into(),
+        21 => "PowerPC".into(),
+        22 => "S/390".into(),
+        40 => "ARM (32 bits)".into(),
+        62 => "x86_64".into(),
+        183 => "aarch64 (64-bit ARM)".into(),
+        243 => "RISC-V".into(),
+        other => format!("another processor (ELF machine {other})"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(name: &str, bytes: &[u8], mode: u32) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
+        (folder, path)
+    }
+
+    fn header(class: u8, kind: u8, machine: u8) -> Vec<u8> {
+        let mut bytes = b"\x7fELF\x02\x01\x01".to_vec();
+        bytes.resize(64, 0);
+        (bytes[4], bytes[16], bytes[18]) = (class, kind, machine);
+        bytes
+    }
+
+    #[test]
+    fn what_is_not_a_program_is_said_to_be_what_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(examine(folder.path(), &[]), Err(StartProblem::IsFolder));
+        assert_eq!(examine(&folder.path().join("none"), &[]), Err(StartProblem::NotFound));
+        assert_eq!(examine(Path::new("/dev/null"), &[]), Err(StartProblem::NotAFile));
+        let (_kept, path) = written("a", b"#!/bin/sh\n", 0o644);
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotExecutable));
+        let (_kept, path) = written("a", b"hello", 0o755);
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotAProgram));
+        let (_kept, path) = written("a", b"", 0o755);
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotAProgram));
+    }
+
+    #[test]
+    fn foreign_and_unlinked_files_are_named() {
+        let here = this_machine() as u8;
+        let (_kept, path) = written("a", &header(1, 2, 3), 0o755);
+        assert_eq!(examine(&path, &[]), Err(StartProblem::ThirtyTwoBit));
+        let (_kept, path) = written("a", &header(2, 2, 21), 0o755);
+        assert!(matches!(examine(&path, &[]), Err(StartProblem::WrongMachine { machine, .. }) if machine == "PowerPC"));
+        let (_kept, path) = written("a", &header(2, 1, here), 0o755);
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotLinked { what: "an object file" }));
+        let (_kept, path) = written("a", &header(2, 2, here), 0o755);
+        assert_eq!(
+            examine(&path, &[]),
+            Ok(Program::default()),
+            "a static program without segments is the kernel's matter"
+        );
+    }
+
+    #[test]
+    fn offsets_out_of_the_file_are_harmless() {
+        let mut bytes = header(2, 3, this_machine() as u8);
+        bytes[32..40].copy_from_slice(&u64::MAX.to_le_bytes());
+        bytes[56..58].copy_from_slice(&u16::MAX.to_le_bytes());
+        let (_kept, path) = written("a", &bytes, 0o755);
+        assert_eq!(examine(&path, &[]), Ok(Program::default()));
+    }
+
+    #[test]
+    fn scripts_name_their_interpreter() {
+        let (_kept, path) = written("a", b"#!\n", 0o755);
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NoInterpreter));
+        let (_kept, path) = written("a", b"#!/no/such/shell -e\n", 0o755);
+        assert!(
+            matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { interpreter, .. }) if interpreter == "/no/such/shell")
+        );
+        let (_kept, path) = written("a", b"#!/no/such/shell\r\n", 0o755);
+        assert!(
+            matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { hint, .. }) if hint.contains("dos2unix"))
+        );
+        let (_kept, path) = written("a", b"#! /bin/sh -e\n", 0o755);
+        let program = examine(&path, &[]).unwrap();
+        assert!(program.executable[0] == Path::new("/bin/sh").canonicalize().unwrap());
+        let script = program.script.unwrap();
+        assert_eq!(
+            (script.interpreter.as_path(), script.words),
+            (Path::new("/bin/sh"), vec!["/bin/sh".into(), "-e".into()])
+        );
+    }
+
+    #[test]
+    fn env_is_read_and_not_executed() {
+        let script = |line: &str| {
+            let (_kept, path) = written("a", line.as_bytes(), 0o755);
+            examine(&path, &[]).map(|program| program.script.unwrap())
+        };
+        let found = script("#!/usr/bin/env sh\n").unwrap();
+        assert!(found.interpreter.ends_with("sh") && found.words == ["sh"] && found.environment.is_empty());
+        let found = script("#! /usr/bin/env -S A=1 B= sh -e -u \n").unwrap();
+        assert_eq!(found.words, ["sh", "-e", "-u"]);
+        assert_eq!(found.environment, [("A".into(), "1".into()), ("B".into(), String::new())]);
+        assert!(matches!(script("#!/usr/bin/env -i sh\n"), Err(StartProblem::MissingInterpreter { .. })));
+        assert!(matches!(script("#!/usr/bin/env sh -e\n"), Err(StartProblem::MissingInterpreter { .. })));
+        assert_eq!(script("#!/usr/bin/env\n"), Err(StartProblem::NoInterpreter));
+    }
+
+    #[test]
+    fn a_loader_that_nobody_may_execute_is_the_programs_fault_from_the_start() {
+        let (_kept, path) = written("a", b"#!/usr/lib/os-release\n", 0o755);
+        let found = examine(&path, &[]);
+        assert!(matches!(found, Err(StartProblem::NotTheSystems { .. } | StartProblem::MissingInterpreter { .. })));
+    }
+
+    #[test]
+    fn only_the_systems_own_interpreters_and_loaders_are_executed() {
+        let (_kept, foreign) = written("shell", b"", 0o755);
+        std::fs::copy("/bin/sh", &foreign).unwrap();
+        let foreign = foreign.canonicalize().unwrap();
+        let path = foreign.display();
+        for line in [
+            format!("#!{path}\n"),
+            format!("#!/usr/bin/../..{path}\n"),
+            format!("#!/usr/bin/env {path}\n"),
+            format!("#!/usr/bin/env -S {path} original --\n"),
+            format!("#!/usr/bin/env -S../..{path} original\n"),
+            format!("#!/usr/bin/env -S A=1 {path} original\n"),
+            "#!/proc/self/exe\n".into(),
+            "#!/proc/thread-self/root/bin/sh\n".into(),
+        ] {
+            let (_kept, script) = written("a", line.as_bytes(), 0o755);
+            assert!(matches!(examine(&script, &[]), Err(StartProblem::NotTheSystems { .. })), "{line}");
+        }
+        let mut program = header(2, 3, this_machine() as u8);
+        let loader = format!("{path}\0");
+        (program[32], program[56]) = (64, 1);
+        program.extend(PT_INTERP.to_le_bytes());
+        program.extend([0; 4]);
+        for word in [120, 0, 0, loader.len() as u64, loader.len() as u64, 1] {
+            program.extend(word.to_le_bytes());
+        }
+        program.extend(loader.as_bytes());
+        let (_kept, program) = written("a", &program, 0o755);
+        assert_eq!(examine(&program, &[]), Err(StartProblem::NotTheSystems { path: path.to_string() }));
+    }
+
+    #[test]
+    fn the_graders_own_file_is_nobodys_program_whatever_its_name() {
+        let own = [Path::new("/bin/sh").canonicalize().unwrap()];
+        let (_kept, script) = written("a", b"#!/bin/sh\n", 0o755);
+        assert!(matches!(examine(&script, &own), Err(StartProblem::NotTheSystems { .. })));
+        assert_eq!(examine(Path::new("/bin/sh"), &own), Err(StartProblem::GradersOwn));
+    }
+
+    #[test]
+    fn a_dynamic_program_brings_its_loader() {
+        let program = examine(Path::new("/bin/sh"), &[]).unwrap();
+        assert!(program.script.is_none() && !program.sanitised);
+        assert!(program.executable.iter().all(|loader| loader.is_file()));
+    }
+}

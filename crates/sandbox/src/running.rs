@@ -1,0 +1,253 @@
+//! A program at work: its trace as it is written, the means to stop it, and its outcome.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::process::{Child, ChildStdin};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use super::backend::{SandboxError, lost, set_up_failed};
+use super::decide;
+use super::layers::LayerReport;
+use super::outcome::{Captured, Outcome};
+use super::supervisor::processes;
+use super::wire::{self, COMMAND_CANCEL, COMMAND_TRACE_LIMIT, Event, Order};
+
+/// The way to the supervisor; gone when the run is over.
+type Control = Arc<Mutex<Option<ChildStdin>>>;
+
+fn command(control: &Control, command: u8) {
+    let mut control = control.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(stdin) = control.as_mut() {
+        // A supervisor that has ended needs no command.
+        let _ = stdin.write_all(&[command]);
+    }
+}
+
+/// A program at work. Dropped, it is stopped, and the drop waits until every process is dead.
+#[derive(Debug)]
+pub struct Running {
+    state: State,
+    trace: Option<TraceReader>,
+    traced: Arc<AtomicU64>,
+    canceller: Canceller,
+}
+
+#[derive(Debug)]
+enum State {
+    /// Under a supervisor.
+    Supervised(Box<Supervised>),
+    /// Known already.
+    Known(Box<Outcome>),
+    /// Handed out.
+    Taken,
+}
+
+#[derive(Debug)]
+struct Supervised {
+    child: Child,
+    session: Option<i32>,
+    user: Option<u32>,
+    order: Order,
+    layers: Arc<[LayerReport]>,
+}
+
+impl Running {
+    /// A run whose supervisor has said that it is ready.
+    pub(super) fn new(
+        mut child: Child,
+        session: Option<i32>,
+        user: Option<u32>,
+        order: Order,
+        trace: Option<File>,
+        trace_bytes: u64,
+        layers: Arc<[LayerReport]>,
+    ) -> Self {
+        let control = Arc::new(Mutex::new(child.stdin.take()));
+        let traced = Arc::new(AtomicU64::new(0));
+        let trace = trace.map(|file| TraceReader {
+            source: Source::Pipe(file),
+            limit: trace_bytes,
+            traced: traced.clone(),
+            control: control.clone(),
+        });
+        let supervised = Supervised { child, session, user, order, layers };
+        Self { state: State::Supervised(Box::new(supervised)), trace, traced, canceller: Canceller { control } }
+    }
+
+    /// A run whose outcome is known already.
+    pub(super) fn known(outcome: Outcome, trace: Option<Vec<u8>>, trace_bytes: u64) -> Self {
+        let control = Control::default();
+        let traced = Arc::new(AtomicU64::new(0));
+        let trace = trace.map(|bytes| TraceReader {
+            source: Source::Bytes(io::Cursor::new(bytes)),
+            limit: trace_bytes,
+            traced: traced.clone(),
+            control: control.clone(),
+        });
+        Self { state: State::Known(Box::new(outcome)), trace, traced, canceller: Canceller { control } }
+    }
+
+    /// The bytes that the program writes into its trace pipe; `None` without one, and from the second call on.
+    ///
+    /// The program waits while nobody reads and the pipe is full; its clock stands still then, within bounds
+    /// ([`Limits::PATIENCE`](super::Limits::PATIENCE)). A reader that is dropped before the end makes the program's next
+    /// write fail (`SIGPIPE`).
+    pub fn trace(&mut self) -> Option<TraceReader> {
+        self.trace.take()
+    }
+
+    /// A handle that stops the program, for other threads and for Ctrl-C.
+    #[must_use]
+    pub fn canceller(&self) -> Canceller {
+        self.canceller.clone()
+    }
+
+    /// Waits until the program and all that it started are dead. A trace that nobody has asked for is read and counted.
+    ///
+    /// # Errors
+    ///
+    /// Faults of ours or of the host.
+    pub fn wait(mut self) -> Result<Outcome, SandboxError> {
+        if let Some(mut trace) = self.trace.take() {
+            // Its only error is the one that ends the program as well.
+            let _ = io::copy(&mut trace, &mut io::sink());
+        }
+        match std::mem::replace(&mut self.state, State::Taken) {
+            State::Supervised(supervised) => self.conclude(*supervised),
+            State::Known(outcome) => Ok(*outcome),
+            State::Taken => unreachable!("`wait` takes the run by value"),
+        }
+    }
+
+    fn conclude(&self, mut supervised: Supervised) -> Result<Outcome, SandboxError> {
+        let answer = receive(&mut supervised.child);
+        // Nobody commands a supervisor that has reported.
+        drop(self.canceller.control.lock().unwrap_or_else(PoisonError::into_inner).take());
+        let (event, stdout, stderr) = match answer {
+            Ok(answer) => answer,
+            Err(_) => {
+                let error = lost(supervised.child);
+                processes::end_orphans(supervised.session, supervised.user);
+                return Err(error);
+            }
+        };
+        // It ends by itself after its report; how, no longer matters.
+        let _ = supervised.child.wait();
+        let report = match event {
+            Event::Done(report) => report,
+            Event::Failed(failure) => return Err(set_up_failed(failure)),
+            Event::Ready { .. } => return Err(SandboxError::Lost { how: "it spoke out of turn".into() }),
+        };
+        if report.survivors > 0 {
+            return Err(SandboxError::Survivors { count: report.survivors });
+        }
+        if let Some(errno @ (libc::EACCES | libc::EPERM | libc::ENOENT)) = report.exec_errno {
+            // Program and loader were there and executable a moment ago.
+            let program = wire::path(&supervised.order.program).display().to_string();
+            return Err(SandboxError::NotExecuted { program, source: io::Error::from_raw_os_error(errno) });
+        }
+        let traced = self.traced.load(Ordering::Relaxed);
+        Ok(Outcome {
+            ended: decide::ended(&supervised.order, &report, &stderr),
+            cpu: Duration::from_micros(report.cpu_micros),
+            wall: Duration::from_micros(report.wall_micros),
+            peak_memory: report.peak_memory,
+            bytes_written: report.stdout_bytes + report.stderr_bytes + report.folder_growth + traced,
+            stdout: Captured { bytes: stdout, truncated: report.stdout_truncated },
+            stderr: Captured { bytes: stderr, truncated: report.stderr_truncated },
+            layers: supervised.layers,
+        })
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let State::Supervised(supervised) = std::mem::replace(&mut self.state, State::Taken) {
+            self.canceller.cancel();
+            // The program must not wait for a reader that never comes.
+            self.trace = None;
+            // Stopped by us: what it did no longer matters.
+            let _ = self.conclude(*supervised);
+        }
+    }
+}
+
+/// The supervisor's last message and the captured bytes behind it.
+fn receive(child: &mut Child) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
+    let stdout = child.stdout.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;
+    let event = wire::receive(&mut *stdout)?;
+    let mut bytes = |length: u64| -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        let read = (&mut *stdout).take(length).read_to_end(&mut bytes)?;
+        if read as u64 == length { Ok(bytes) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
+    };
+    let (first, second) = match &event {
+        Event::Done(report) => (bytes(report.stdout_bytes)?, bytes(report.stderr_bytes)?),
+        _ => Default::default(),
+    };
+    Ok((event, first, second))
+}
+
+/// Stops a program; harmless when it has ended.
+#[derive(Debug, Clone)]
+pub struct Canceller {
+    control: Control,
+}
+
+impl Canceller {
+    /// Has the program and all that it started killed; [`Running::wait`] then says `Cancelled`.
+    pub fn cancel(&self) {
+        command(&self.control, COMMAND_CANCEL);
+    }
+}
+
+/// The trace is longer than the limit; wrapped in the [`io::Error`] of the read that noticed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the trace is longer than {limit} bytes, the limit for this run")]
+pub struct TraceTooLong {
+    /// The limit in bytes.
+    pub limit: u64,
+}
+
+/// The bytes of the trace as the program writes them. Reads wait for the program; the end comes when it is dead.
+#[derive(Debug)]
+pub struct TraceReader {
+    source: Source,
+    limit: u64,
+    traced: Arc<AtomicU64>,
+    control: Control,
+}
+
+#[derive(Debug)]
+enum Source {
+    Pipe(File),
+    Bytes(io::Cursor<Vec<u8>>),
+}
+
+impl Read for TraceReader {
+    /// Reads on. An error that holds [`TraceTooLong`] comes instead of the first byte beyond the limit, for good, and
+    /// the program is stopped.
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let before = self.traced.load(Ordering::Relaxed);
+        if before > self.limit {
+            return Err(io::Error::other(TraceTooLong { limit: self.limit }));
+        }
+        let length = match &mut self.source {
+            Source::Pipe(file) => file.read(buffer)?,
+            Source::Bytes(bytes) => bytes.read(buffer)?,
+        };
+        let after = before + length as u64;
+        self.traced.store(after, Ordering::Relaxed);
+        if after <= self.limit {
+            return Ok(length);
+        }
+        command(&self.control, COMMAND_TRACE_LIMIT);
+        match usize::try_from(self.limit - before) {
+            // What still belongs to the trace is delivered; the next read says why there is no more.
+            Ok(rest) if rest > 0 => Ok(rest),
+            _ => Err(io::Error::other(TraceTooLong { limit: self.limit })),
+        }
+    }
+}

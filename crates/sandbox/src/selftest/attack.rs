@@ -1,0 +1,152 @@
+//! The head of an attack's source: what it proves and how it must end.
+//!
+//! The first lines of the C file are comments of the form `// key: value`. `promise` and `expect` are required;
+//! `policy`, `wall` (milliseconds), `needs`, `leaves` and `pipe` are not.
+
+use std::time::Duration;
+
+use crate::job::Policy;
+use crate::outcome::{Ended, Stream};
+
+/// What an attack needs of the machine to prove anything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Need {
+    FileRules,
+    /// Files of the host are closed to programs, or out of sight.
+    HiddenFiles,
+    SignalScope,
+    NamedCalls,
+    X86,
+}
+
+impl Need {
+    const ALL: [Self; 5] = [Self::FileRules, Self::HiddenFiles, Self::SignalScope, Self::NamedCalls, Self::X86];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::FileRules => "file rules",
+            Self::HiddenFiles => "hidden files",
+            Self::SignalScope => "signal scope",
+            Self::NamedCalls => "named violations",
+            Self::X86 => "x86_64",
+        }
+    }
+}
+
+/// One way in which the run may end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Expected {
+    kind: String,
+    detail: Option<String>,
+}
+
+impl Expected {
+    /// Whether the run ended in this way.
+    pub(super) fn matches(&self, ended: &Ended) -> bool {
+        let detail = match ended {
+            Ended::Exited(code) => code.to_string(),
+            Ended::Signalled(signal) => signal.to_string(),
+            Ended::OutputLimit(Stream::Stdout) => "stdout".into(),
+            Ended::OutputLimit(Stream::Stderr) => "stderr".into(),
+            Ended::OutputLimit(Stream::Trace) => "trace".into(),
+            // The call's name comes first; where calls cannot be named, any violation will do.
+            Ended::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
+            Ended::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
+            _ => String::new(),
+        };
+        self.kind == ended.kind() && self.detail.as_ref().is_none_or(|expected| *expected == detail)
+    }
+}
+
+/// One hostile program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Attack {
+    pub(super) name: String,
+    pub(super) promise: String,
+    pub(super) expected: Vec<Expected>,
+    pub(super) policy: Policy,
+    pub(super) wall: Option<Duration>,
+    pub(super) needs: Vec<Need>,
+    /// What must be collected as `trace.bin`: `nothing`, `refused`, or this text.
+    pub(super) leaves: Option<String>,
+    /// Whether the trace is a pipe, and how many bytes must come through it.
+    pub(super) pipe: Option<Option<usize>>,
+}
+
+impl Attack {
+    /// Whether the run must end with a forbidden call.
+    pub(super) fn expects_violation(&self) -> bool {
+        self.expected.iter().any(|expected| expected.kind == "violation")
+    }
+
+    /// Reads the head of a source.
+    pub(super) fn parse(name: &str, source: &str) -> Result<Self, String> {
+        let mut attack = Self {
+            name: name.into(),
+            promise: String::new(),
+            expected: Vec::new(),
+            policy: Policy::Submission,
+            wall: None,
+            needs: Vec::new(),
+            leaves: None,
+            pipe: None,
+        };
+        for line in source.lines().map_while(|line| line.strip_prefix("// ")) {
+            let (key, value) = line.split_once(": ").ok_or_else(|| format!("no key in: {line}"))?;
+            match key {
+                "promise" => attack.promise = value.into(),
+                "expect" => attack.expected = value.split(" or ").map(expected).collect(),
+                "policy" if value == "tools" => attack.policy = Policy::Tools,
+                "wall" => {
+                    let milliseconds = value.parse().map_err(|_| format!("no number: {value}"))?;
+                    attack.wall = Some(Duration::from_millis(milliseconds));
+                }
+                "needs" => {
+                    let need = Need::ALL.into_iter().find(|need| need.name() == value);
+                    attack.needs.push(need.ok_or_else(|| format!("unknown need: {value}"))?);
+                }
+                "leaves" => attack.leaves = Some(value.into()),
+                "pipe" if value == "any" => attack.pipe = Some(None),
+                "pipe" => attack.pipe = Some(Some(value.parse().map_err(|_| format!("no number: {value}"))?)),
+                _ => return Err(format!("unknown: {line}")),
+            }
+        }
+        if !attack.promise.ends_with('.') || attack.expected.is_empty() {
+            return Err("it needs a promise (a sentence) and an expectation".into());
+        }
+        Ok(attack)
+    }
+}
+
+fn expected(text: &str) -> Expected {
+    match text.split_once(' ') {
+        Some((kind, detail)) => Expected { kind: kind.into(), detail: Some(detail.into()) },
+        None => Expected { kind: text.into(), detail: None },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_head_is_read_up_to_the_code() {
+        let text = "// promise: It holds.\n// expect: exited 0 or violation ptrace\n// policy: tools\n// wall: 300\n\
+                    // needs: file rules\n// leaves: honest\n// pipe: 6\n#include <x>\n// other: comment\n";
+        let attack = Attack::parse("a", text).unwrap();
+        assert_eq!(attack.policy, Policy::Tools);
+        assert_eq!(attack.wall, Some(Duration::from_millis(300)));
+        assert_eq!((attack.needs, attack.pipe), (vec![Need::FileRules], Some(Some(6))));
+        let matches = |ended: &Ended| attack.expected.iter().any(|expected| expected.matches(ended));
+        assert!(matches(&Ended::Exited(0)) && !matches(&Ended::Exited(66)));
+        assert!(matches(&Ended::Violation { call: "ptrace".into() }));
+        assert!(!matches(&Ended::Violation { call: "bpf".into() }));
+    }
+
+    #[test]
+    fn a_head_without_promise_is_refused() {
+        assert!(Attack::parse("a", "// expect: cpu\n").is_err());
+        assert!(Attack::parse("a", "// promise: It holds.\n").is_err());
+        assert!(Attack::parse("a", "// promise: It holds.\n// expect: cpu\n// nonsense: 1\n").is_err());
+    }
+}

@@ -1,0 +1,367 @@
+//! Runs the attack suite on this machine: one hostile program for every promise that the sandbox makes.
+//!
+//! The programs are the C files of `tests/attacks`, which are part of the binary. Each runs in the sandbox beside a
+//! decoy: secrets, a scene, another submission and a process that a hostile program would like to reach. A promise
+//! holds when the program ended as expected, the decoys are exactly as before, nothing secret was printed, and no
+//! process is left. Outside the sandbox the programs refuse to do anything.
+
+mod attack;
+mod decoy;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use include_dir::{Dir, include_dir};
+
+use self::attack::{Attack, Need};
+use self::decoy::Decoy;
+use super::backend::{Backend, SandboxError};
+use super::collect::{self, CollectError};
+use super::job::{Job, Limits};
+use super::layers::Layer;
+use super::outcome::{Ended, Outcome};
+use super::supervisor::processes;
+use super::sys;
+
+static SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/attacks");
+
+/// The environment variable without which the hostile programs refuse to start.
+const PERMIT: &str = "FOSSSIM_ATTACK";
+/// Tells a hostile program where the grader's own program lies, and in which group the grader is.
+const GRADER: &str = "FOSSSIM_GRADER";
+const GROUP: &str = "FOSSSIM_GRADER_GROUP";
+/// How an attack ends whose forbidden call was refused, and not by the sandbox, which would have ended it.
+const REFUSED: Ended = Ended::Exited(77);
+/// Attacks are built without optimisation, which would take useless-looking stores and loops away.
+const FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
+/// The largest trace that is collected.
+const LONGEST_TRACE: u64 = 1 << 20;
+
+/// Whether a promise holds on this machine.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Verdict {
+    /// The attack failed and left no mark.
+    Held,
+    /// It did not; the text says how.
+    Broken(String),
+    /// It could not be tried here; the text says why.
+    NotTested(String),
+}
+
+/// One line of the promise table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Promise {
+    /// The attack's name, that of its file.
+    pub attack: String,
+    /// The promise, one sentence.
+    pub promise: String,
+    /// Whether it holds.
+    pub verdict: Verdict,
+}
+
+/// What the sandbox promises, and what of it holds on this machine.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PromiseTable {
+    /// All promises, by the attack's name.
+    pub promises: Vec<Promise>,
+}
+
+impl PromiseTable {
+    /// The promises that do not hold here.
+    pub fn broken(&self) -> impl Iterator<Item = &Promise> {
+        self.promises.iter().filter(|promise| matches!(promise.verdict, Verdict::Broken(_)))
+    }
+
+    /// How many promises hold.
+    #[must_use]
+    pub fn held(&self) -> usize {
+        self.promises.iter().filter(|promise| promise.verdict == Verdict::Held).count()
+    }
+}
+
+/// Builds every attack with the C compiler `cc` and runs it with `backend`, several at a time. `report` is told of each
+/// as it ends. Everything is written beneath `folder`, which must exist; built programs stay there for the next time.
+///
+/// # Errors
+///
+/// [`SandboxError::Missing`] when the backend does not filter system calls: the attacks are never run without walls.
+/// Also when `folder` cannot be used. A promise that does not hold is no error.
+pub fn run(
+    backend: &Backend,
+    cc: &Path,
+    folder: &Path,
+    report: impl FnMut(&Promise) + Send,
+) -> Result<PromiseTable, SandboxError> {
+    run_some(backend, cc, folder, |_| true, report)
+}
+
+/// As [`run`], for the attacks whose names are `chosen`.
+///
+/// # Errors
+///
+/// As [`run`].
+pub fn run_some(
+    backend: &Backend,
+    cc: &Path,
+    folder: &Path,
+    chosen: impl Fn(&str) -> bool,
+    mut report: impl FnMut(&Promise) + Send,
+) -> Result<PromiseTable, SandboxError> {
+    let filtered = backend.layers().iter().any(|report| report.layer == Layer::CallFilter && report.active);
+    if !filtered {
+        return Err(SandboxError::Missing { missing: "the attacks run inside the sandbox only".into() });
+    }
+    let folder_error = |source: std::io::Error| SandboxError::Folder { folder: folder.display().to_string(), source };
+    let folder = folder.canonicalize().map_err(folder_error)?;
+    let sources = folder.join("sources");
+    let programs = folder.join("programs");
+    for made in [&sources, &programs] {
+        std::fs::create_dir_all(made).map_err(folder_error)?;
+    }
+    let mut attacks = attacks();
+    attacks.retain(|attack| chosen(&attack.name));
+    let header = SOURCES.get_file("attack.h").map(|file| file.contents()).unwrap_or_default();
+    put(&sources.join("attack.h"), header).map_err(folder_error)?;
+
+    let next = AtomicUsize::new(0);
+    let done = Mutex::new((Vec::new(), &mut report));
+    let workers = std::thread::available_parallelism().map_or(2, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                while let Some(attack) = attacks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let place = Place { backend, cc, sources: &sources, programs: &programs, folder: &folder };
+                    let verdict = place.try_attack(attack).unwrap_or_else(|why| why);
+                    let promise = Promise { attack: attack.name.clone(), promise: attack.promise.clone(), verdict };
+                    let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                    (done.1)(&promise);
+                    done.0.push(promise);
+                }
+            });
+        }
+    });
+    let (mut promises, _) = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    promises.sort_by(|left, right| left.attack.cmp(&right.attack));
+    Ok(PromiseTable { promises })
+}
+
+/// The attacks of the binary, in the order of their names.
+fn attacks() -> Vec<Attack> {
+    let sources = SOURCES.files().filter(|file| file.path().extension().is_some_and(|extension| extension == "c"));
+    let mut attacks: Vec<Attack> = sources
+        .filter_map(|file| Attack::parse(file.path().file_stem()?.to_str()?, file.contents_utf8()?).ok())
+        .collect();
+    attacks.sort_by(|left, right| left.name.cmp(&right.name));
+    attacks
+}
+
+/// Where and with what attacks are tried.
+struct Place<'a> {
+    backend: &'a Backend,
+    cc: &'a Path,
+    sources: &'a Path,
+    programs: &'a Path,
+    folder: &'a Path,
+}
+
+impl Place<'_> {
+    /// Tries one attack; both answers are verdicts.
+    fn try_attack(&self, attack: &Attack) -> Result<Verdict, Verdict> {
+        if let Some(need) = attack.needs.iter().find(|need| !self.offers(**need)) {
+            return Ok(Verdict::NotTested(format!("this machine lacks: {}", need.name())));
+        }
+        let built = self.build(attack).map_err(Verdict::NotTested)?;
+        let broken = |text: String| Verdict::Broken(text);
+        let fault = |error: &dyn std::fmt::Display| Verdict::NotTested(format!("the test itself failed: {error}"));
+        let mut decoy =
+            Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique()))).map_err(|e| fault(&e))?;
+        // A program of its own for every run, so that survivors are known by it.
+        let program = decoy.bring(&built).map_err(|e| fault(&e))?;
+        let before = decoy.state().map_err(|e| fault(&e))?;
+        let job = Job::new(&program, &decoy.work)
+            .arguments(decoy.arguments())
+            .readable([&decoy.scene])
+            .policy(attack.policy)
+            .environment(environment())
+            .limits(limits(attack));
+        let job = if attack.pipe.is_some() { job.trace_pipe("trace.bin") } else { job };
+        let mut running = self.backend.start(&job).map_err(|e| fault(&e))?;
+        let traced = running.trace().map(|mut trace| {
+            let mut bytes = Vec::new();
+            // A trace over its limit ends with an error; how the run ended says so, too.
+            let _ = std::io::Read::read_to_end(&mut trace, &mut bytes);
+            bytes.len()
+        });
+        let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
+
+        if let Some(left) = survivor(&program) {
+            return Err(broken(format!("process {left} outlived the run")));
+        }
+        // In a container, the engine's own filter may be first to refuse a forbidden call, and then nobody is told.
+        let refused = outcome.ended == REFUSED && attack.expects_violation() && is_filtered();
+        if !refused && !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
+            return Err(broken(format!("it {}{}", outcome.ended, words(&outcome))));
+        }
+        if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
+            return Err(broken("it printed a secret".into()));
+        }
+        if !decoy.is_alive() {
+            return Err(broken("it killed another process".into()));
+        }
+        let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read any more: {e}")))?;
+        if let Some(difference) = before.difference(&after) {
+            return Err(broken(format!("it changed the host: {difference}")));
+        }
+        if let (Some(Some(expected)), Some(traced)) = (attack.pipe, traced)
+            && traced != expected
+        {
+            return Err(broken(format!("{traced} bytes came through the trace pipe instead of {expected}")));
+        }
+        left_as_expected(attack, &decoy.work).map_err(broken)?;
+        decoy.clear().map_err(|error| broken(format!("its folder cannot be removed: {error}")))?;
+        Ok(Verdict::Held)
+    }
+
+    fn offers(&self, need: Need) -> bool {
+        let active = |layer| self.backend.layers().iter().any(|report| report.layer == layer && report.active);
+        match need {
+            Need::FileRules => active(Layer::FileRules),
+            Need::HiddenFiles => active(Layer::FileRules) || active(Layer::Namespaces),
+            Need::SignalScope => active(Layer::Scopes) || active(Layer::OwnUser),
+            Need::NamedCalls => active(Layer::NamedCalls),
+            Need::X86 => cfg!(target_arch = "x86_64"),
+        }
+    }
+
+    /// The built program; built anew only when a source or the compiler's name has changed.
+    fn build(&self, attack: &Attack) -> Result<PathBuf, String> {
+        let source = SOURCES.get_file(format!("{}.c", attack.name)).ok_or("its source is missing")?;
+        let header = SOURCES.get_file("attack.h").ok_or("attack.h is missing")?;
+        let mut digest = blake3::Hasher::new();
+        digest
+            .update(source.contents())
+            .update(header.contents())
+            .update(self.cc.as_os_str().as_encoded_bytes())
+            .update(FLAGS.join(" ").as_bytes());
+        let digest = digest.finalize().to_hex();
+        let program = self.programs.join(format!("{}-{}", attack.name, &digest[..16]));
+        if program.is_file() {
+            return Ok(program);
+        }
+        let said = |error: std::io::Error| format!("{}: {error}", self.cc.display());
+        let path = self.sources.join(format!("{}.c", attack.name));
+        put(&path, source.contents()).map_err(said)?;
+        // Built under another name, so that a half-built program is never taken for a whole one.
+        let fresh = self.programs.join(format!("{}-{}", attack.name, unique()));
+        let output = Command::new(self.cc).args(FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
+        if !output.status.success() {
+            let text = String::from_utf8_lossy(&output.stderr);
+            return Err(format!("it does not compile here: {}", text.lines().take(3).collect::<Vec<_>>().join(" ")));
+        }
+        std::fs::rename(&fresh, &program).map_err(said)?;
+        Ok(program)
+    }
+}
+
+/// A suffix that nobody else uses: other self-tests may work in the same folder at the same time.
+fn unique() -> String {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    format!("{}.{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
+}
+
+/// Writes a file whole or not at all, because others may be reading it.
+fn put(path: &Path, contents: &[u8]) -> std::io::Result<()> {
+    let fresh = path.with_extension(unique());
+    std::fs::write(&fresh, contents)?;
+    std::fs::rename(&fresh, path)
+}
+
+/// Small limits, so that the suite is short and harms nobody even where a wall is missing.
+fn limits(attack: &Attack) -> Limits {
+    Limits {
+        cpu: Duration::from_millis(300),
+        wall: attack.wall.unwrap_or(Duration::from_secs(20)),
+        memory: 64 << 20,
+        output_bytes: 64 << 10,
+        trace_bytes: LONGEST_TRACE,
+        folder_bytes: 4 << 20,
+        folder_files: 100,
+        processes: 16,
+        open_files: 32,
+    }
+}
+
+/// What a hostile program is told by its environment.
+fn environment() -> [(&'static str, String); 3] {
+    let grader = std::fs::read_link("/proc/self/exe").unwrap_or_default();
+    [(PERMIT, "1".into()), (GRADER, grader.display().to_string()), (GROUP, sys::group().to_string())]
+}
+
+/// Whether a system call filter lies around this very process: a container's.
+fn is_filtered() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    status.lines().any(|line| line.strip_prefix("Seccomp:").is_some_and(|mode| mode.trim() == "2"))
+}
+
+/// A process that still runs the program, in whichever of its threads.
+fn survivor(program: &Path) -> Option<i32> {
+    processes::all().find(|pid| {
+        processes::threads(*pid)
+            .any(|thread| std::fs::read_link(format!("/proc/{pid}/task/{thread}/exe")).is_ok_and(|exe| exe == program))
+    })
+}
+
+/// The end of what the program said, for a broken promise.
+fn words(outcome: &Outcome) -> String {
+    let last = |bytes: &[u8]| {
+        let text = String::from_utf8_lossy(bytes);
+        text.lines().last().map(|line| line.chars().take(200).collect::<String>().escape_debug().to_string())
+    };
+    match last(&outcome.stdout.bytes).or_else(|| last(&outcome.stderr.bytes)) {
+        Some(line) => format!(" and said: {line}"),
+        None => String::new(),
+    }
+}
+
+/// Whether the folder holds the trace that it should hold.
+fn left_as_expected(attack: &Attack, work: &Path) -> Result<(), String> {
+    let collected = collect::regular_file(work, "trace.bin", LONGEST_TRACE);
+    match (attack.leaves.as_deref(), collected) {
+        (None, _)
+        | (Some("nothing"), Err(CollectError::Missing { .. }))
+        | (
+            Some("refused"),
+            Err(CollectError::NotRegular { .. } | CollectError::Linked { .. } | CollectError::TooLong { .. }),
+        ) => Ok(()),
+        (Some(text), Ok(bytes)) if bytes == text.as_bytes() => Ok(()),
+        (Some(expected), Ok(bytes)) => {
+            Err(format!("a trace of {} bytes was collected instead of: {expected}", bytes.len()))
+        }
+        (Some(expected), Err(error)) => Err(format!("{error}, instead of: {expected}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_attack_makes_a_promise_and_an_expectation() {
+        let sources = SOURCES.files().filter(|file| file.path().extension().is_some_and(|e| e == "c"));
+        let mut count = 0;
+        for file in sources {
+            let name = file.path().file_stem().unwrap().to_str().unwrap();
+            let text = file.contents_utf8().unwrap();
+            if let Err(problem) = Attack::parse(name, text) {
+                panic!("{name}: {problem}");
+            }
+            assert!(text.contains("begin(argc);"), "{name} would run outside the sandbox");
+            count += 1;
+        }
+        assert!(count >= 160);
+        assert_eq!(attacks().len(), count);
+    }
+}

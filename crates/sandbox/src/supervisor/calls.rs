@@ -1,0 +1,166 @@
+//! The system calls by name, in the groups that the filter treats alike.
+//!
+//! A call in none of the groups does not exist for the program (`ENOSYS`), which is what every new call looks like to
+//! programs that can do without it. A real submission of the course uses 21 calls.
+
+/// A call's name and number.
+pub(super) type Call = (&'static str, i64);
+
+macro_rules! calls {
+    ($($name:ident)*) => {
+        &[$((stringify!($name), libc::$name)),*]
+    };
+}
+
+/// What every program needs: its own memory, files, time, threads and signals. File calls are bounded by Landlock,
+/// amounts by the resource limits.
+pub(super) const ALLOWED: &[Call] = calls![
+    SYS_read SYS_write SYS_readv SYS_writev SYS_pread64 SYS_pwrite64 SYS_preadv SYS_pwritev SYS_preadv2 SYS_pwritev2
+    SYS_openat SYS_close SYS_close_range SYS_lseek SYS_fstat SYS_newfstatat SYS_statx SYS_faccessat SYS_faccessat2
+    SYS_readlinkat SYS_getdents64 SYS_getcwd SYS_chdir SYS_fchdir SYS_mkdirat SYS_unlinkat SYS_renameat SYS_renameat2
+    SYS_ftruncate SYS_fsync SYS_fdatasync SYS_copy_file_range SYS_sendfile SYS_dup SYS_dup3
+    SYS_fcntl SYS_pipe2 SYS_ppoll SYS_pselect6 SYS_eventfd2 SYS_epoll_create1 SYS_epoll_ctl SYS_epoll_pwait
+    SYS_timerfd_create SYS_timerfd_settime SYS_timerfd_gettime SYS_statfs SYS_fstatfs SYS_umask
+    SYS_mmap SYS_mprotect SYS_munmap SYS_mremap SYS_madvise SYS_msync SYS_brk SYS_mlock SYS_munlock
+    SYS_membarrier
+    SYS_rt_sigaction SYS_rt_sigprocmask SYS_rt_sigreturn SYS_rt_sigsuspend SYS_rt_sigpending SYS_rt_sigtimedwait
+    SYS_sigaltstack SYS_nanosleep SYS_clock_nanosleep SYS_clock_gettime SYS_clock_getres SYS_gettimeofday SYS_times
+    SYS_getrusage SYS_setitimer SYS_getitimer SYS_timer_create SYS_timer_settime SYS_timer_gettime
+    SYS_timer_getoverrun SYS_timer_delete
+    SYS_getpid SYS_getppid SYS_gettid SYS_getuid SYS_geteuid SYS_getgid SYS_getegid SYS_getgroups SYS_getresuid
+    SYS_getresgid SYS_getpgid SYS_getsid SYS_setpgid SYS_setsid SYS_uname SYS_sysinfo SYS_sched_yield
+    SYS_sched_getaffinity SYS_sched_setaffinity SYS_sched_getparam SYS_sched_getscheduler SYS_sched_get_priority_max
+    SYS_sched_get_priority_min SYS_getpriority SYS_set_tid_address SYS_set_robust_list SYS_get_robust_list SYS_futex
+    SYS_rseq SYS_getrandom SYS_getcpu SYS_exit SYS_exit_group SYS_wait4 SYS_waitid SYS_restart_syscall
+    SYS_ioctl SYS_prctl SYS_prlimit64 SYS_kill SYS_tkill SYS_tgkill SYS_clone SYS_execve SYS_execveat
+];
+
+/// The older names of allowed calls, which only older processor families still have.
+#[cfg(target_arch = "x86_64")]
+pub(super) const ALLOWED_OLD: &[Call] = calls![
+    SYS_open SYS_creat SYS_stat SYS_lstat SYS_access SYS_readlink SYS_getdents SYS_mkdir SYS_rmdir SYS_unlink SYS_rename
+    SYS_dup2 SYS_pipe SYS_poll SYS_select SYS_eventfd SYS_epoll_create SYS_epoll_wait
+    SYS_pause SYS_alarm SYS_time SYS_getpgrp SYS_getrlimit SYS_setrlimit SYS_arch_prctl
+];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const ALLOWED_OLD: &[Call] = &[];
+
+/// Starting a process by the older names; a submission has no business with them, compilers do.
+#[cfg(target_arch = "x86_64")]
+pub(super) const FORKING: &[Call] = calls![SYS_fork SYS_vfork];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const FORKING: &[Call] = &[];
+
+/// Links and special files: the folder's rules forbid most of them anyway. Answered with `EPERM`.
+pub(super) const LINKING: &[Call] = calls![SYS_linkat SYS_symlinkat SYS_mknodat];
+#[cfg(target_arch = "x86_64")]
+pub(super) const LINKING_OLD: &[Call] = calls![SYS_link SYS_symlink SYS_mknod];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const LINKING_OLD: &[Call] = &[];
+
+/// Permission bits by name or descriptor. Landlock does not know them, so that a program under the grader's own user
+/// could change the grader's files.
+pub(super) const MODES: &[Call] = calls![SYS_fchmodat SYS_fchmod];
+#[cfg(target_arch = "x86_64")]
+pub(super) const MODES_OLD: &[Call] = calls![SYS_chmod];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const MODES_OLD: &[Call] = &[];
+
+/// Times of files, which Landlock does not know either.
+pub(super) const TIMES: &[Call] = calls![SYS_utimensat];
+#[cfg(target_arch = "x86_64")]
+pub(super) const TIMES_OLD: &[Call] = calls![SYS_utime SYS_utimes SYS_futimesat];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const TIMES_OLD: &[Call] = &[];
+
+/// What libraries try and can do without; refused with `EPERM` or `EACCES` rather than taken for an attack. The C
+/// library asks the name service by a socket, for one.
+pub(super) const REFUSED: &[Call] = calls![
+    SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr SYS_removexattr
+    SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
+    SYS_setgroups SYS_setfsuid SYS_setfsgid
+    SYS_personality SYS_shmget SYS_shmat SYS_shmctl SYS_semget SYS_semctl SYS_semop SYS_msgget SYS_msgsnd SYS_msgrcv
+    SYS_mincore SYS_fadvise64 SYS_msgctl SYS_mq_open SYS_rt_sigqueueinfo SYS_rt_tgsigqueueinfo SYS_pidfd_send_signal SYS_mlockall SYS_ioprio_set
+];
+
+/// Refused calls that only older processor families have.
+#[cfg(target_arch = "x86_64")]
+pub(super) const REFUSED_OLD: &[Call] = calls![SYS_chown SYS_lchown];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const REFUSED_OLD: &[Call] = &[];
+
+/// The kernel's dangerous corners. No submission comes here by accident: the program is stopped and the call named.
+pub(super) const FORBIDDEN: &[Call] = calls![
+    SYS_ptrace SYS_process_vm_readv SYS_process_vm_writev SYS_kcmp SYS_pidfd_getfd SYS_unshare SYS_setns SYS_mount
+    SYS_umount2 SYS_pivot_root SYS_chroot SYS_open_tree SYS_move_mount SYS_fsopen SYS_fsconfig SYS_fsmount SYS_fspick
+    SYS_mount_setattr SYS_bpf SYS_perf_event_open SYS_userfaultfd SYS_io_uring_setup SYS_io_uring_enter
+    SYS_io_uring_register SYS_keyctl SYS_add_key SYS_request_key SYS_init_module SYS_finit_module SYS_delete_module
+    SYS_kexec_load SYS_reboot SYS_swapon SYS_swapoff SYS_sethostname SYS_setdomainname SYS_acct SYS_settimeofday
+    SYS_clock_settime SYS_adjtimex SYS_clock_adjtime SYS_syslog SYS_quotactl SYS_open_by_handle_at
+    SYS_name_to_handle_at SYS_fanotify_init SYS_fanotify_mark SYS_vhangup SYS_lookup_dcookie SYS_nfsservctl
+    SYS_move_pages SYS_migrate_pages SYS_vmsplice
+];
+
+/// Forbidden calls that only x86 has.
+#[cfg(target_arch = "x86_64")]
+pub(super) const FORBIDDEN_OLD: &[Call] = calls![SYS_iopl SYS_ioperm SYS_modify_ldt SYS_kexec_file_load];
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) const FORBIDDEN_OLD: &[Call] = &[];
+
+/// Locks of whole files. They need no right to write, so that they are for build tools in their own folder only.
+pub(super) const LOCKS: &[Call] = calls![SYS_flock];
+
+/// Becoming another user. The kernel refuses this without privileges, which no program has; `make` sets its own user
+/// again before every command.
+pub(super) const IDENTITY: &[Call] =
+    calls![SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid];
+
+/// Every group: what exists at all.
+pub(super) const GROUPS: [&[Call]; 15] = [
+    ALLOWED,
+    ALLOWED_OLD,
+    FORKING,
+    LINKING,
+    LINKING_OLD,
+    MODES,
+    MODES_OLD,
+    TIMES,
+    TIMES_OLD,
+    LOCKS,
+    IDENTITY,
+    REFUSED,
+    REFUSED_OLD,
+    FORBIDDEN,
+    FORBIDDEN_OLD,
+];
+
+/// The usual name of a call.
+pub(super) fn name(number: i64) -> String {
+    for (name, known) in GROUPS.into_iter().flatten() {
+        if *known == number {
+            return name.trim_start_matches("SYS_").to_string();
+        }
+    }
+    format!("number {number}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_call_is_in_two_groups() {
+        let mut seen = std::collections::BTreeMap::new();
+        for group in GROUPS {
+            for (name, number) in group {
+                assert_eq!(seen.insert(*number, *name), None, "{name} is listed twice");
+            }
+        }
+    }
+
+    #[test]
+    fn calls_have_their_usual_names() {
+        assert_eq!(name(libc::SYS_ptrace), "ptrace");
+        assert_eq!(name(99_999), "number 99999");
+    }
+}

@@ -1,0 +1,273 @@
+//! The child's way from the fork to the program: every wall goes up, in the order in which it still can.
+//!
+//! Nothing here returns to the supervisor's code. A step that fails is told to the supervisor through the status
+//! socket, which closes by itself when the program has started.
+
+use std::ffi::CString;
+use std::fs::{File, Permissions};
+use std::io::{self, Write};
+use std::os::fd::{AsFd, AsRawFd, OwnedFd};
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::net::UnixStream;
+use std::path::Path;
+use std::time::Duration;
+
+use landlock::RulesetCreated;
+
+use super::{filter, processes, walls};
+use crate::sys;
+use crate::wire::{self, Failure, Order, Raw};
+
+/// The stage whose failure is the program's and not ours.
+pub(super) const EXECUTE: &str = "execute the program";
+/// Announces that a seccomp listener comes along.
+pub(super) const LISTENER: u8 = b'L';
+
+/// All that the child needs, prepared by the supervisor.
+pub(super) struct Plan {
+    pub(super) order: Order,
+    pub(super) supervisor: u32,
+    pub(super) folder: OwnedFd,
+    /// The program or script, opened while we could still reach it, for a user who cannot.
+    pub(super) opened: Option<Opened>,
+    /// What is executed, open under a number beyond the limit of descriptors, where execution is not announced.
+    pub(super) entrance: Option<OwnedFd>,
+    pub(super) rules: Option<RulesetCreated>,
+    /// The way into the run's control group.
+    pub(super) group: Option<File>,
+    pub(super) user: Option<u32>,
+    pub(super) input: OwnedFd,
+    pub(super) output: OwnedFd,
+    pub(super) error: OwnedFd,
+    pub(super) status: UnixStream,
+}
+
+/// Becomes the program.
+pub(super) fn become_program(mut plan: Plan) -> ! {
+    // Written as a file, because the filter knows no socket calls.
+    let mut status = match plan.status.as_fd().try_clone_to_owned() {
+        Ok(status) => File::from(status),
+        Err(_) => sys::exit_now(125),
+    };
+    let failure = match prepare(&mut plan) {
+        Err(failure) => failure,
+        Ok((arguments, environment)) => Failure::new(EXECUTE, &execute(&plan, &arguments, &environment)),
+    };
+    // The supervisor waits for this message or for the end of the program; without readers there is nobody to tell.
+    let _ = serde_json::to_writer(&mut status, &failure).map(|()| status.flush());
+    sys::exit_now(125)
+}
+
+type Strings = Vec<CString>;
+
+/// Puts up every wall; the answer is the program's arguments and environment.
+fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
+    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+    sys::new_session().map_err(stage("start a session"))?;
+    if let Some(group) = &mut plan.group {
+        group.write_all(b"0").map_err(stage("enter the control group"))?;
+    }
+    for (number, fd) in [(0, &plan.input), (1, &plan.output), (2, &plan.error)] {
+        sys::duplicate_to(fd.as_raw_fd(), number).map_err(stage("connect the standard streams"))?;
+    }
+    sys::default_signals();
+    sys::file_mask(0o022);
+    sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
+    sys::first_to_go();
+    limits(&plan.order, plan.user.is_some()).map_err(stage("set the resource limits"))?;
+    if let Some(user) = plan.user {
+        sys::switch_user(user).map_err(stage("become the sandbox's user"))?;
+    }
+    // Changing the user forgets the wish to die, so that it comes after; a parent that died before it is noticed here.
+    sys::die_with_parent().map_err(stage("bind the program's life to the supervisor's"))?;
+    if std::os::unix::process::parent_id() != plan.supervisor {
+        sys::exit_now(125);
+    }
+    let strings = (arguments(plan), environment(&plan.order));
+    let strings = match strings {
+        (Ok(arguments), Ok(environment)) => (arguments, environment),
+        _ => return Err(Failure { stage: "pass text with a NUL byte".into(), errno: libc::EINVAL }),
+    };
+    for raw in &plan.order.readable {
+        if !c_string(raw).is_ok_and(|path| sys::accessible(&path, libc::R_OK)) {
+            let stage =
+                format!("let the program read {}, which every user must be able to reach", wire::path(raw).display());
+            return Err(Failure { stage, errno: libc::EACCES });
+        }
+    }
+    sys::no_new_privileges().map_err(stage("give up privileges"))?;
+    if let Some(rules) = plan.rules.take() {
+        let rules = walls::add_own_entry(rules).map_err(stage("prepare Landlock"))?;
+        walls::enforce(rules).map_err(stage("enforce Landlock"))?;
+    }
+    sys::close_on_execute().map_err(stage("close descriptors"))?;
+    if let Some(script) = script_by_descriptor(plan) {
+        sys::keep_on_execute(script.file.as_fd()).map_err(stage("keep the script open"))?;
+    }
+    if plan.order.walls.seccomp {
+        filter_calls(plan).map_err(stage("install the system call filter"))?;
+    }
+    Ok(strings)
+}
+
+/// The resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
+fn limits(order: &Order, own_user: bool) -> io::Result<()> {
+    // What Linux gives by default, so that a deep recursion ends alike on every grading host.
+    const STACK: u64 = 8 << 20;
+    const SPARE_MEMORY: u64 = 512 << 20;
+    const SPARE_SECONDS: u64 = 2;
+    const SPARE_PROCESSES: u64 = 16;
+    const SPARE_FOR_OTHERS: u64 = 128;
+    const PENDING_SIGNALS: u64 = 1024;
+    // The address sanitiser reserves 20 TiB and what the program itself needs, others more.
+    const SANITISERS_SPACE: u64 = 64 << 40;
+    // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
+    sys::limit(libc::RLIMIT_CORE, 1)?;
+    sys::limit(libc::RLIMIT_FSIZE, order.folder_bytes)?;
+    sys::limit(libc::RLIMIT_NOFILE, u64::from(order.open_files))?;
+    sys::limit(libc::RLIMIT_CPU, order.cpu_micros.div_ceil(1_000_000) + SPARE_SECONDS)?;
+    sys::limit(libc::RLIMIT_STACK, STACK)?;
+    sys::limit(libc::RLIMIT_MEMLOCK, 64 << 10)?;
+    sys::limit(libc::RLIMIT_MSGQUEUE, 0)?;
+    sys::limit(libc::RLIMIT_RTPRIO, 0)?;
+    // The count is per user, like that of processes.
+    sys::limit(libc::RLIMIT_SIGPENDING, PENDING_SIGNALS)?;
+    // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
+    let space = order.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
+    sys::limit(libc::RLIMIT_AS, if order.sanitised { space.max(SANITISERS_SPACE) } else { space })?;
+    // The count is per user: what ours does already is added, and room for other runs that begin later.
+    // The run's own user has none but in another container that hands out the same numbers.
+    let others = if own_user { 0 } else { processes::threads_of_user(sys::user()) };
+    sys::limit(libc::RLIMIT_NPROC, u64::from(order.processes) + SPARE_PROCESSES + SPARE_FOR_OTHERS + others)?;
+    Ok(())
+}
+
+/// Installs the filters and hands the listener to the supervisor.
+fn filter_calls(plan: &Plan) -> io::Result<()> {
+    let walls = plan.order.walls;
+    let purpose = filter::Purpose {
+        tools: plan.order.tools,
+        announce: walls.notify,
+        // Tools signal their own children, which Landlock's scope or the own user tell from others.
+        own_process: (!plan.order.tools || !(walls.scopes || walls.own_user)).then(|| std::process::id() as i32),
+        entrance: plan.entrance.as_ref().map(|file| file.as_raw_fd() as u64),
+        own_user: plan.user.is_some(),
+    };
+    for (index, program) in filter::filters(purpose)?.iter().enumerate() {
+        let listener = sys::install_filter(program, walls.notify && index == 0)?;
+        if let Some(listener) = listener {
+            sys::send_descriptor(&plan.status, LISTENER, listener.as_fd())?;
+        }
+    }
+    Ok(())
+}
+
+/// Executes the program; returns only the error.
+///
+/// A file that was just written can be busy for a moment: another thread of the grader may have forked while the file
+/// was open for writing, and its child holds a copy of the descriptor until it executes. So this is tried again.
+fn execute(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
+    const TRIES: u32 = 25;
+    const PAUSE: Duration = Duration::from_millis(20);
+    for _ in 1..TRIES {
+        let error = execute_once(plan, arguments, environment);
+        if error.raw_os_error() != Some(libc::ETXTBSY) {
+            return error;
+        }
+        std::thread::sleep(PAUSE);
+    }
+    execute_once(plan, arguments, environment)
+}
+
+/// Executes the program by its path, or by the open file when the path is closed to the sandbox's user.
+fn execute_once(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
+    let path = plan.order.interpreter.as_ref().unwrap_or(&plan.order.program);
+    let Ok(path) = c_string(path) else { return io::Error::from_raw_os_error(libc::EINVAL) };
+    let open = |opened: &Opened| sys::execute_open(opened.file.as_fd(), arguments, environment);
+    if let Some(entrance) = &plan.entrance {
+        return sys::execute_open(entrance.as_fd(), arguments, environment);
+    }
+    match &plan.opened {
+        _ if plan.order.interpreter.is_some() => sys::execute(&path, arguments, environment),
+        Some(opened) if opened.copied => open(opened),
+        opened => {
+            let error = sys::execute(&path, arguments, environment);
+            match opened {
+                Some(opened) if error.raw_os_error() == Some(libc::EACCES) => open(opened),
+                _ => error,
+            }
+        }
+    }
+}
+
+fn arguments(plan: &Plan) -> io::Result<Strings> {
+    let order = &plan.order;
+    let script = script_by_descriptor(plan).map(|script| format!("/proc/self/fd/{}", script.file.as_raw_fd()).into());
+    let program = script.unwrap_or_else(|| order.program.clone());
+    order.words.iter().chain([&program]).chain(&order.arguments).map(c_string).collect()
+}
+
+/// The script, if its interpreter has to read it by a descriptor, because its path is closed to the run's user.
+fn script_by_descriptor(plan: &Plan) -> Option<&Opened> {
+    let opened = plan.opened.as_ref().filter(|_| plan.order.interpreter.is_some())?;
+    let readable = c_string(&plan.order.program).is_ok_and(|path| sys::accessible(&path, libc::R_OK));
+    (!readable).then_some(opened)
+}
+
+/// The few variables that every program gets, then those of the job.
+fn environment(order: &Order) -> io::Result<Strings> {
+    let folder = c_string(&order.folder)?;
+    // A folder whose parents are closed to the sandbox's user is reached from within, as the current one.
+    let home = if sys::accessible(&folder, libc::W_OK | libc::X_OK) { order.folder.clone() } else { b".".to_vec() };
+    let mut variables: Vec<(Raw, Raw)> = vec![
+        (b"PATH".to_vec(), b"/usr/local/bin:/usr/bin:/bin".to_vec()),
+        (b"LC_ALL".to_vec(), b"C".to_vec()),
+        (b"HOME".to_vec(), home.clone()),
+        (b"TMPDIR".to_vec(), home),
+    ];
+    if order.sanitised {
+        // The leak check starts a process that traces its parent, which no filter allows.
+        variables.push((b"ASAN_OPTIONS".to_vec(), b"detect_leaks=0".to_vec()));
+    }
+    for (name, value) in &order.environment {
+        variables.retain(|(known, _)| known != name);
+        variables.push((name.clone(), value.clone()));
+    }
+    variables.into_iter().map(|(name, value)| c_string(&[name, value].join(&b'='))).collect()
+}
+
+fn c_string(raw: &Raw) -> io::Result<CString> {
+    CString::new(raw.as_slice()).map_err(io::Error::other)
+}
+
+/// The program as an open file that any user may execute.
+pub(super) struct Opened {
+    file: OwnedFd,
+    copied: bool,
+}
+
+impl Opened {
+    /// Opens the program: the file itself, or a copy in memory when its permission bits are for the owner only or nothing
+    /// may be executed where it lies. A program that its user may not read would be closed to the supervisor's looks as
+    /// well.
+    pub(super) fn new(path: &Path, for_another: bool) -> io::Result<Self> {
+        const READ_AND_EXECUTE: u32 = 0o005;
+        let program = File::open(path)?;
+        let mode = program.metadata()?.permissions().mode();
+        let fits = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
+        if fits && !sys::forbids_execution(program.as_fd()) {
+            return Ok(Self { file: program.into(), copied: false });
+        }
+        let mut copy = File::from(sys::memory_file()?);
+        io::copy(&mut io::BufReader::new(program), &mut copy)?;
+        copy.set_permissions(Permissions::from_mode(0o555))?;
+        // A file that is open for writing cannot be executed: open it again for reading only.
+        let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;
+        Ok(Self { file: again.into(), copied: true })
+    }
+
+    /// The same file under a number from `least` on.
+    pub(super) fn under_number(&self, least: u32) -> io::Result<OwnedFd> {
+        sys::duplicate_from(self.file.as_fd(), least)
+    }
+}

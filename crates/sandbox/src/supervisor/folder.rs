@@ -1,0 +1,198 @@
+//! The working folder as the supervisor sees it: how much is in it, and whose it is.
+//!
+//! The program changes the folder while we look. Folders are therefore opened by descriptor, without following links,
+//! and nothing here fails because an entry has gone meanwhile.
+
+use std::ffi::CString;
+use std::fs::{Metadata, Permissions};
+use std::io;
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt};
+use std::path::{Path, PathBuf};
+
+use crate::sys;
+
+/// Nobody nests folders deeper than this by accident.
+const DEEPEST: u32 = 32;
+/// Blocks that `stat` counts in.
+const BLOCK: u64 = 512;
+
+/// What a folder holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Contents {
+    /// Bytes on disk.
+    pub(super) bytes: u64,
+    /// Files and folders.
+    pub(super) files: u64,
+    /// Whether part of it could not be counted: too deep, closed to us, or beyond the limits.
+    pub(super) over: bool,
+}
+
+/// Counts the folder's contents and stops as soon as a limit is passed. Pipes are not counted.
+pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> Contents {
+    let mut contents = Contents::default();
+    let whole = walk(folder, 0, &mut |_, metadata| {
+        if !metadata.file_type().is_fifo() {
+            contents.bytes += metadata.blocks() * BLOCK;
+            contents.files += 1;
+        }
+        contents.bytes <= most_bytes && contents.files <= most_files
+    });
+    contents.over = !whole;
+    contents
+}
+
+/// Gives the folder and all in it to a user and group: folders, pipes, and files that have no second name (which
+/// might lie elsewhere). Only called while no process of the program is alive.
+pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
+    walk(folder, 0, &mut |path, metadata| {
+        let kind = metadata.file_type();
+        if kind.is_dir() || kind.is_fifo() || (kind.is_file() && metadata.nlink() == 1) {
+            let name = path.file_name().and_then(|name| CString::new(name.as_bytes()).ok());
+            let parent = path.parent().and_then(|parent| std::fs::File::open(parent).ok());
+            if let (Some(name), Some(parent)) = (name, parent)
+                && let Ok(opened) = sys::open_beneath(parent.as_fd(), &name, libc::O_PATH)
+            {
+                // An entry that cannot be given stays as it is; the program then cannot change it.
+                let _ = sys::change_owner(opened.as_fd(), user, group);
+            }
+        }
+        true
+    });
+    sys::change_owner(folder, user, group)
+}
+
+/// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth: what lies
+/// deeper than [`DEEPEST`] is moved up into `folder` itself, because whoever removes it later would run out of
+/// descriptors. The answer is whether nothing lay so deep. Only called while no process of the program is alive.
+pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
+    let mut moved: Vec<CString> = Vec::new();
+    open_level(folder, folder, 0, &mut moved);
+    let mut next = 0;
+    while let Some(name) = moved.get(next) {
+        next += 1;
+        if let Ok(inner) = sys::open_beneath(folder, name, libc::O_RDONLY | libc::O_DIRECTORY) {
+            open_level(folder, inner.as_fd(), 1, &mut moved);
+        }
+    }
+    moved.is_empty()
+}
+
+/// Opens the folders beneath one at `depth` and notes the new names of those that were too deep.
+fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &mut Vec<CString>) {
+    let Ok(entries) = std::fs::read_dir(inside(folder)) else { return };
+    for entry in entries.flatten().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
+        let Ok(name) = CString::new(entry.file_name().as_bytes()) else { continue };
+        let Ok(opened) = sys::open_beneath(folder, &name, libc::O_PATH | libc::O_DIRECTORY) else { continue };
+        let Ok(mode) = std::fs::metadata(inside(opened.as_fd())).map(|metadata| metadata.permissions().mode()) else {
+            continue;
+        };
+        if mode & 0o700 != 0o700 {
+            // A folder that stays closed is reported as over the limit by the measurement that follows.
+            let _ = std::fs::set_permissions(inside(opened.as_fd()), Permissions::from_mode(mode | 0o700));
+        }
+        drop(opened);
+        if depth < DEEPEST {
+            if let Ok(inner) = sys::open_beneath(folder, &name, libc::O_RDONLY | libc::O_DIRECTORY) {
+                open_level(root, inner.as_fd(), depth + 1, moved);
+            }
+        } else if let Some(name) = free_name(root, moved.len())
+            && std::fs::rename(entry.path(), inside(root).join(&name)).is_ok()
+        {
+            moved.extend(CString::new(name));
+        }
+    }
+}
+
+/// A name that the folder does not hold.
+fn free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
+    const TRIES: usize = 100_000;
+    let names = (from..from + TRIES).map(|number| format!(".too-deep-{number}"));
+    { names }.find(|name| inside(folder).join(name).symlink_metadata().is_err())
+}
+
+/// The path of an open folder.
+fn inside(folder: BorrowedFd<'_>) -> PathBuf {
+    PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()))
+}
+
+/// Visits everything beneath the folder until the visitor says stop. The answer is whether everything was visited.
+/// Paths lead through `/proc/self/fd` and stay valid as long as the visit.
+fn walk(folder: BorrowedFd<'_>, depth: u32, visit: &mut dyn FnMut(&Path, &Metadata) -> bool) -> bool {
+    let Ok(entries) = std::fs::read_dir(format!("/proc/self/fd/{}", folder.as_raw_fd())) else { return false };
+    for entry in entries {
+        let Ok(entry) = entry else { return false };
+        let path = entry.path();
+        let Ok(metadata) = path.symlink_metadata() else { continue };
+        if !visit(&path, &metadata) {
+            return false;
+        }
+        if !metadata.is_dir() {
+            continue;
+        }
+        let Ok(name) = CString::new(entry.file_name().as_bytes()) else { return false };
+        let inner = match sys::open_beneath(folder, &name, libc::O_RDONLY | libc::O_DIRECTORY) {
+            Ok(inner) => inner,
+            Err(error) if matches!(error.raw_os_error(), Some(libc::ENOENT | libc::ENOTDIR | libc::ELOOP)) => continue,
+            Err(_) => return false,
+        };
+        if depth == DEEPEST || !walk(inner.as_fd(), depth + 1, visit) {
+            return false;
+        }
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn opened(folder: &tempfile::TempDir) -> std::fs::File {
+        std::fs::File::open(folder.path()).unwrap()
+    }
+
+    #[test]
+    fn bytes_on_disk_and_entries_are_counted_at_every_depth() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(folder.path().join("a/b")).unwrap();
+        std::fs::write(folder.path().join("a/b/file"), vec![1; 100_000]).unwrap();
+        std::os::unix::fs::symlink("/usr", folder.path().join("link")).unwrap();
+        let contents = measure(opened(&folder).as_fd(), 1 << 30, 100);
+        assert_eq!(contents.files, 4, "two folders, a file, a link that is not followed");
+        assert!(!contents.over);
+        let contents = measure(opened(&folder).as_fd(), 1 << 30, 3);
+        assert!(contents.over && contents.files == 4);
+    }
+
+    #[test]
+    fn holes_do_not_count_and_depth_has_an_end() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::File::create(folder.path().join("sparse")).unwrap().set_len(1 << 40).unwrap();
+        assert!(!measure(opened(&folder).as_fd(), 1 << 20, 100).over);
+        std::fs::create_dir_all(folder.path().join("x/".repeat(40))).unwrap();
+        assert!(measure(opened(&folder).as_fd(), 1 << 20, 100).over);
+    }
+
+    #[test]
+    fn closed_folders_are_opened_at_any_depth_and_can_then_be_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        // From the inside out, so that an ordinary user can do it, too.
+        let deep = folder.path().join("d/".repeat(300));
+        std::fs::create_dir_all(&deep).unwrap();
+        let mut closed = deep.components().as_path();
+        while closed != folder.path() {
+            std::fs::set_permissions(closed, Permissions::from_mode(0o000)).unwrap();
+            closed = closed.parent().unwrap();
+        }
+        assert!(!open_up(opened(&folder).as_fd()), "it says that something lay too deep");
+        let mut folders = 0;
+        let whole = walk(opened(&folder).as_fd(), 0, &mut |_, metadata| {
+            folders += 1;
+            metadata.permissions().mode() & 0o700 == 0o700
+        });
+        assert!(whole && folders == 300, "{folders} folders");
+        assert!(open_up(opened(&folder).as_fd()));
+        folder.close().unwrap();
+    }
+}

@@ -1,0 +1,125 @@
+//! What processes hold beyond what their folder and their resident memory show: files without a name that are open,
+//! mapped or executed, and memory behind mappings that is resident for nobody.
+
+use std::collections::BTreeSet;
+use std::fs::{Metadata, read_dir};
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+
+/// Blocks that `stat` counts in.
+const BLOCK: u64 = 512;
+/// How the kernel marks the name of a file that has none any more.
+const GONE: &[u8] = b" (deleted)";
+/// The names of shared memory that is in no folder.
+const SHARED_MEMORY: [&[u8]; 3] = [b"/dev/zero", b"/memfd:", b"/SYSV"];
+
+/// The sum over some processes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Holdings {
+    /// Bytes of files without a name.
+    pub(super) nameless: u64,
+    /// Bytes of memory that need not be resident for anybody.
+    pub(super) memory: u64,
+}
+
+/// What these processes (each with one of its threads) hold. `root` is the working folder, the only place in which they
+/// make files. `executed` asks for the files that they run, too, and `page_tables` for the kernel's books about their
+/// memory, which matter where address space is not limited.
+pub(super) fn of(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> Holdings {
+    let mut holdings = Holdings::default();
+    let mut seen = BTreeSet::new();
+    let mut mapped = Vec::new();
+    for (pid, thread) in members {
+        let task = format!("/proc/{pid}/task/{thread}");
+        let mut count = |metadata: &Metadata| {
+            if metadata.is_file() && metadata.nlink() == 0 && seen.insert(metadata.ino()) {
+                holdings.nameless += metadata.blocks() * BLOCK;
+            }
+        };
+        for entry in read_dir(format!("{task}/fd")).into_iter().flatten().flatten() {
+            std::fs::metadata(entry.path()).iter().for_each(&mut count);
+        }
+        let exe = format!("{task}/exe");
+        if executed && std::fs::read_link(&exe).is_ok_and(|exe| exe.starts_with(root)) {
+            std::fs::metadata(&exe).iter().for_each(&mut count);
+        }
+        let maps = std::fs::read(format!("{task}/maps")).unwrap_or_default();
+        mapped.extend(maps.split(|byte| *byte == b'\n').filter_map(Mapping::parse));
+        if page_tables {
+            let status = std::fs::read_to_string(format!("{task}/status")).unwrap_or_default();
+            let line = status.lines().find_map(|line| line.strip_prefix("VmPTE:")?.strip_suffix(" kB"));
+            holdings.memory += line.and_then(|line| line.trim().parse::<u64>().ok()).unwrap_or(0) << 10;
+        }
+    }
+    // How much of a mapped file is on disk, only root may ask: what is mapped is taken for what is there.
+    mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
+    for mapping in mapped {
+        let memory = mapping.shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));
+        let file = mapping.name.starts_with(root.as_os_str().as_bytes());
+        if (memory || file) && seen.insert(mapping.inode) {
+            *(if memory { &mut holdings.memory } else { &mut holdings.nameless }) += mapping.end;
+        }
+    }
+    holdings
+}
+
+/// A mapping of a file that has no name any more.
+struct Mapping {
+    shared: bool,
+    /// Where in the file it ends.
+    end: u64,
+    inode: u64,
+    name: Vec<u8>,
+}
+
+impl Mapping {
+    /// Reads a line of `maps`, such as `7f00-7f10 rw-s 00000000 00:01 1042  /dev/zero (deleted)`.
+    fn parse(line: &[u8]) -> Option<Self> {
+        let line = line.strip_suffix(GONE)?;
+        let start = line.iter().position(|byte| *byte == b'/')?;
+        let mut words = std::str::from_utf8(&line[..start]).ok()?.split_ascii_whitespace();
+        let (from, to) = words.next()?.split_once('-')?;
+        let number = |text: &str| u64::from_str_radix(text, 16).ok();
+        let shared = words.next()?.ends_with('s');
+        let end = number(words.next()?)?.saturating_add(number(to)?.saturating_sub(number(from)?));
+        let inode = words.nth(1)?.parse().ok()?;
+        Some(Self { shared, end, inode, name: line[start..].to_vec() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    #[test]
+    fn a_removed_file_that_is_still_open_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("gone");
+        let mut file = std::fs::File::create(&path).unwrap();
+        file.write_all(&vec![1; 1 << 20]).unwrap();
+        file.sync_all().unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let own = std::process::id() as i32;
+        assert!(of(&[(own, own)], folder.path(), false, false).nameless >= 1 << 20);
+    }
+
+    #[test]
+    fn mappings_are_read_to_their_end_in_the_file() {
+        let parse = |line: &str| Mapping::parse(line.as_bytes());
+        let mapping = parse("7f0000001000-7f0000003000 rw-s 00004000 00:01 1042                /dev/zero (deleted)");
+        let mapping = mapping.unwrap();
+        assert!(mapping.shared && mapping.end == 0x6000 && mapping.inode == 1042 && mapping.name == b"/dev/zero");
+        assert!(parse("7f0000001000-7f0000003000 r--p 00000000 fe:00 7  /x/a (deleted)").is_some_and(|m| !m.shared));
+        assert!(parse("7f0000001000-7f0000003000 r--p 00000000 fe:00 7  /x/a").is_none());
+        assert!(parse("7f0000001000-7f0000003000 rw-p 00000000 00:00 0").is_none());
+    }
+
+    #[test]
+    fn page_tables_are_memory_where_they_are_asked_for() {
+        let own = std::process::id() as i32;
+        assert!(of(&[(own, own)], Path::new("/nowhere"), false, true).memory > 0);
+    }
+}

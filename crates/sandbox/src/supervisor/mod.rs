@@ -1,0 +1,63 @@
+//! The supervisor: a fresh process of our own binary that runs one program and reports when everything is dead.
+//!
+//! It never reads a scene, a trace or a verdict, and it believes nothing that the program says: only the kernel's
+//! wait status, counters and announcements.
+
+mod calls;
+mod child;
+mod filter;
+mod folder;
+mod group;
+mod holdings;
+mod locks;
+mod modes;
+mod namespaces;
+mod probe;
+pub(super) mod processes;
+mod run;
+mod slot;
+mod streams;
+mod view;
+mod walls;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+pub(super) use self::folder::open_up;
+use super::wire::SUPERVISOR_ARGUMENT;
+
+/// Asks for a run.
+pub(super) const MODE_RUN: &str = "run";
+/// Asks which walls hold.
+pub(super) const MODE_PROBE: &str = "probe";
+
+/// Turns this process into a supervisor if it was started as one; otherwise `None`.
+///
+/// A program that uses the sandbox calls this first of all in its `main`, before it starts any thread, with its own
+/// arguments (`std::env::args_os()`), and returns the code if there is one.
+pub fn supervisor_main(arguments: impl IntoIterator<Item = OsString>) -> Option<ExitCode> {
+    let mut arguments = arguments.into_iter().skip(1);
+    if arguments.next()? != SUPERVISOR_ARGUMENT {
+        return None;
+    }
+    let mode = arguments.next().unwrap_or_default();
+    Some(match mode.to_str() {
+        Some(MODE_RUN) => run::main(),
+        Some(MODE_PROBE) => probe::main(),
+        _ => ExitCode::from(2),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ordinary_arguments_are_not_the_supervisors() {
+        let words = |list: &[&str]| list.iter().map(OsString::from).collect::<Vec<_>>();
+        assert!(supervisor_main(words(&[])).is_none());
+        assert!(supervisor_main(words(&["fosssim-oracle"])).is_none());
+        assert!(supervisor_main(words(&["fosssim-oracle", "grade", SUPERVISOR_ARGUMENT])).is_none());
+        assert!(supervisor_main(words(&["fosssim-oracle", SUPERVISOR_ARGUMENT, "nonsense"])).is_some());
+    }
+}

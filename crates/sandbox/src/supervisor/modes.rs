@@ -1,0 +1,97 @@
+//! Changes permission bits on behalf of build tools that run as the grader's own user.
+//!
+//! Linkers make their output executable by name, but Landlock does not know permission bits: allowed outright, a build
+//! step could open or close the grader's own files. So the call is announced, and the supervisor carries it out
+//! beneath the working folder and refuses it elsewhere. Links are not followed.
+
+use std::ffi::CString;
+use std::fs::{File, Permissions};
+use std::io::{Read, Seek, SeekFrom};
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+use super::calls;
+use crate::sys::{self, Announced};
+
+/// Set-user and set-group bits are not given away.
+const MODE_BITS: u64 = 0o1777;
+
+/// Whether the call changes permission bits.
+pub(super) fn concerns(call: i64) -> bool {
+    calls::MODES.iter().chain(calls::MODES_OLD).any(|(_, number)| *number == call)
+}
+
+/// Carries out the call if it means something beneath `folder`, whose path is `root`.
+///
+/// # Errors
+///
+/// The error number for the caller.
+pub(super) fn change(announced: &Announced, folder: BorrowedFd<'_>, root: &Path) -> Result<(), i32> {
+    let [first, second, third, ..] = announced.arguments;
+    let thread = announced.thread;
+    let (file, mode) = match announced.call {
+        libc::SYS_fchmod => (held(thread, first)?, second),
+        libc::SYS_fchmodat => {
+            let start = if first as i32 == libc::AT_FDCWD { Start::Current } else { Start::Held(first) };
+            (named(thread, &start, second, folder, root)?, third)
+        }
+        // The remaining one is `chmod`.
+        _ => (named(thread, &Start::Current, first, folder, root)?, second),
+    };
+    // The name that the open file has now decides; it is the very file that is changed.
+    let entry = format!("/proc/self/fd/{}", file.as_raw_fd());
+    let place = std::fs::read_link(&entry).map_err(|_| libc::EPERM)?;
+    if place == root || !place.starts_with(root) {
+        return Err(libc::EPERM);
+    }
+    std::fs::set_permissions(&entry, Permissions::from_mode((mode & MODE_BITS) as u32))
+        .map_err(|error| error.raw_os_error().unwrap_or(libc::EPERM))
+}
+
+/// Where a relative path starts.
+enum Start {
+    Current,
+    Held(u64),
+}
+
+/// The file that the thread holds open under this number.
+fn held(thread: u32, number: u64) -> Result<OwnedFd, i32> {
+    let entry = format!("/proc/{thread}/fd/{}", number as i32);
+    // Opened without any right but to name it.
+    let target = std::fs::read_link(&entry).map_err(|_| libc::EBADF)?;
+    let parent = target.parent().ok_or(libc::EPERM)?;
+    let name = target.file_name().and_then(|name| CString::new(name.as_bytes()).ok()).ok_or(libc::EPERM)?;
+    let parent = File::open(parent).map_err(|_| libc::EPERM)?;
+    sys::open_beneath(parent.as_fd(), &name, libc::O_PATH).map_err(|_| libc::EPERM)
+}
+
+/// The file of that name, without following links.
+fn named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
+    let path = text_at(thread, address).ok_or(libc::EFAULT)?;
+    let from = match start {
+        Start::Current => format!("/proc/{thread}/cwd"),
+        Start::Held(number) => format!("/proc/{thread}/fd/{}", *number as i32),
+    };
+    let from = std::fs::read_link(from).map_err(|_| libc::EBADF)?;
+    let whole = from.join(path);
+    let inside = whole.strip_prefix(root).map_err(|_| libc::EPERM)?;
+    let inside = CString::new(inside.as_os_str().as_bytes()).map_err(|_| libc::EPERM)?;
+    sys::open_beneath(folder, &inside, libc::O_PATH).map_err(|error| match error.raw_os_error() {
+        Some(libc::ENOENT) => libc::ENOENT,
+        _ => libc::EPERM,
+    })
+}
+
+/// The text that ends with a zero byte at this address in the thread's memory.
+fn text_at(thread: u32, address: u64) -> Option<PathBuf> {
+    let mut memory = File::open(format!("/proc/{thread}/mem")).ok()?;
+    memory.seek(SeekFrom::Start(address)).ok()?;
+    let mut text = Vec::new();
+    // The text may end shortly before memory does, so that a read can fail after enough was read.
+    let _ = memory.take(libc::PATH_MAX as u64).read_to_end(&mut text);
+    let end = text.iter().position(|&byte| byte == 0)?;
+    text.truncate(end);
+    Some(PathBuf::from(std::ffi::OsString::from(String::from_utf8(text).ok()?)))
+}

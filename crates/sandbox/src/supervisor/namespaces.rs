@@ -1,0 +1,54 @@
+//! A world of its own for one run: processes, network, messages and mounts.
+//!
+//! The supervisor itself moves in. It forks once into a new process namespace, where it is process 1: when it dies,
+//! whatever the reason, the kernel ends everything below it at once. What stays outside, the *guardian*, only waits.
+//! Root needs no user namespace; an ordinary user gets one in which it is itself, with rights over nothing but the new
+//! namespaces. These rights end with the execution of the program.
+
+use std::io;
+
+use super::view;
+use crate::mounts;
+use crate::sys::{self, Fork};
+use crate::wire::{Failure, Order};
+
+/// Where a supervisor finds itself after [`enter`].
+pub(super) enum Side {
+    /// Inside: go on.
+    Inside,
+    /// Outside, and what was inside has ended with this code.
+    Outside(u8),
+}
+
+/// Moves into namespaces of its own, with nothing in sight but what the order needs.
+///
+/// # Errors
+///
+/// The step that failed. The process is then somewhere between the worlds and must end.
+pub(super) fn enter(order: &Order) -> Result<Side, Failure> {
+    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+    let (user, group) = (sys::user(), sys::group());
+    if user == 0 {
+        mounts::unshare(libc::CLONE_NEWPID).map_err(stage("make a process namespace"))?;
+    } else {
+        mounts::unshare(libc::CLONE_NEWUSER | libc::CLONE_NEWPID).map_err(stage("make a user namespace"))?;
+        // The kernel wants the groups given up before an ordinary user names its own.
+        for (file, text) in [
+            ("/proc/self/setgroups", "deny".to_string()),
+            ("/proc/self/uid_map", format!("{user} {user} 1")),
+            ("/proc/self/gid_map", format!("{group} {group} 1")),
+        ] {
+            std::fs::write(file, text).map_err(stage("name the user in its namespace"))?;
+        }
+    }
+    match sys::fork().map_err(stage("fork"))? {
+        Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),
+        Fork::Child => {
+            sys::die_with_parent().map_err(stage("bind the supervisor's life to its guardian's"))?;
+            let rest = libc::CLONE_NEWNS | libc::CLONE_NEWNET | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
+            mounts::unshare(rest).map_err(stage("make namespaces"))?;
+            view::build(order)?;
+            Ok(Side::Inside)
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Tries every wall once, in a child that then ends, and reports what the kernel said.
+
+use std::ffi::CString;
+use std::fs::{File, Permissions};
+use std::io::{self, Write};
+use std::os::fd::{AsFd, AsRawFd, OwnedFd};
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::net::UnixStream;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use super::group::Group;
+use super::namespaces::{self, Side};
+use super::{filter, slot, walls};
+use crate::sys::{self, Fork};
+use crate::wire::{self, Failure, Order, Probe};
+
+/// The first kernel interface whose rules also confine signals and abstract sockets.
+const SCOPES_SINCE: i32 = 6;
+
+/// Writes a [`Probe`] to standard output.
+pub(super) fn main() -> ExitCode {
+    match probe().and_then(|probe| wire::send(io::stdout(), &probe)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(_) => ExitCode::from(1),
+    }
+}
+
+fn probe() -> io::Result<Probe> {
+    let root = sys::user() == 0;
+    let roots_group = !root && sys::group() == 0;
+    let mut probe = Probe { root, roots_group, landlock_abi: sys::landlock_version(), ..Probe::default() };
+    probe.reaper = why(sys::become_reaper());
+    (probe.execution, probe.from_memory) = try_execution();
+    probe.namespaces = try_namespaces();
+    match try_group() {
+        Ok(controls) => probe.group_controls = controls.into_iter().map(str::to_string).collect(),
+        Err(error) => probe.group = Some(error.to_string()),
+    }
+    let slot = if root { slot::take().map(Some) } else { Ok(None) };
+    let user = slot.as_ref().ok().and_then(|slot| slot.as_ref()).map(|slot| slot.user);
+    if let Err(error) = &slot {
+        probe.own_user = Some(error.to_string());
+    }
+    let (parent, child) = UnixStream::pair()?;
+    match sys::fork()? {
+        Fork::Child => {
+            drop(parent);
+            let tried = try_walls(probe, user);
+            // Written as a file, because the filter knows no socket calls. A parent that is gone needs no answer.
+            let _ = wire::send(std::fs::File::from(OwnedFd::from(child)), &tried);
+            sys::exit_now(0)
+        }
+        Fork::Parent(_) => {
+            drop(child);
+            let answer = wire::receive(&parent);
+            while !matches!(sys::reap(), Err(_) | Ok(Some(_))) {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+            answer
+        }
+    }
+}
+
+/// Tries to execute an empty file in the temporary folder: where files may be executed there, the kernel says that it is no
+/// program. Otherwise the same in memory. The answer is why neither works, and whether memory is needed.
+fn try_execution() -> (Option<String>, bool) {
+    let executable = |error: io::Error| match error.raw_os_error() {
+        Some(libc::ENOEXEC) => Ok(()),
+        _ => Err(error),
+    };
+    let in_folder = || -> io::Result<()> {
+        let file =
+            tempfile::Builder::new().prefix(".fosssim-probe-").permissions(Permissions::from_mode(0o755)).tempfile()?;
+        let path = CString::new(file.path().as_os_str().as_bytes()).map_err(io::Error::other)?;
+        // A file that is open for writing is busy.
+        let path_only = file.into_temp_path();
+        let result = executable(sys::execute(&path, &[], &[]));
+        drop(path_only);
+        result
+    };
+    let in_memory = || -> io::Result<()> {
+        let copy = File::from(sys::memory_file()?);
+        copy.set_permissions(Permissions::from_mode(0o555))?;
+        let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;
+        drop(copy);
+        executable(sys::execute_open(again.as_fd(), &[], &[]))
+    };
+    let folder = std::env::temp_dir();
+    match in_folder() {
+        Ok(()) => (None, false),
+        Err(error) if error.raw_os_error() == Some(libc::EACCES) => {
+            let why = in_memory().err().map(|memory| {
+                format!(
+                    "nothing may be executed in {} ({error}), and not in memory either ({memory})",
+                    folder.display()
+                )
+            });
+            (why, true)
+        }
+        // A grading will tell what is wrong with the folder.
+        Err(error) => (Some(format!("{}: {error}", folder.display())), false),
+    }
+}
+
+/// Ends a child by its control group; the answer is what such a group limits.
+fn try_group() -> io::Result<Vec<&'static str>> {
+    let group = Group::make(&Order { memory: 1 << 30, processes: 64, ..Order::default() })?;
+    let mut entrance = group.entrance()?;
+    let (mut waits, entered) = io::pipe()?;
+    let Fork::Parent(child) = sys::fork()? else {
+        let word = entrance.write_all(b"0").map_err(|error| error.to_string());
+        // A prober that is gone needs no answer, and one that never kills is our parent, with whom we die.
+        let _ = sys::die_with_parent().and_then(|()| wire::send(entered, &word.err()));
+        loop {
+            std::thread::sleep(Duration::from_secs(1));
+        }
+    };
+    drop(entered);
+    let refused: io::Result<Option<String>> = wire::receive(&mut waits);
+    let killed = match refused {
+        Ok(None) => group.kill(),
+        Ok(Some(error)) => Err(io::Error::other(error)),
+        Err(error) => Err(error),
+    };
+    if killed.is_err() {
+        sys::kill(child, libc::SIGKILL)?;
+    }
+    sys::wait_for(child)?;
+    killed.map(|()| group.controls())
+}
+
+/// Moves into namespaces in a child that then ends, with a folder in sight that every Linux has.
+fn try_namespaces() -> Option<String> {
+    let order =
+        Order { program: wire::raw(Path::new("/bin/sh")), folder: wire::raw(Path::new("/usr")), ..Order::default() };
+    let tried = || -> io::Result<Option<String>> {
+        let (answer, mut told) = io::pipe()?;
+        if let Fork::Parent(child) = sys::fork()? {
+            drop(told);
+            let answer = wire::receive(answer);
+            sys::wait_for(child)?;
+            return answer;
+        }
+        drop(answer);
+        let word = match namespaces::enter(&order) {
+            Ok(Side::Inside) => Some(None),
+            // It has told by itself, or died without a word.
+            Ok(Side::Outside(_)) => None,
+            Err(Failure { stage, errno }) => {
+                Some(Some(format!("could not {stage}: {}", io::Error::from_raw_os_error(errno))))
+            }
+        };
+        // A prober that is gone needs no answer.
+        let _ = word.map(|word: Option<String>| wire::send(&mut told, &word));
+        sys::exit_now(0)
+    };
+    tried().unwrap_or_else(|error| Some(error.to_string()))
+}
+
+/// Puts up one wall after the other.
+fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
+    probe.limits = why(sys::limit(libc::RLIMIT_CORE, 0).and_then(|()| sys::limit(libc::RLIMIT_FSIZE, 1 << 30)));
+    if let Some(user) = user {
+        probe.own_user = why(sys::switch_user(user));
+    }
+    probe.no_new_privileges = why(sys::no_new_privileges());
+    probe.landlock = match probe.landlock_abi {
+        0 => Some("the kernel has no Landlock, or it is switched off".into()),
+        version => why(walls::nothing(version >= SCOPES_SINCE).and_then(walls::enforce)),
+    };
+    let filters = |announce| {
+        let own_process = Some(std::process::id() as i32);
+        filter::filters(filter::Purpose {
+            tools: false,
+            announce,
+            own_process,
+            entrance: None,
+            own_user: user.is_some(),
+        })
+    };
+    let install = || -> io::Result<()> {
+        // The announcing filter goes first, as in a real run; the next probe below only adds to it.
+        for program in filters(false)? {
+            sys::install_filter(&program, false)?;
+        }
+        Ok(())
+    };
+    let announce = || -> io::Result<()> {
+        let listener = sys::install_filter(&filters(true)?[0], true)?;
+        listener.map(|listener| listener.as_fd().try_clone_to_owned()).transpose().map(drop)
+    };
+    probe.notify = why(announce());
+    probe.seccomp = why(install());
+    probe
+}
+
+fn why(result: io::Result<()>) -> Option<String> {
+    result.err().map(|error| error.to_string())
+}

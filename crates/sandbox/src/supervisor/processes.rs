@@ -1,0 +1,288 @@
+//! What `/proc` says about the processes below us, and how they are ended.
+
+use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
+
+use crate::sys;
+
+/// One line of `/proc/PID/stat`, as far as it matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Stat {
+    pid: i32,
+    state: u8,
+    parent: i32,
+    session: i32,
+    /// Processor time of the process and of its reaped children, in ticks of 10 ms.
+    ticks: u64,
+    threads: u64,
+    resident_pages: u64,
+}
+
+impl Stat {
+    /// Whether anything of the process can still run. A process whose main thread has left looks dead (state Z) while
+    /// its other threads go on.
+    fn is_alive(&self) -> bool {
+        self.threads > 1 || !matches!(self.state, b'Z' | b'X')
+    }
+
+    /// Resident memory in pages. A main thread that has left has none; its other threads share the same memory.
+    fn resident(&self) -> u64 {
+        if self.state != b'Z' || !self.is_alive() {
+            return self.resident_pages;
+        }
+        let read = |thread| std::fs::read(format!("/proc/{}/task/{thread}/stat", self.pid)).ok();
+        threads(self.pid).filter_map(|thread| Some(parse(&read(thread)?)?.resident_pages)).max().unwrap_or(0)
+    }
+}
+
+/// What a group of processes uses together.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Usage {
+    /// Processor time of those that live, and of their reaped children.
+    pub(super) cpu: Duration,
+    /// Resident memory in bytes.
+    pub(super) memory: u64,
+    /// Threads.
+    pub(super) threads: u64,
+}
+
+/// What the process `pid` uses; with `tree`, it and all other descendants of this process. `/proc` counts time in
+/// hundredths of a second on every Linux.
+pub(super) fn usage(pid: i32, tree: bool) -> Usage {
+    let mut usage = Usage::default();
+    let page = sys::page_size();
+    let mut add = |stat: &Stat| {
+        usage.cpu += Duration::from_millis(10 * stat.ticks);
+        usage.memory += stat.resident() * page;
+        usage.threads += stat.threads;
+    };
+    if tree {
+        descendants().iter().for_each(&mut add);
+    } else if let Some(stat) = read(pid) {
+        add(&stat);
+    }
+    usage
+}
+
+/// The process and, with `tree`, all other living descendants of this process, each with its threads. One thread is
+/// enough where all of a process share their descriptors and memory; a main thread that has left shares nothing any more.
+pub(super) fn members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
+    let stats = if tree { descendants() } else { read(pid).into_iter().collect() };
+    let living = |stat: &Stat| {
+        if stat.state != b'Z' {
+            return Some((stat.pid, stat.pid));
+        }
+        let alive = |thread: &i32| {
+            let stat =
+                std::fs::read(format!("/proc/{}/task/{thread}/stat", stat.pid)).ok().and_then(|line| parse(&line));
+            stat.is_some_and(|stat| !matches!(stat.state, b'Z' | b'X'))
+        };
+        threads(stat.pid).find(alive).map(|thread| (stat.pid, thread))
+    };
+    stats.iter().filter_map(living).collect()
+}
+
+/// The threads of a process.
+pub(crate) fn threads(pid: i32) -> impl Iterator<Item = i32> {
+    let entries = std::fs::read_dir(format!("/proc/{pid}/task")).into_iter().flatten().flatten();
+    entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+}
+
+/// The processes of a user, by the ids that `/proc` entries belong to.
+pub(super) fn of_user(user: u32) -> Vec<i32> {
+    use std::os::unix::fs::MetadataExt;
+    let owned = |pid: &i32| std::fs::metadata(format!("/proc/{pid}")).is_ok_and(|metadata| metadata.uid() == user);
+    all().filter(owned).collect()
+}
+
+/// The threads of a user, as the kernel counts them for its limit.
+pub(super) fn threads_of_user(user: u32) -> u64 {
+    of_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
+}
+
+/// Who would not go.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Left {
+    /// Processes.
+    pub(super) count: u32,
+    /// Whether the kernel itself holds all of them (state D), which no program can bring about.
+    pub(super) held: bool,
+}
+
+/// Ends every descendant and everything that runs as `user`, reaping as it goes. With `alone` this process is the first
+/// of a process namespace in which there is nobody but the run.
+///
+/// Everybody is stopped before anybody is killed: a fork bomb would otherwise use each place that becomes free.
+/// `reaped` is told of every process that was reaped.
+pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::Reaped)) -> Left {
+    // Only a process that the kernel itself holds (state D) lasts so long.
+    const PATIENCE: Duration = Duration::from_secs(20);
+    let start = Instant::now();
+    loop {
+        if alone {
+            // One word ends all, whatever they look like.
+            sys::kill_everybody_inside();
+        }
+        let victims = stop_then_kill(|| {
+            let mut victims: Vec<i32> = descendants().iter().map(|stat| stat.pid).collect();
+            victims.extend(user.into_iter().flat_map(of_user));
+            victims
+        });
+        loop {
+            match sys::reap() {
+                Ok(Some(process)) => reaped(process),
+                // No child is left: whoever is alive by name only is gone, too.
+                Err(_) if user.is_none_or(|user| of_user(user).is_empty()) => return Left::default(),
+                _ => break,
+            }
+        }
+        if start.elapsed() > PATIENCE {
+            let held = victims.iter().filter_map(|pid| read(*pid)).all(|stat| stat.state == b'D');
+            return Left { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), held };
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Ends what a lost supervisor may have left: the processes of its child's session and those of the child's own user. A
+/// process namespace ends all of its processes by itself, and its sessions are not ours to name.
+pub(crate) fn end_orphans(session: Option<i32>, user: Option<u32>) {
+    const ROUNDS: u32 = 1000;
+    for _ in 0..ROUNDS {
+        let victims = stop_then_kill(|| {
+            let mut victims: Vec<i32> = all()
+                .filter_map(read)
+                .filter(|stat| Some(stat.session) == session && stat.is_alive())
+                .map(|stat| stat.pid)
+                .collect();
+            victims.extend(user.into_iter().flat_map(of_user));
+            victims
+        });
+        if victims.is_empty() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Stops the victims until no new one appears, then kills all of them. The answer is whom it found.
+fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
+    const ROUNDS: u32 = 100;
+    let mut stopped = BTreeSet::new();
+    for _ in 0..ROUNDS {
+        let fresh: Vec<i32> = victims().into_iter().filter(|pid| !stopped.contains(pid)).collect();
+        if fresh.is_empty() {
+            break;
+        }
+        for pid in fresh {
+            // It may have gone by itself meanwhile; the next round sees.
+            let _ = sys::kill(pid, libc::SIGSTOP);
+            stopped.insert(pid);
+        }
+    }
+    for &pid in &stopped {
+        // As above.
+        let _ = sys::kill(pid, libc::SIGKILL);
+    }
+    stopped.into_iter().collect()
+}
+
+/// All living descendants of this process. As their reaper it is an ancestor even of those whose parents have died.
+fn descendants() -> Vec<Stat> {
+    let mut stats: Vec<Stat> = all().filter_map(read).collect();
+    let mut family = vec![std::process::id() as i32];
+    let mut found = Vec::new();
+    // Parents need not have smaller numbers than their children: repeat until nobody is added.
+    loop {
+        let (mut mine, rest): (Vec<Stat>, Vec<Stat>) = stats.iter().partition(|stat| family.contains(&stat.parent));
+        if mine.is_empty() {
+            break;
+        }
+        family = mine.iter().map(|stat| stat.pid).collect();
+        mine.retain(Stat::is_alive);
+        found.extend(mine);
+        stats = rest;
+    }
+    found
+}
+
+/// All process ids.
+pub(crate) fn all() -> impl Iterator<Item = i32> {
+    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+}
+
+fn read(pid: i32) -> Option<Stat> {
+    parse(&std::fs::read(format!("/proc/{pid}/stat")).ok()?)
+}
+
+/// Reads the line. The name in parentheses may hold anything, parentheses and newlines included, so that the fields
+/// count from the last closing one.
+fn parse(line: &[u8]) -> Option<Stat> {
+    let end = line.iter().rposition(|&byte| byte == b')')?;
+    let pid = std::str::from_utf8(line.split(|&byte| byte == b' ').next()?).ok()?.parse().ok()?;
+    let fields: Vec<&str> = std::str::from_utf8(&line[end + 1..]).ok()?.split_ascii_whitespace().collect();
+    let number = |index: usize| fields.get(index).and_then(|field| field.parse::<u64>().ok());
+    Some(Stat {
+        pid,
+        state: *fields.first()?.as_bytes().first()?,
+        parent: fields.get(1)?.parse().ok()?,
+        session: fields.get(3)?.parse().ok()?,
+        ticks: number(11)? + number(12)? + number(13)? + number(14)?,
+        threads: number(17)?,
+        resident_pages: number(21)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_cannot_forge_the_fields() {
+        let line = b"42 (a) Z 1 (x\n) S 7 42 43 0 -1 4194304 90 0 0 0 3 4 5 6 20 0 2 0 100 8192000 512 184 rest";
+        let stat = parse(line).unwrap();
+        assert_eq!(
+            stat,
+            Stat { pid: 42, state: b'S', parent: 7, session: 43, ticks: 18, threads: 2, resident_pages: 512 }
+        );
+    }
+
+    #[test]
+    fn the_threads_of_this_user_are_counted() {
+        assert!(threads_of_user(sys::user()) >= usage(std::process::id() as i32, false).threads.min(1));
+        assert_eq!(threads_of_user(u32::MAX - 7), 0);
+    }
+
+    #[test]
+    fn everybody_found_is_stopped_and_killed_until_nobody_new_appears() {
+        let children: Vec<_> =
+            (0..3).map(|_| std::process::Command::new("/bin/sleep").arg("1000").spawn().unwrap()).collect();
+        let pids: Vec<i32> = children.iter().map(|child| child.id() as i32).collect();
+        // Each look finds one more, as if it had just been forked.
+        let looks = std::cell::Cell::new(0);
+        let found = stop_then_kill(|| {
+            looks.set((looks.get() + 1).min(pids.len()));
+            pids[..looks.get()].to_vec()
+        });
+        assert_eq!(found.len(), 3);
+        for mut child in children {
+            assert!(!child.wait().unwrap().success());
+        }
+    }
+
+    #[test]
+    fn a_process_is_dead_only_when_no_thread_is_left() {
+        let stat = |line: &[u8]| parse(line).unwrap();
+        let left = stat(b"42 (a) Z 7 42 43 0 -1 4194304 90 0 0 0 3 4 5 6 20 0 2 0 100 0 0 184 rest");
+        assert!(left.is_alive(), "another thread goes on");
+        let dead = stat(b"42 (a) Z 7 42 43 0 -1 4194304 90 0 0 0 3 4 5 6 20 0 1 0 100 0 0 184 rest");
+        assert!(!dead.is_alive());
+    }
+
+    #[test]
+    fn this_process_is_seen_to_use_memory() {
+        let usage = usage(std::process::id() as i32, false);
+        assert!(usage.memory > 100_000 && usage.threads >= 1);
+    }
+}

@@ -1,0 +1,492 @@
+//! One supervised run: start, watch, kill, report.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::fs::MetadataExt;
+use std::os::unix::net::UnixStream;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use super::child::{self, Opened, Plan};
+use super::folder::{self, Contents};
+use super::group::Group;
+use super::namespaces::{self, Side};
+use super::streams::Capture;
+use super::{calls, filter, holdings, locks, modes, processes, slot, walls};
+use crate::job::Limits;
+use crate::sys::{self, Fork};
+use crate::wire::{self, Cause, Event, Failure, Order, Report};
+
+/// How often clocks and counters are looked at. A look costs some ten microseconds.
+const TICK: Duration = Duration::from_millis(10);
+/// Looking at the folder may cost this part of the time at most.
+const FOLDER_SHARE: u32 = 20;
+
+/// Runs the order that comes on standard input and answers on standard output.
+pub(super) fn main() -> ExitCode {
+    let streams = || -> io::Result<(File, File)> {
+        Ok((io::stdin().as_fd().try_clone_to_owned()?.into(), io::stdout().as_fd().try_clone_to_owned()?.into()))
+    };
+    let Ok((mut control, mut answers)) = streams() else { return ExitCode::from(2) };
+    let result = wire::receive::<Order>(&mut control)
+        .map_err(|error| Failure::new("read the order", &error))
+        .and_then(|order| settle(order, control))
+        .and_then(|settled| match settled {
+            Settled::Here(run) => run.finish(&mut answers).map(Ok),
+            Settled::Elsewhere(code) => Ok(Err(code)),
+        });
+    let sent = match result {
+        Ok(Ok(Some((report, stdout, stderr)))) => wire::send(&mut answers, &Event::Done(report))
+            .and_then(|()| answers.write_all(&stdout))
+            .and_then(|()| answers.write_all(&stderr)),
+        Ok(Ok(None)) => return ExitCode::from(1),
+        // What was inside has told everything.
+        Ok(Err(code)) => return ExitCode::from(code),
+        Err(failure) => wire::send(&mut answers, &Event::Failed(failure)),
+    };
+    if sent.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(1) }
+}
+
+/// A run that has begun, or the word that all is over.
+enum Settled {
+    Here(Box<Run>),
+    /// It was another process's business, which ended with this code.
+    Elsewhere(u8),
+}
+
+/// Finds a user and a world for the run, and starts it there.
+fn settle(order: Order, control: File) -> Result<Settled, Failure> {
+    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+    // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
+    sys::new_session().map_err(stage("start the supervisor's session"))?;
+    let slot = match order.walls.own_user {
+        true => Some(slot::take().map_err(|error| Failure::new(format!("take a user of its own ({error})"), &error))?),
+        false => None,
+    };
+    let group = match order.walls.group {
+        true => Some(Group::make(&order).map_err(stage("make a control group"))?),
+        false => None,
+    };
+    if order.walls.namespaces
+        && let Side::Outside(code) = namespaces::enter(&order)?
+    {
+        return Ok(Settled::Elsewhere(code));
+    }
+    Run::start(order, control, slot, group).map(|run| Settled::Here(Box::new(run)))
+}
+
+/// The report, standard output and standard error.
+type Finished = (Report, Vec<u8>, Vec<u8>);
+
+/// A program at work, seen from its supervisor.
+struct Run {
+    order: Order,
+    control: File,
+    folder: OwnedFd,
+    /// Keeps the trace pipe open until every process is dead, so that its reader sees the end then and not before.
+    pipe: Option<OwnedFd>,
+    /// The user that the program runs as, if it is its own, and who owned the folder before.
+    slot: Option<(slot::Slot, (u32, u32))>,
+    /// The control group, if there is one.
+    group: Option<Group>,
+    child: i32,
+    process: Option<OwnedFd>,
+    status: Option<UnixStream>,
+    told: Vec<u8>,
+    listener: Option<OwnedFd>,
+    stdout: Capture,
+    stderr: Capture,
+    began: Instant,
+    stalled: Stalled,
+    folder_before: Contents,
+    main_status: Option<i32>,
+    cause: Option<Cause>,
+    peak_memory: u64,
+    /// Memory that the last look at mappings found and that is resident for nobody.
+    unseen_memory: u64,
+    orphaned: bool,
+}
+
+impl Run {
+    /// Prepares everything and forks.
+    fn start(order: Order, control: File, slot: Option<slot::Slot>, group: Option<Group>) -> Result<Self, Failure> {
+        let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+        sys::become_reaper().map_err(stage("become the reaper"))?;
+        let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
+        let folder_before = folder::measure(folder.as_fd(), u64::MAX, u64::MAX);
+        let slot = if let Some(slot) = slot {
+            let owner = File::from(folder.try_clone().map_err(stage("open the working folder"))?)
+                .metadata()
+                .map_err(stage("look at the working folder"))?;
+            folder::give(folder.as_fd(), slot.user, slot.user).map_err(stage("give the working folder away"))?;
+            Some((slot, (owner.uid(), owner.gid())))
+        } else {
+            None
+        };
+        let pipe = match &order.pipe {
+            Some(name) => {
+                let name = std::ffi::CString::new(name.as_slice())
+                    .map_err(|error| Failure::new("open the trace pipe", &io::Error::other(error)))?;
+                let flags = libc::O_WRONLY | libc::O_NONBLOCK;
+                Some(sys::open_beneath(folder.as_fd(), &name, flags).map_err(stage("open the trace pipe"))?)
+            }
+            None => None,
+        };
+        let (stdout, output) = io::pipe().map_err(stage("make a pipe"))?;
+        let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
+        let (status, child_status) = UnixStream::pair().map_err(stage("make a socket"))?;
+        status.set_nonblocking(true).map_err(stage("make a socket"))?;
+        let opened = Opened::new(&wire::path(&order.program), slot.is_some()).map_err(stage("open the program"))?;
+        let entrance = if order.walls.seccomp && !order.walls.notify && !order.tools {
+            let interpreter = order.interpreter.as_ref().map(|path| Opened::new(&wire::path(path), false)).transpose();
+            let interpreter = interpreter.map_err(stage("open the interpreter"))?;
+            let executed = interpreter.as_ref().unwrap_or(&opened);
+            Some(executed.under_number(order.open_files).map_err(stage("open the program once more"))?)
+        } else {
+            None
+        };
+        let rules = match order.walls.landlock {
+            true => Some(walls::rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?),
+            false => None,
+        };
+        let plan = Plan {
+            supervisor: std::process::id(),
+            folder: folder.try_clone().map_err(stage("open the working folder"))?,
+            opened: Some(opened),
+            entrance,
+            rules,
+            group: group.as_ref().map(Group::entrance).transpose().map_err(stage("open the control group"))?,
+            user: slot.as_ref().map(|(slot, _)| slot.user),
+            input: File::open("/dev/null").map_err(stage("open /dev/null"))?.into(),
+            output: output.into(),
+            error: error.into(),
+            status: child_status,
+            order: order.clone(),
+        };
+        let began = Instant::now();
+        let child = match sys::fork().map_err(stage("fork"))? {
+            Fork::Child => child::become_program(plan),
+            Fork::Parent(pid) => pid,
+        };
+        // What was prepared for the child is closed here, so that the ends of pipes and sockets can be seen.
+        drop(plan);
+        Ok(Self {
+            stdout: Capture::new(stdout, order.output_bytes).map_err(stage("read standard output"))?,
+            stderr: Capture::new(stderr, order.output_bytes).map_err(stage("read standard error"))?,
+            order,
+            control,
+            folder,
+            pipe,
+            stalled: Stalled::default(),
+            slot,
+            child,
+            process: sys::process_descriptor(child),
+            group,
+            status: Some(status),
+            told: Vec::new(),
+            listener: None,
+            began,
+            folder_before,
+            main_status: None,
+            cause: None,
+            peak_memory: 0,
+            unseen_memory: 0,
+            orphaned: false,
+        })
+    }
+
+    /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader is gone.
+    fn finish(mut self, answers: &mut File) -> Result<Option<Finished>, Failure> {
+        let user = self.slot.as_ref().map(|(slot, _)| slot.user);
+        // A grader that is gone shows as the end of the control pipe, too.
+        let walls = self.order.walls;
+        let session = (!walls.namespaces && !walls.bubblewrap).then_some(self.child);
+        let _ = wire::send(answers, &Event::Ready { session, user });
+        let watched = self.watch();
+        let wall = self.wall();
+        let (child, mut main_status) = (self.child, self.main_status);
+        if let Some(group) = &self.group {
+            // What it leaves over, if anything, is ended one by one.
+            let _ = group.kill();
+        }
+        if main_status.is_none() {
+            // Its number is its own as long as nobody has reaped it.
+            let _ = sys::kill(child, libc::SIGKILL);
+        }
+        let left = processes::end_all(user, walls.namespaces, |process| {
+            if process.pid == child {
+                main_status = Some(process.status);
+            }
+        });
+        self.stdout.take_rest();
+        self.stderr.take_rest();
+        self.hear();
+        let shallow = folder::open_up(self.folder.as_fd());
+        let after = folder::measure(self.folder.as_fd(), u64::MAX, u64::MAX);
+        if let Some((_, (owner, group))) = &self.slot {
+            folder::give(self.folder.as_fd(), *owner, *group)
+                .map_err(|error| Failure::new("take the working folder back", &error))?;
+        }
+        watched.map_err(|error| Failure::new("watch the program", &error))?;
+        if self.orphaned {
+            return Ok(None);
+        }
+        let failure: Option<Failure> = serde_json::from_slice(&self.told).ok();
+        let exec_errno = match failure {
+            Some(failure) if failure.stage == child::EXECUTE => Some(failure.errno),
+            Some(failure) => return Err(failure),
+            None => None,
+        };
+        // What the kernel holds is the host's matter; whoever else would not go has seen to it.
+        self.blame_if(left.count > 0 && !left.held, Cause::Call("none, but it left processes that do not end".into()));
+        let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
+        self.blame_if(out_of_memory, Cause::Memory);
+        let (cpu, largest) = sys::children_usage().map_err(|error| Failure::new("ask for the usage", &error))?;
+        let report = Report {
+            cause: self.cause.take(),
+            status: main_status.unwrap_or(0),
+            exec_errno,
+            cpu_micros: micros(cpu.max(self.group_cpu())),
+            wall_micros: micros(wall),
+            peak_memory: largest.max(self.peak_memory),
+            folder_growth: after.bytes.saturating_sub(self.folder_before.bytes),
+            folder_over: self.over(&after) || !shallow,
+            stdout_bytes: self.stdout.bytes.len() as u64,
+            stderr_bytes: self.stderr.bytes.len() as u64,
+            stdout_truncated: self.stdout.truncated,
+            stderr_truncated: self.stderr.truncated,
+            survivors: if left.held { left.count } else { 0 },
+        };
+        Ok(Some((report, self.stdout.bytes, self.stderr.bytes)))
+    }
+
+    /// Until the main process has ended or there is a cause to end it.
+    fn watch(&mut self) -> io::Result<()> {
+        let (mut next_look, mut next_folder) = (Instant::now(), Instant::now());
+        while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
+            let ready = sys::poll(
+                [
+                    Some(self.control.as_fd()),
+                    self.stdout.descriptor(),
+                    self.stderr.descriptor(),
+                    self.status.as_ref().map(AsFd::as_fd),
+                    self.listener.as_ref().map(AsFd::as_fd),
+                    self.process.as_ref().map(AsFd::as_fd),
+                ],
+                next_look.saturating_duration_since(Instant::now()),
+            )?;
+            if ready[0] {
+                self.obey();
+            }
+            if ready[1] {
+                self.stdout.take();
+            }
+            if ready[2] {
+                self.stderr.take();
+            }
+            if ready[3] {
+                self.hear();
+            }
+            if ready[4] {
+                self.decide_announcement()?;
+            }
+            self.blame_if(self.stdout.truncated, Cause::Stdout);
+            self.blame_if(self.stderr.truncated, Cause::Stderr);
+            let now = Instant::now();
+            if now >= next_look || ready[5] {
+                self.reap();
+                self.look();
+                next_look = Instant::now() + TICK;
+            }
+            if now >= next_folder {
+                self.look_at_folder();
+                next_folder = Instant::now() + TICK.max(now.elapsed() * FOLDER_SHARE);
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes the first cause.
+    fn blame_if(&mut self, condition: bool, cause: Cause) {
+        if condition && self.cause.is_none() {
+            self.cause = Some(cause);
+        }
+    }
+
+    /// Commands of the grader; the end of its pipe is the end of the grader.
+    fn obey(&mut self) {
+        let mut command = [0];
+        match self.control.read(&mut command) {
+            Ok(1) if command[0] == wire::COMMAND_TRACE_LIMIT => self.blame_if(true, Cause::Trace),
+            Ok(1) => self.blame_if(true, Cause::Cancelled),
+            _ => self.orphaned = true,
+        }
+    }
+
+    /// What the child says on its way; the end of the socket means that the program has started.
+    fn hear(&mut self) {
+        let mut buffer = [0; 4096];
+        while let Some(status) = &self.status {
+            match sys::receive_descriptor(status, &mut buffer) {
+                Ok((0, _)) => self.status = None,
+                Ok((_, Some(listener))) => self.listener = Some(listener),
+                Ok((length, None)) => self.told.extend_from_slice(&buffer[..length]),
+                Err(_) => return,
+            }
+        }
+    }
+
+    /// A forbidden call waits: either it is the one that starts the program, or the program ends.
+    fn decide_announcement(&mut self) -> io::Result<()> {
+        let Some(listener) = self.listener.as_ref().map(|listener| listener.try_clone()).transpose()? else {
+            return Ok(());
+        };
+        let announced = match sys::next_announcement(listener.as_fd()) {
+            Ok(Some(announced)) => announced,
+            Ok(None) => return Ok(()),
+            Err(_) => {
+                // Nobody is left under the filter.
+                self.listener = None;
+                return Ok(());
+            }
+        };
+        // The socket closes when the program starts, before its first instruction.
+        self.hear();
+        let executes = announced.call == libc::SYS_execve || announced.call == libc::SYS_execveat;
+        let starting = self.status.is_some();
+        if executes && starting {
+            // The caller may have been killed meanwhile; then nobody waits for this answer.
+            let _ = sys::let_through(listener.as_fd(), announced.id);
+            return Ok(());
+        }
+        if locks::concerns(announced.call) {
+            // As above.
+            let (user, root) = (self.slot.as_ref().map(|(slot, _)| slot.user), wire::path(&self.order.folder));
+            let _ = match sys::with_files_of(user, || locks::is_inside(&announced, &root)) {
+                true => sys::let_through(listener.as_fd(), announced.id),
+                false => sys::answer(listener.as_fd(), announced.id, Err(libc::EPERM)),
+            };
+            return Ok(());
+        }
+        if modes::concerns(announced.call) {
+            let result = modes::change(&announced, self.folder.as_fd(), &wire::path(&self.order.folder));
+            // As above.
+            let _ = sys::answer(listener.as_fd(), announced.id, result);
+            return Ok(());
+        }
+        let mut call = calls::name(announced.call);
+        if announced.call == libc::SYS_clone {
+            let flags = announced.arguments[0];
+            let namespace = filter::NAMESPACE_FLAGS.iter().any(|flag| flags & flag != 0);
+            call.push_str(match flags & libc::CLONE_THREAD as u64 {
+                _ if namespace => " (it made a namespace)",
+                0 => " (it started another process)",
+                _ => " (it made a thread with descriptors of its own)",
+            });
+        } else if call.ends_with("fork") {
+            call.push_str(" (it started another process)");
+        } else if executes {
+            call.push_str(" (it started another program)");
+        }
+        self.blame_if(true, Cause::Call(call));
+        Ok(())
+    }
+
+    /// Reaps whoever has ended.
+    fn reap(&mut self) {
+        while let Ok(Some(process)) = sys::reap() {
+            if process.pid == self.child {
+                self.main_status = Some(process.status);
+            }
+        }
+    }
+
+    /// Looks at clocks and counters.
+    fn look(&mut self) {
+        if self.main_status.is_some() {
+            return;
+        }
+        let usage = processes::usage(self.child, self.has_children());
+        let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
+        let memory = usage.memory + self.unseen_memory;
+        self.peak_memory = self.peak_memory.max(memory);
+        self.blame_if(memory > self.order.memory, Cause::Memory);
+        self.blame_if(usage.threads > u64::from(self.order.processes), Cause::Processes);
+        let cpu = (usage.cpu + reaped).max(self.group_cpu());
+        self.blame_if(micros(cpu) > self.order.cpu_micros, Cause::Cpu);
+        let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
+        self.stalled.look(full, Instant::now());
+        self.blame_if(micros(self.wall()) > self.order.wall_micros, Cause::Wall);
+    }
+
+    /// Time on the clock that is the program's own: without that in which it waited for the reader of its trace.
+    fn wall(&self) -> Duration {
+        let patience = Duration::from_micros(self.order.wall_micros).saturating_mul(Limits::PATIENCE);
+        self.began.elapsed().saturating_sub(self.stalled.total.min(patience))
+    }
+
+    fn group_cpu(&self) -> Duration {
+        self.group.as_ref().map_or(Duration::ZERO, Group::cpu)
+    }
+
+    /// Looks at the working folder, at removed files that are still in use, and at memory that is resident for nobody.
+    fn look_at_folder(&mut self) {
+        let mut contents = folder::measure(self.folder.as_fd(), self.order.folder_bytes, self.order.folder_files);
+        let user = self.slot.as_ref().map(|(slot, _)| slot.user);
+        let members = processes::members(self.child, self.has_children());
+        let root = wire::path(&self.order.folder);
+        let page_tables = self.order.sanitised;
+        let held = sys::with_files_of(user, || holdings::of(&members, &root, self.order.tools, page_tables));
+        contents.bytes += held.nameless;
+        self.unseen_memory = held.memory;
+        self.blame_if(self.over(&contents), Cause::Folder);
+    }
+
+    /// Whether there may be other processes than the main one. Without the filter anybody can start some.
+    fn has_children(&self) -> bool {
+        self.order.tools || !self.order.walls.seccomp
+    }
+
+    fn over(&self, contents: &Contents) -> bool {
+        contents.over || contents.bytes > self.order.folder_bytes || contents.files > self.order.folder_files
+    }
+}
+
+/// How long the trace pipe was full.
+#[derive(Debug, Default)]
+struct Stalled {
+    since: Option<Instant>,
+    total: Duration,
+}
+
+impl Stalled {
+    /// Notes whether the pipe is full now. The time between two looks counts when it was at both.
+    fn look(&mut self, full: bool, now: Instant) {
+        if let Some(since) = self.since.filter(|_| full) {
+            self.total += now.saturating_duration_since(since);
+        }
+        self.since = full.then_some(now);
+    }
+}
+
+fn micros(time: Duration) -> u64 {
+    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_time_between_two_looks_at_a_full_pipe_is_given_back() {
+        let start = Instant::now();
+        let mut stalled = Stalled::default();
+        for (milliseconds, full) in
+            [(0, false), (10, true), (20, true), (35, true), (40, false), (50, true), (60, false)]
+        {
+            stalled.look(full, start + Duration::from_millis(milliseconds));
+        }
+        assert_eq!(stalled.total, Duration::from_millis(25));
+    }
+}

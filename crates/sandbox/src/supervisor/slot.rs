@@ -1,0 +1,100 @@
+//! One user id per running program, so that programs that run side by side cannot signal or read each other.
+//!
+//! Only root can become another user. The ids are 61000 and up, a range that no distribution hands out; each is held by
+//! a lock on a file that only root can reach, for as long as the supervisor lives.
+
+use std::fs::{DirBuilder, File, OpenOptions};
+use std::io;
+use std::ops::Range;
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::processes;
+
+/// The first id and how many there are (systemd hands out ids from 61184 on).
+const FIRST: u32 = 61_000;
+const COUNT: u32 = 184;
+
+/// A user id that is ours until this is dropped.
+pub(super) struct Slot {
+    pub(super) user: u32,
+    _lock: File,
+}
+
+/// How long to wait for an id; no run that keeps its limits lasts so long.
+const PATIENCE: Duration = Duration::from_secs(3600);
+
+/// Takes the first id that nobody holds and that no process runs under. With all of them taken it waits for one.
+///
+/// # Errors
+///
+/// When none becomes free for an hour, the grader has gone meanwhile, or the folder of locks belongs to somebody else.
+pub(super) fn take() -> io::Result<Slot> {
+    take_of(&folder()?, FIRST..FIRST + COUNT, PATIENCE)
+}
+
+/// The same for any folder and ids.
+fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<Slot> {
+    const PAUSE: Duration = Duration::from_millis(20);
+    let (start, grader) = (Instant::now(), std::os::unix::process::parent_id());
+    loop {
+        for user in users.clone() {
+            let path = folder.join(user.to_string());
+            let lock = OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(path)?;
+            if lock.try_lock().is_ok() && processes::of_user(user).is_empty() {
+                return Ok(Slot { user, _lock: lock });
+            }
+        }
+        if start.elapsed() >= patience || std::os::unix::process::parent_id() != grader {
+            return Err(io::Error::other(format!("all {} user ids from {} on are in use", users.len(), users.start)));
+        }
+        std::thread::sleep(PAUSE);
+    }
+}
+
+/// The folder of the locks, made on first use in the first of the usual places that can be written to.
+fn folder() -> io::Result<PathBuf> {
+    let mut problem = io::Error::other("there is neither /run nor /tmp");
+    for base in ["/run", "/var/tmp", "/tmp"] {
+        match folder_in(Path::new(base)) {
+            Ok(folder) => return Ok(folder),
+            Err(error) => problem = error,
+        }
+    }
+    Err(problem)
+}
+
+fn folder_in(base: &Path) -> io::Result<PathBuf> {
+    let folder = base.join("fosssim-oracle-users");
+    match DirBuilder::new().mode(0o700).create(&folder) {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
+        _ => {}
+    }
+    let metadata = folder.symlink_metadata()?;
+    if !metadata.is_dir() || metadata.uid() != 0 || metadata.mode() & 0o077 != 0 {
+        return Err(io::Error::other(format!("{} must be a folder that only root can enter", folder.display())));
+    }
+    // Made by an earlier container, it may lie where nothing can be written any more.
+    OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(folder.join("lock"))?;
+    Ok(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn with_every_id_taken_a_run_waits_for_one() {
+        let folder = tempfile::tempdir().unwrap();
+        // An id that nobody has.
+        let take = |patience| take_of(folder.path(), 4_000_000_000..4_000_000_001, patience);
+        let first = take(Duration::ZERO).unwrap();
+        assert!(take(Duration::ZERO).is_err(), "it is held");
+        std::thread::scope(|scope| {
+            let second = scope.spawn(|| take(PATIENCE).map(|slot| slot.user));
+            drop(first);
+            assert_eq!(second.join().unwrap().unwrap(), 4_000_000_000);
+        });
+    }
+}

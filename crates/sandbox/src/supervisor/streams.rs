@@ -1,0 +1,90 @@
+//! What the program writes to its standard streams, kept up to a limit and counted to the byte.
+
+use std::io::{self, PipeReader, Read};
+use std::os::fd::{AsFd, BorrowedFd};
+
+use crate::sys;
+
+/// At most this much is read at one go, so that a flood does not keep the supervisor from its other watches.
+const AT_ONE_GO: usize = 1 << 20;
+
+/// One captured stream.
+pub(super) struct Capture {
+    pipe: Option<PipeReader>,
+    limit: u64,
+    pub(super) bytes: Vec<u8>,
+    pub(super) truncated: bool,
+}
+
+impl Capture {
+    /// Captures what comes through the pipe, up to `limit` bytes.
+    pub(super) fn new(pipe: PipeReader, limit: u64) -> io::Result<Self> {
+        sys::set_blocking(pipe.as_fd(), false)?;
+        Ok(Self { pipe: Some(pipe), limit, bytes: Vec::new(), truncated: false })
+    }
+
+    /// The pipe, as long as it is open.
+    pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
+        self.pipe.as_ref().map(AsFd::as_fd)
+    }
+
+    /// Takes what is there. A stream over its limit is closed and marked; the rest is nobody's.
+    pub(super) fn take(&mut self) {
+        let Some(pipe) = &mut self.pipe else { return };
+        let mut buffer = [0; 1 << 16];
+        let mut taken = 0;
+        while taken < AT_ONE_GO {
+            match pipe.read(&mut buffer) {
+                Ok(0) => {
+                    self.pipe = None;
+                    return;
+                }
+                Ok(length) => {
+                    taken += length;
+                    let room = usize::try_from(self.limit).unwrap_or(usize::MAX) - self.bytes.len();
+                    self.bytes.extend_from_slice(&buffer[..length.min(room)]);
+                    if length > room {
+                        self.truncated = true;
+                        self.pipe = None;
+                        return;
+                    }
+                }
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(_) => return,
+            }
+        }
+    }
+
+    /// Takes all that is left. Only called when no process is alive that could go on writing.
+    pub(super) fn take_rest(&mut self) {
+        while self.pipe.is_some() {
+            let before = self.bytes.len();
+            self.take();
+            if self.bytes.len() == before {
+                return;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    #[test]
+    fn a_stream_is_cut_at_its_limit_to_the_byte() {
+        for (limit, truncated) in [(6, false), (5, true), (0, true)] {
+            let (reader, mut writer) = io::pipe().unwrap();
+            let mut capture = Capture::new(reader, limit).unwrap();
+            capture.take();
+            writer.write_all(b"abcdef").unwrap();
+            drop(writer);
+            capture.take_rest();
+            assert_eq!(capture.bytes, b"abcdef"[..limit as usize]);
+            assert_eq!(capture.truncated, truncated);
+            assert!(capture.descriptor().is_none());
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! The only files in sight of a run: a root folder of its own with what the order names, under the usual paths.
+//!
+//! The same places that Landlock allows (see `walls.rs`) appear here, read-only but for the working folder; nothing
+//! else of the host exists, not even by name. There is no writable place in memory (`/tmp`, `/dev/shm`), because what
+//! lies there would count for nobody.
+
+use std::collections::VecDeque;
+use std::ffi::{CString, OsString};
+use std::fs::File;
+use std::io;
+use std::os::fd::AsFd;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::symlink;
+use std::path::{Component, Path, PathBuf};
+
+use super::walls;
+use crate::mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY};
+use crate::own;
+use crate::sys;
+use crate::wire::{self, Failure, Order};
+
+/// Where the new root is put together: a folder that every Linux has. It is in sight again once the roots have changed.
+const SITE: &str = "/proc";
+/// The old root's name beneath the new one, for as long as it is needed.
+const HOST: &str = "/.host";
+/// As many links as the kernel follows.
+const MOST_LINKS: u32 = 40;
+/// Room for the folders, links and empty files that mounts lie on.
+const ROOM: &str = "mode=755,size=4m,nr_inodes=20k";
+
+/// What may be done with a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Access {
+    Read,
+    Device,
+    Write,
+}
+
+/// Replaces the root folder of this process, which must be alone in its mount namespace.
+///
+/// # Errors
+///
+/// The step that failed. The process then has half a root and must end.
+pub(super) fn build(order: &Order) -> Result<(), Failure> {
+    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+    // The sample may be graded where it lies, to show that all works.
+    let program = wire::path(&order.program).canonicalize().map_err(stage("look at the program"))?;
+    let own = own::files().into_iter().filter(|path| *path != program);
+    sys::file_mask(0o022);
+    mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
+    mounts::mount(c"tmpfs", &text(Path::new(SITE))?, &text(Path::new(ROOM))?).map_err(stage("make a root folder"))?;
+    let old = PathBuf::from(format!("{SITE}{HOST}"));
+    std::fs::create_dir(&old).map_err(stage("make a root folder"))?;
+    mounts::change_root(&text(Path::new(SITE))?, &text(&old)?).map_err(stage("change the root folder"))?;
+    let mut view = View { placed: Vec::new() };
+    let mut readable = walls::readable(order);
+    readable.sort_by_key(|path| path.as_os_str().len());
+    for (path, access) in readable
+        .into_iter()
+        .map(|path| (path, Access::Read))
+        .chain(walls::DEVICES.map(|path| (path.into(), Access::Device)))
+        .chain([(wire::path(&order.folder), Access::Write)])
+    {
+        view.place(&path, access)
+            .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
+    }
+    for raw in &order.named {
+        let path = wire::path(raw);
+        // Only the links on the way: what they lead to is among the executable files, or was exchanged meanwhile.
+        view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
+    }
+    for path in own {
+        view.hide(&path).map_err(stage("hide the grader's own files"))?;
+    }
+    for (name, number) in [("/dev/fd", ""), ("/dev/stdin", "/0"), ("/dev/stdout", "/1"), ("/dev/stderr", "/2")] {
+        symlink(format!("/proc/self/fd{number}"), name).map_err(stage("make /dev"))?;
+    }
+    std::fs::create_dir_all("/proc").map_err(stage("make /proc"))?;
+    mounts::mount(c"proc", c"/proc", c"").map_err(stage("mount /proc"))?;
+    mounts::detach(&text(Path::new(HOST))?).map_err(stage("leave the host's files"))?;
+    std::fs::remove_dir(HOST).map_err(stage("leave the host's files"))?;
+    mounts::restrict_at(c"/", READ_ONLY).map_err(stage("close the root folder"))
+}
+
+fn text(path: &Path) -> Result<CString, Failure> {
+    c_string(path).map_err(|error| Failure::new("read a path", &error))
+}
+
+fn c_string(path: &Path) -> io::Result<CString> {
+    CString::new(path.as_os_str().as_bytes()).map_err(io::Error::other)
+}
+
+/// A path of the host, as it is reached while the view is made.
+fn on_host(path: &Path) -> PathBuf {
+    let mut host = OsString::from(HOST);
+    host.push(path);
+    host.into()
+}
+
+/// The new root while it is made.
+struct View {
+    placed: Vec<(PathBuf, Access)>,
+}
+
+impl View {
+    /// Brings what lies at the path into sight under the same path. What the host lacks is left out, and so are its
+    /// processes: `/proc` is made anew.
+    fn place(&mut self, path: &Path, access: Access) -> io::Result<()> {
+        let Some(real) = self.resolve(path)? else { return Ok(()) };
+        if real == Path::new("/") {
+            return Err(io::ErrorKind::InvalidInput.into());
+        }
+        if real.starts_with("/proc") || self.shows(&real, access) {
+            return Ok(());
+        }
+        let source = on_host(&real);
+        if source.is_dir() {
+            std::fs::create_dir_all(&real)?;
+        } else {
+            std::fs::create_dir_all(real.parent().unwrap_or(Path::new("/")))?;
+            // Beneath a folder that is in sight already the file is there.
+            if !real.exists() {
+                File::create(&real)?;
+            }
+        }
+        let tree = mounts::copy_of(&c_string(&source)?)?;
+        let attributes = match access {
+            Access::Read => READ_ONLY | NO_SET_USER | NO_DEVICES,
+            Access::Device => READ_ONLY | NO_SET_USER,
+            Access::Write => NO_SET_USER | NO_DEVICES,
+        };
+        mounts::restrict(tree.as_fd(), attributes)?;
+        mounts::attach(tree.as_fd(), &c_string(&real)?)?;
+        self.placed.push((real, access));
+        Ok(())
+    }
+
+    /// Lays nothing over a file that is in sight.
+    fn hide(&self, path: &Path) -> io::Result<()> {
+        if path.symlink_metadata().is_err() {
+            return Ok(());
+        }
+        let nothing = mounts::copy_of(&c_string(&on_host(Path::new("/dev/null")))?)?;
+        mounts::restrict(nothing.as_fd(), READ_ONLY | NO_SET_USER | NO_DEVICES)?;
+        mounts::attach(nothing.as_fd(), &c_string(path)?)
+    }
+
+    /// Whether the path is in sight already, with the same access.
+    fn shows(&self, path: &Path, access: Access) -> bool {
+        self.placed.iter().any(|(shown, granted)| path.starts_with(shown) && *granted == access)
+    }
+
+    /// The path without links; each link on the way is made in the new root as well. `None` when the host has nothing
+    /// there that we may see.
+    fn resolve(&self, path: &Path) -> io::Result<Option<PathBuf>> {
+        let mut real = PathBuf::from("/");
+        let mut left: VecDeque<OsString> = names(path);
+        let mut links = 0;
+        while let Some(name) = left.pop_front() {
+            if name == ".." {
+                real.pop();
+                continue;
+            }
+            let next = real.join(&name);
+            let Ok(metadata) = on_host(&next).symlink_metadata() else { return Ok(None) };
+            if !metadata.is_symlink() {
+                real = next;
+                continue;
+            }
+            links += 1;
+            let Ok(target) = std::fs::read_link(on_host(&next)) else { return Ok(None) };
+            if links > MOST_LINKS {
+                return Ok(None);
+            }
+            if next.symlink_metadata().is_err() {
+                std::fs::create_dir_all(&real)?;
+                symlink(&target, &next)?;
+            }
+            if target.is_absolute() {
+                real = PathBuf::from("/");
+            }
+            for name in names(&target).into_iter().rev() {
+                left.push_front(name);
+            }
+        }
+        Ok(Some(real))
+    }
+}
+
+/// The parts of a path that lead somewhere.
+fn names(path: &Path) -> VecDeque<OsString> {
+    path.components()
+        .filter_map(|part| match part {
+            Component::Normal(name) => Some(name.into()),
+            Component::ParentDir => Some("..".into()),
+            _ => None,
+        })
+        .collect()
+}

@@ -1,0 +1,176 @@
+//! The Landlock rules: which files the program may reach, and that it may not signal anybody outside.
+//!
+//! Rules name open descriptors, so that they are made while we still are who we are, and come into force in the child
+//! after it has become another user.
+
+use std::io;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::path::{Path, PathBuf};
+
+use landlock::{
+    ABI, Access, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible, PathBeneath, PathFd, Ruleset, RulesetAttr,
+    RulesetCreated, RulesetCreatedAttr, RulesetError, RulesetStatus, Scope,
+};
+
+use crate::own::{self, Allowed};
+use crate::wire::{self, Order};
+
+/// The newest rules we know and have tried; older kernels enforce what they can, [`LayerReport`] says what.
+///
+/// [`LayerReport`]: crate::LayerReport
+const NEWEST: ABI = ABI::V6;
+
+/// Where shared libraries lie: readable, not executable.
+const LIBRARIES: [&str; 8] = [
+    "/lib",
+    "/lib64",
+    "/usr/lib",
+    "/usr/lib64",
+    "/usr/libexec",
+    "/usr/local/lib",
+    "/etc/ld.so.cache",
+    "/etc/ld.so.preload",
+];
+/// What runtimes ask about the machine.
+const MACHINE: [&str; 5] =
+    ["/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo", "/etc/localtime", "/usr/share/zoneinfo"];
+/// What runtimes ask about their own process.
+const OWN_FILES: [&str; 9] = ["auxv", "cmdline", "comm", "environ", "limits", "maps", "stat", "statm", "status"];
+/// Devices without an inside.
+pub(super) const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
+/// The system's programs, for compilers and build tools.
+const TOOLS: [&str; 4] = ["/usr", "/bin", "/lib", "/lib64"];
+/// Settings that compilers and build tools read.
+const SETTINGS: [&str; 7] = [
+    "/etc/alternatives",
+    "/etc/ld.so.conf",
+    "/etc/ld.so.conf.d",
+    "/etc/passwd",
+    "/etc/group",
+    "/etc/nsswitch.conf",
+    "/etc/os-release",
+];
+
+/// Every path outside the working folder that the rules let the order's program read, devices aside.
+pub(super) fn readable(order: &Order) -> Vec<PathBuf> {
+    let fixed = LIBRARIES.iter().chain(&MACHINE).map(PathBuf::from);
+    let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
+    let tools = if order.tools { [&TOOLS[..], &SETTINGS[..]] } else { [&[][..], &[]] };
+    fixed.chain(named).chain(tools.concat().into_iter().map(PathBuf::from)).collect()
+}
+
+/// Prepares the rules for an order whose working folder is open as `folder`. Paths that this host lacks are left out.
+pub(super) fn rules(order: &Order, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
+    let read = AccessFs::ReadFile | AccessFs::ReadDir;
+    let execute = read | AccessFs::Execute;
+    let own = own::files();
+    let mut ruleset = handled(order.walls.scopes)?;
+    for path in LIBRARIES.iter().chain(&MACHINE) {
+        ruleset = add_around(ruleset, Path::new(path), read, &own)?;
+    }
+    for path in DEVICES {
+        // What is written to shared mappings of /dev/zero would be memory that no counter shows.
+        let access = if path == "/dev/zero" { BitFlags::EMPTY } else { AccessFs::WriteFile.into() };
+        ruleset = add(ruleset, Path::new(path), access | AccessFs::ReadFile)?;
+    }
+    for raw in &order.readable {
+        ruleset = add_around(ruleset, &wire::path(raw), read, &own)?;
+    }
+    for raw in order.executable.iter().chain([&order.program]) {
+        ruleset = add(ruleset, &wire::path(raw), execute)?;
+    }
+    if order.tools {
+        for path in TOOLS {
+            ruleset = add_around(ruleset, Path::new(path), execute, &own)?;
+        }
+        for path in SETTINGS {
+            ruleset = add(ruleset, Path::new(path), read)?;
+        }
+    }
+    ruleset.add_rule(PathBeneath::new(folder, in_folder(order.tools))).map_err(refused)
+}
+
+/// Adds what the process may read of its own entry in `/proc`, file by file, because the entry also shows sockets, mounts
+/// and groups of the host and which pages of a file are in memory. Only the child itself can do so.
+pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {
+    for name in OWN_FILES {
+        ruleset = add(ruleset, &Path::new("/proc/self").join(name), AccessFs::ReadFile.into())?;
+    }
+    // The threads' own numbers, which some runtimes count.
+    ruleset = add(ruleset, Path::new("/proc/self/task"), AccessFs::ReadDir.into())?;
+    add(ruleset, Path::new("/proc/self/fd"), AccessFs::ReadDir.into())
+}
+
+/// Puts the rules into force for this process and all that come from it.
+///
+/// # Errors
+///
+/// Also when the kernel accepted them without enforcing any.
+pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
+    let status = ruleset.restrict_self().map_err(refused)?;
+    if status.ruleset == RulesetStatus::NotEnforced {
+        return Err(io::Error::from_raw_os_error(libc::EOPNOTSUPP));
+    }
+    Ok(())
+}
+
+/// A ruleset that allows nothing, for the probe.
+pub(super) fn nothing(scopes: bool) -> io::Result<RulesetCreated> {
+    handled(scopes)
+}
+
+/// Everything that the running kernel can refuse is refused unless a rule allows it.
+fn handled(scopes: bool) -> io::Result<RulesetCreated> {
+    let mut ruleset = Ruleset::default()
+        .set_compatibility(CompatLevel::BestEffort)
+        .handle_access(AccessFs::from_all(NEWEST))
+        .map_err(refused)?
+        .handle_access(AccessNet::from_all(NEWEST))
+        .map_err(refused)?;
+    if scopes {
+        ruleset = ruleset.scope(Scope::from_all(NEWEST)).map_err(refused)?;
+    }
+    ruleset.create().map_err(refused)
+}
+
+/// In its folder the program may make, change and remove files and folders. Links to elsewhere, special files and
+/// executing are for build tools, if anybody.
+fn in_folder(tools: bool) -> BitFlags<AccessFs> {
+    let submission = AccessFs::ReadFile
+        | AccessFs::ReadDir
+        | AccessFs::WriteFile
+        | AccessFs::Truncate
+        | AccessFs::MakeReg
+        | AccessFs::MakeDir
+        | AccessFs::RemoveFile
+        | AccessFs::RemoveDir;
+    if tools { submission | AccessFs::Execute | AccessFs::MakeSym | AccessFs::Refer } else { submission }
+}
+
+/// Like [`add`], but without the grader's own files beneath the path.
+fn add_around(
+    mut ruleset: RulesetCreated,
+    path: &Path,
+    access: BitFlags<AccessFs>,
+    own: &[PathBuf],
+) -> io::Result<RulesetCreated> {
+    for allowed in own::around(path, own) {
+        ruleset = match allowed {
+            Allowed::Whole(path) => add(ruleset, &path, access)?,
+            Allowed::Listing(path) => add(ruleset, &path, access & AccessFs::ReadDir)?,
+        };
+    }
+    Ok(ruleset)
+}
+
+fn add(ruleset: RulesetCreated, path: &Path, access: BitFlags<AccessFs>) -> io::Result<RulesetCreated> {
+    let Ok(opened) = PathFd::new(path) else { return Ok(ruleset) };
+    let is_folder = path.metadata().is_ok_and(|metadata| metadata.is_dir());
+    let access = if is_folder { access } else { access & AccessFs::from_file(NEWEST) };
+    ruleset.add_rule(PathBeneath::new(opened.as_fd(), access)).map_err(refused)
+}
+
+fn refused(error: RulesetError) -> io::Error {
+    let errno = io::Error::last_os_error();
+    if errno.raw_os_error().is_some_and(|number| number != 0) { errno } else { io::Error::other(error) }
+}

@@ -1,0 +1,213 @@
+//! The messages between the grader and its supervisor process.
+//!
+//! The grader writes one length-prefixed [`Order`] to the supervisor's standard input and then, if need be, single
+//! command bytes. The supervisor answers on its standard output with length-prefixed [`Event`]s; the last one is
+//! followed by the captured bytes. Paths travel as bytes, because they need not be UTF-8.
+
+use std::io::{self, Read, Write};
+use std::os::unix::ffi::{OsStrExt, OsStringExt};
+use std::path::{Path, PathBuf};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// The hidden first argument that turns the binary into the supervisor.
+pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
+/// Command byte: stop the program, the grader has seen enough.
+pub(super) const COMMAND_CANCEL: u8 = b'c';
+/// Command byte: stop the program, its trace is too long.
+pub(super) const COMMAND_TRACE_LIMIT: u8 = b't';
+/// No message is longer than this; a longer one means that the streams are out of step.
+const LONGEST_MESSAGE: u64 = 64 << 20;
+
+/// Bytes of a path or an argument.
+pub(super) type Raw = Vec<u8>;
+
+/// Turns a path into bytes.
+pub(super) fn raw(path: &Path) -> Raw {
+    path.as_os_str().as_bytes().to_vec()
+}
+
+/// Turns bytes back into a path.
+pub(super) fn path(raw: &Raw) -> PathBuf {
+    PathBuf::from(std::ffi::OsString::from_vec(raw.clone()))
+}
+
+/// Which layers the supervisor must put up. A layer that is asked for and fails is an error, never skipped.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Walls {
+    pub(super) landlock: bool,
+    pub(super) scopes: bool,
+    pub(super) seccomp: bool,
+    pub(super) notify: bool,
+    pub(super) own_user: bool,
+    pub(super) namespaces: bool,
+    pub(super) group: bool,
+    /// Whether the supervisor itself is inside bubblewrap.
+    pub(super) bubblewrap: bool,
+}
+
+/// What the supervisor is to run.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Order {
+    pub(super) program: Raw,
+    pub(super) folder: Raw,
+    pub(super) arguments: Vec<Raw>,
+    pub(super) environment: Vec<(Raw, Raw)>,
+    pub(super) readable: Vec<Raw>,
+    /// Interpreters and loaders that the kernel executes on the way to the program.
+    pub(super) executable: Vec<Raw>,
+    /// Their names as the program and the kernel use them, which may be links.
+    pub(super) named: Vec<Raw>,
+    pub(super) pipe: Option<Raw>,
+    pub(super) tools: bool,
+    /// The interpreter of a script, which is executed in its place.
+    pub(super) interpreter: Option<Raw>,
+    /// The interpreter's name for itself and its arguments before the script.
+    pub(super) words: Vec<Raw>,
+    pub(super) sanitised: bool,
+    pub(super) walls: Walls,
+    pub(super) cpu_micros: u64,
+    pub(super) wall_micros: u64,
+    pub(super) memory: u64,
+    pub(super) output_bytes: u64,
+    pub(super) folder_bytes: u64,
+    pub(super) folder_files: u64,
+    pub(super) processes: u32,
+    pub(super) open_files: u32,
+}
+
+/// What the supervisor answers.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Event {
+    /// The child was forked: its session, unless its process namespace has numbers of its own,
+    /// and the user it runs as if it has its own.
+    Ready { session: Option<i32>, user: Option<u32> },
+    /// The sandbox could not be put up; our fault.
+    Failed(Failure),
+    /// Everything is dead; the captured bytes of both streams follow.
+    Done(Report),
+}
+
+/// A step of the set-up that failed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Failure {
+    pub(super) stage: String,
+    pub(super) errno: i32,
+}
+
+impl Failure {
+    /// A failure of `stage` with the error's number (0 when it has none).
+    pub(super) fn new(stage: impl Into<String>, error: &io::Error) -> Self {
+        Self { stage: stage.into(), errno: error.raw_os_error().unwrap_or(0) }
+    }
+}
+
+/// Why the supervisor killed the program.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Cause {
+    Cpu,
+    Wall,
+    Memory,
+    Stdout,
+    Stderr,
+    Trace,
+    Processes,
+    Folder,
+    Call(String),
+    Cancelled,
+}
+
+/// The facts of a finished run.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Report {
+    /// The first reason to kill, if any.
+    pub(super) cause: Option<Cause>,
+    /// The main process's raw wait status.
+    pub(super) status: i32,
+    /// The error number of `execve`, if the program never ran.
+    pub(super) exec_errno: Option<i32>,
+    pub(super) cpu_micros: u64,
+    pub(super) wall_micros: u64,
+    pub(super) peak_memory: u64,
+    /// What the folder holds at the end beyond what was there at the start.
+    pub(super) folder_growth: u64,
+    /// Whether the folder is over a limit at the end.
+    pub(super) folder_over: bool,
+    pub(super) stdout_bytes: u64,
+    pub(super) stderr_bytes: u64,
+    pub(super) stdout_truncated: bool,
+    pub(super) stderr_truncated: bool,
+    /// Processes that could not be killed.
+    pub(super) survivors: u32,
+}
+
+/// What the one-shot probe found; a text is why a layer does not hold.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Probe {
+    pub(super) root: bool,
+    /// Whether the grader is in root's group without being root.
+    pub(super) roots_group: bool,
+    pub(super) landlock_abi: i32,
+    pub(super) no_new_privileges: Option<String>,
+    pub(super) limits: Option<String>,
+    pub(super) landlock: Option<String>,
+    pub(super) seccomp: Option<String>,
+    pub(super) notify: Option<String>,
+    pub(super) own_user: Option<String>,
+    pub(super) reaper: Option<String>,
+    /// Why copies of programs can't be executed.
+    pub(super) execution: Option<String>,
+    /// Whether they are executed in memory, because the temporary folder forbids it.
+    pub(super) from_memory: bool,
+    pub(super) namespaces: Option<String>,
+    pub(super) group: Option<String>,
+    /// Why bubblewrap does not help. Only tried when the supervisor cannot make namespaces by itself.
+    pub(super) bubblewrap: Option<String>,
+    /// What the kernel limits for a group here.
+    pub(super) group_controls: Vec<String>,
+}
+
+/// Writes one message.
+pub(super) fn send<T: Serialize>(mut to: impl Write, message: &T) -> io::Result<()> {
+    let body = serde_json::to_vec(message)?;
+    let mut packet = (body.len() as u64).to_le_bytes().to_vec();
+    packet.extend_from_slice(&body);
+    to.write_all(&packet)?;
+    to.flush()
+}
+
+/// Reads one message, and not a byte more.
+pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T> {
+    let mut length = [0; 8];
+    from.read_exact(&mut length)?;
+    let length = u64::from_le_bytes(length);
+    if length > LONGEST_MESSAGE {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "a message of the supervisor is out of step"));
+    }
+    let mut body = vec![0; usize::try_from(length).map_err(io::Error::other)?];
+    from.read_exact(&mut body)?;
+    Ok(serde_json::from_slice(&body)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_follow_each_other_without_reading_ahead() {
+        let mut stream = Vec::new();
+        send(&mut stream, &Event::Ready { session: Some(7), user: None }).unwrap();
+        send(&mut stream, &Event::Failed(Failure { stage: "limits".into(), errno: 1 })).unwrap();
+        stream.extend_from_slice(b"rest");
+        let mut reader = &stream[..];
+        assert_eq!(receive::<Event>(&mut reader).unwrap(), Event::Ready { session: Some(7), user: None });
+        assert!(matches!(receive::<Event>(&mut reader).unwrap(), Event::Failed(_)));
+        assert_eq!(reader, b"rest");
+    }
+
+    #[test]
+    fn a_length_out_of_step_is_an_error_and_not_an_allocation() {
+        assert!(receive::<Event>(&u64::MAX.to_le_bytes()[..]).is_err());
+    }
+}

@@ -1,0 +1,53 @@
+//! What lies where in the data folder.
+use super::arguments::Place;
+use crate::db::Address;
+use anyhow::{Context, Result};
+use std::{
+    fs,
+    os::unix::fs::{DirBuilderExt, PermissionsExt},
+    path::PathBuf,
+};
+
+/// The data folder's parts.
+#[derive(Debug, Clone)]
+pub(super) struct Folders {
+    /// Database and store, for nobody else's eyes.
+    pub(super) data: PathBuf,
+}
+
+impl Folders {
+    /// Makes the data folder, or checks that it is the server's alone.
+    pub(super) fn open(place: &Place) -> Result<Self> {
+        let data = std::path::absolute(&place.data)?;
+        let data = data.as_path();
+        if !data.exists() {
+            fs::DirBuilder::new()
+                .recursive(true)
+                .mode(0o700)
+                .create(data)
+                .with_context(|| format!("cannot make {}", data.display()))?;
+        }
+        let mode = fs::metadata(data).with_context(|| format!("cannot read {}", data.display()))?.permissions().mode();
+        if mode & 0o077 != 0 {
+            tracing::warn!(folder = %data.display(), "others can read the data folder: chmod 700 it");
+        }
+        Ok(Self { data: data.to_owned() })
+    }
+
+    pub(super) fn store(&self) -> PathBuf {
+        self.data.join("store")
+    }
+
+    pub(super) fn workers(&self) -> PathBuf {
+        self.data.join("workers")
+    }
+
+    pub(super) fn work(&self, worker: &str) -> PathBuf {
+        self.data.join("work").join(worker)
+    }
+
+    /// The database that was asked for, or the one in the data folder.
+    pub(super) fn database(&self, place: &Place) -> Address {
+        place.database.clone().unwrap_or_else(|| Address::Sqlite(self.data.join("fosssim.db")))
+    }
+}

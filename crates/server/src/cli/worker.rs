@@ -1,0 +1,139 @@
+//! `worker`: grades what waits in the queue.
+use super::{
+    arguments::{Work, Worker},
+    folders::Folders,
+    until_signalled,
+};
+use crate::{
+    db::{self, Database},
+    ledger,
+    queue::{Bell, Policy},
+    secret,
+    store::Store,
+    worker::{self, Liveness, LocalDesk, Options, Program},
+};
+use anyhow::{Context, Result, bail};
+use std::{
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+    time::Duration,
+};
+use tokio_util::sync::CancellationToken;
+
+pub(super) async fn run(arguments: &Worker) -> Result<()> {
+    let stop = until_signalled()?;
+    let folders = Folders::open(&arguments.place)?;
+    let address = folders.database(&arguments.place);
+    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    if db::version(&database).await? != db::LATEST {
+        bail!(
+            "the tables of {address} are not those of this version: start the server first, it brings them up to date"
+        );
+    }
+    let store = Store::folder(&folders.store())?;
+    let bell = Bell::default();
+    tokio::spawn(bell.clone().listen(database.clone()));
+    let local = Local {
+        folders,
+        database: database.clone(),
+        store,
+        bell,
+        policy: policy(&arguments.work),
+        grader: grader(arguments.work.grader.as_deref())?,
+    };
+    local.work(&arguments.work, arguments.name.as_deref(), stop).await?;
+    database.close().await;
+    Ok(())
+}
+
+/// The queue's patience as the arguments have it.
+pub(super) fn policy(work: &Work) -> Policy {
+    let lease = Duration::from_secs(work.lease);
+    Policy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
+}
+
+/// The grader that was named, or the one beside this program.
+pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
+    let path = match named {
+        Some(path) => path.to_owned(),
+        None => std::env::current_exe()?.with_file_name("fosssim-oracle"),
+    };
+    if !path.is_file() {
+        bail!("no grader at {}: build fosssim-oracle, or name it by --grader", path.display());
+    }
+    std::path::absolute(&path).context("the grader's path")
+}
+
+/// Workers that hold the database themselves.
+pub(super) struct Local {
+    pub(super) folders: Folders,
+    pub(super) database: Database,
+    pub(super) store: Store,
+    pub(super) bell: Bell,
+    pub(super) policy: Policy,
+    pub(super) grader: PathBuf,
+}
+
+impl Local {
+    /// Works until `stop` is cancelled.
+    pub(super) async fn work(&self, work: &Work, name: Option<&str>, stop: CancellationToken) -> Result<()> {
+        // Two workers of one name are two workers: what tells them apart comes from the process.
+        let name = format!(
+            "{}.{}.{}",
+            plain(name.map_or_else(host, str::to_owned).as_str()),
+            std::process::id(),
+            &secret::random_hex()[..6]
+        );
+        let alive = Liveness::begin(&self.folders.workers(), &name).context("cannot show that this worker is alive")?;
+        self.take_over().await?;
+        let slots = work.slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+        tracing::info!(worker = name, slots, grader = %self.grader.display(), "working");
+        let desk =
+            LocalDesk::new(self.database.clone(), self.store.clone(), self.bell.clone(), self.policy, name.clone());
+        let folder = self.folders.work(&name);
+        let options = Options { slots, folder: folder.clone() };
+        let watching = async {
+            loop {
+                tokio::time::sleep(self.policy.tick_every().max(Duration::from_millis(500))).await;
+                if let Err(error) = self.take_over().await {
+                    tracing::warn!(%error, "the jobs of dead workers can't be taken over yet");
+                }
+            }
+        };
+        tokio::select! {
+            () = worker::work(desk, Program::new(self.grader.clone(), work.threads.get()), options, stop) => {}
+            () = watching => {}
+        }
+        drop(std::fs::remove_dir_all(folder));
+        drop(alive);
+        tracing::info!(worker = name, "stopped");
+        Ok(())
+    }
+
+    /// Gives the jobs of this machine's dead workers to others, and removes what these left behind.
+    async fn take_over(&self) -> Result<()> {
+        for dead in worker::dead_workers(&self.folders.workers())? {
+            let mut transaction = self.database.begin().await?;
+            let found = ledger::abandon(&mut transaction, &self.policy, &dead).await?;
+            Bell::ring(&mut transaction).await?;
+            transaction.commit().await?;
+            self.bell.strike();
+            drop(std::fs::remove_dir_all(self.folders.work(&dead)));
+            worker::forget(&self.folders.workers(), &dead);
+            let jobs = found.retried + found.buried.len();
+            tracing::warn!(worker = dead, jobs, "a worker died; its jobs are taken over");
+        }
+        Ok(())
+    }
+}
+
+fn host() -> String {
+    std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default().trim().to_owned()
+}
+
+/// A name as a file name.
+fn plain(name: &str) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
+    let plain: String = name.chars().map(safe).take(60).collect();
+    if plain.is_empty() { "worker".to_owned() } else { plain }
+}

@@ -1,0 +1,70 @@
+//! Where the database is, without ever showing its password.
+use std::{fmt, path::PathBuf, str::FromStr};
+
+/// A database's address as given: `sqlite:FILE` or `postgres://USER:PASSWORD@HOST/NAME`.
+#[derive(Clone, PartialEq, Eq)]
+pub enum Address {
+    /// A file.
+    Sqlite(PathBuf),
+    /// The whole address, which may hold a password.
+    Postgres(String),
+}
+
+impl FromStr for Address {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.starts_with("postgres://") || text.starts_with("postgresql://") {
+            return Ok(Self::Postgres(text.to_owned()));
+        }
+        let file =
+            text.strip_prefix("sqlite://").or_else(|| text.strip_prefix("sqlite:")).filter(|file| !file.is_empty());
+        match file {
+            Some(file) => Ok(Self::Sqlite(file.into())),
+            // The text may hold a password: it is not repeated.
+            None => Err("a database is sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME".to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sqlite(file) => write!(f, "sqlite:{}", file.display()),
+            Self::Postgres(url) => {
+                // The password may hold an @ of its own; the host can't.
+                let rest = url.split_once("://").map_or("", |(_, rest)| rest);
+                let place = rest.rsplit_once('@').map_or(rest, |(_, place)| place);
+                // A query may hold `password=...` as well.
+                write!(f, "postgres://{}", place.split('?').next().unwrap_or_default())
+            }
+        }
+    }
+}
+
+impl fmt::Debug for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Address;
+
+    #[test]
+    fn an_address_is_read_and_shown_without_its_password() {
+        let shown = |text: &str| {
+            let address: Address = text.parse().expect("an address");
+            assert_eq!(format!("{address}"), format!("{address:?}"));
+            address.to_string()
+        };
+        assert_eq!(shown("sqlite:data/fosssim.db"), "sqlite:data/fosssim.db");
+        assert_eq!(shown("sqlite:///srv/fosssim.db"), "sqlite:/srv/fosssim.db");
+        assert_eq!(shown("postgres://me:geheim@db.example.org/course"), "postgres://db.example.org/course");
+        assert_eq!(shown("postgresql://me:a@b@db/course?password=geheim&sslmode=require"), "postgres://db/course");
+        let error = "mysql://me:geheim@db/course".parse::<Address>().expect_err("no such engine");
+        assert!(!error.contains("geheim"), "{error}");
+        assert!("sqlite:".parse::<Address>().is_err());
+    }
+}

@@ -1,0 +1,101 @@
+//! The tables and their changes over time. A change is a file of its own, applied once and never edited afterwards; all
+//! that are missing are applied in one transaction, so that a database is never between two versions.
+use super::{Database, DbError, Dialect};
+use crate::{secret::hex, values};
+use sha2::{Digest, Sha256};
+use thiserror::Error;
+
+/// Every change, oldest first. The number of a change is its place in this list, from 1.
+const MIGRATIONS: [(&str, &str); 1] = [("first tables", include_str!("migrations/0001_first_tables.sql"))];
+
+/// The version that this program works with.
+pub const LATEST: i64 = MIGRATIONS.len() as i64;
+
+/// PostgreSQL's name for the lock that keeps two servers from migrating at once; any number will do.
+const LOCK: i64 = 0x6673_6f5f_6d69_6772;
+
+/// Why the tables can't be brought up to date.
+#[derive(Debug, Error)]
+pub enum MigrateError {
+    /// A newer program has been here.
+    #[error(
+        "the database has version {found}, this program knows versions up to {LATEST}: start the newer program, or restore the backup that it made"
+    )]
+    Newer {
+        /// The database's version.
+        found: i64,
+    },
+    /// A change is not the one that was applied.
+    #[error("change {number} ({name}) was applied with other contents: this program was built from changed sources")]
+    Changed {
+        /// Its place in the list.
+        number: i64,
+        /// What it is called.
+        name: &'static str,
+    },
+    /// The database failed.
+    #[error(transparent)]
+    Database(#[from] DbError),
+}
+
+/// The version of the tables; 0 for an empty database.
+///
+/// # Errors
+/// When the database can't be asked.
+pub async fn version(database: &Database) -> Result<i64, DbError> {
+    let mut transaction = database.read().await?;
+    let there = match transaction.dialect() {
+        Dialect::Sqlite => "SELECT count(*) AS n FROM sqlite_master WHERE name = 'schema_change'",
+        Dialect::Postgres => {
+            "SELECT count(*) AS n FROM pg_tables WHERE schemaname = current_schema() AND tablename = 'schema_change'"
+        }
+    };
+    if transaction.one(there, values![]).await?.int("n")? == 0 {
+        return Ok(0);
+    }
+    transaction.one("SELECT coalesce(max(number), 0) AS n FROM schema_change", values![]).await?.int("n")
+}
+
+/// Applies the changes that are missing and returns how many these were. Several servers may do so at the same time.
+///
+/// # Errors
+/// When a newer program has used the database, or it fails; nothing has changed then.
+pub async fn migrate(database: &Database) -> Result<usize, MigrateError> {
+    let mut transaction = database.begin().await?;
+    if transaction.dialect() == Dialect::Postgres {
+        // Held until this transaction ends.
+        transaction.rows("SELECT CAST(pg_advisory_xact_lock(?) AS TEXT) AS held", values![LOCK]).await?;
+    }
+    transaction
+        .script(
+            "CREATE TABLE IF NOT EXISTS schema_change (
+                number {int} PRIMARY KEY, name TEXT NOT NULL, digest TEXT NOT NULL, applied_at {int} NOT NULL
+            ) {strict}",
+        )
+        .await?;
+    let applied = transaction.rows("SELECT number, digest FROM schema_change ORDER BY number", values![]).await?;
+    let found = applied.last().map_or(Ok(0), |row| row.int("number"))?;
+    if found > LATEST {
+        return Err(MigrateError::Newer { found });
+    }
+    let mut count = 0;
+    for (number, (name, script)) in (1..).zip(MIGRATIONS) {
+        let digest = hex(&Sha256::digest(script));
+        if let Some(row) = applied.iter().find(|row| row.int("number").is_ok_and(|applied| applied == number)) {
+            if row.text("digest")? != digest {
+                return Err(MigrateError::Changed { number, name });
+            }
+            continue;
+        }
+        transaction.script(script).await?;
+        transaction
+            .execute(
+                "INSERT INTO schema_change (number, name, digest, applied_at) VALUES (?, ?, ?, {now})",
+                values![number, name, digest],
+            )
+            .await?;
+        count += 1;
+    }
+    transaction.commit().await?;
+    Ok(count)
+}

@@ -1,0 +1,181 @@
+//! The database: PostgreSQL or SQLite behind one type, with the same statements. It knows how to run a statement and
+//! nothing of what is stored: the rooms above write the statements.
+//!
+//! Every statement runs inside a transaction, and none leaves anything behind in the session: so the service works
+//! behind a pooler that hands another connection to every transaction (PgBouncer). All times are milliseconds since
+//! 1970 by the database's own clock, which `{now}` stands for; a worker's clock is never asked.
+
+mod address;
+mod fault;
+mod migrate;
+mod statement;
+mod transaction;
+mod value;
+
+pub use address::Address;
+pub use fault::DbError;
+pub use migrate::{LATEST, MigrateError, migrate, version};
+pub use transaction::Transaction;
+pub use value::{Row, Value};
+
+use sqlx::{
+    ConnectOptions,
+    postgres::{PgConnectOptions, PgPool, PgPoolOptions},
+    sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous},
+};
+use std::time::Duration;
+
+/// How long a statement waits for a connection, or for SQLite's one writer, before it gives up.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Connections to PostgreSQL that one process holds at most.
+const CONNECTIONS: u32 = 10;
+
+/// How PostgreSQL begins a transaction. A process that freezes in the middle of one must not keep its locks, nor may a
+/// statement wait for ever. The settings end with the transaction, as a pooler wants it.
+const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s'; SET LOCAL lock_timeout = '20s'; \
+                     SET LOCAL statement_timeout = '60s'";
+
+/// An open database. Cloning it is cheap and shares the connections.
+#[derive(Debug, Clone)]
+pub struct Database {
+    engine: Engine,
+}
+
+#[derive(Debug, Clone)]
+enum Engine {
+    /// One connection writes, since SQLite has one writer anyway; readers do not wait for it.
+    Sqlite {
+        writer: SqlitePool,
+        readers: SqlitePool,
+    },
+    Postgres {
+        pool: PgPool,
+        options: Box<PgConnectOptions>,
+    },
+}
+
+/// Which database it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dialect {
+    /// The embedded one: a file beside the artefacts.
+    Sqlite,
+    /// The distributed one.
+    Postgres,
+}
+
+impl Database {
+    /// Opens a database; a SQLite file is made when it is missing. The tables are [`migrate`]'s concern.
+    ///
+    /// # Errors
+    /// When it can't be reached within half a minute.
+    pub async fn open(address: &Address) -> Result<Self, DbError> {
+        let engine = match address {
+            Address::Sqlite(file) => {
+                // FULL: a commit that was confirmed survives a power cut.
+                let options = SqliteConnectOptions::new()
+                    .filename(file)
+                    .create_if_missing(true)
+                    .journal_mode(SqliteJournalMode::Wal)
+                    .synchronous(SqliteSynchronous::Full)
+                    .foreign_keys(true)
+                    .busy_timeout(PATIENCE)
+                    .disable_statement_logging();
+                let pool = |connections| {
+                    SqlitePoolOptions::new()
+                        .max_connections(connections)
+                        .acquire_timeout(PATIENCE)
+                        .idle_timeout(None)
+                        .max_lifetime(None)
+                };
+                let writer = pool(1).connect_with(options.clone()).await?;
+                Engine::Sqlite { writer, readers: pool(4).connect_lazy_with(options) }
+            }
+            Address::Postgres(url) => {
+                let options: PgConnectOptions = url.parse().map_err(DbError::from)?;
+                // A pooler refuses start-up settings that it does not know.
+                let options = options
+                    .extra_float_digits(None)
+                    .statement_cache_capacity(0)
+                    .application_name("fosssim-server")
+                    .disable_statement_logging();
+                let pool = PgPoolOptions::new()
+                    .max_connections(CONNECTIONS)
+                    .acquire_timeout(PATIENCE)
+                    .connect_with(options.clone())
+                    .await?;
+                Engine::Postgres { pool, options: Box::new(options) }
+            }
+        };
+        Ok(Self { engine })
+    }
+
+    /// Which database it is.
+    #[must_use]
+    pub fn dialect(&self) -> Dialect {
+        match self.engine {
+            Engine::Sqlite { .. } => Dialect::Sqlite,
+            Engine::Postgres { .. } => Dialect::Postgres,
+        }
+    }
+
+    /// Begins a transaction that writes. It sees what was committed before, and nothing of it stands unless
+    /// [`Transaction::commit`] succeeds.
+    ///
+    /// # Errors
+    /// When the database can't be reached, or is busy for half a minute.
+    pub async fn begin(&self) -> Result<Transaction, DbError> {
+        match &self.engine {
+            // A transaction that begins as a reader could not become the writer when another has written meanwhile.
+            Engine::Sqlite { writer, .. } => Ok(Transaction::sqlite(writer.begin_with("BEGIN IMMEDIATE").await?)),
+            Engine::Postgres { pool, .. } => Ok(Transaction::postgres(pool.begin_with(BEGIN).await?)),
+        }
+    }
+
+    /// Begins a transaction that only reads, and sees one state of the database.
+    ///
+    /// # Errors
+    /// When the database can't be reached.
+    pub async fn read(&self) -> Result<Transaction, DbError> {
+        match &self.engine {
+            Engine::Sqlite { readers, .. } => Ok(Transaction::sqlite(readers.begin().await?)),
+            Engine::Postgres { pool, .. } => {
+                Ok(Transaction::postgres(pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ, READ ONLY").await?))
+            }
+        }
+    }
+
+    /// How to reach PostgreSQL for a listener, which needs a connection of its own; nothing for SQLite.
+    pub(crate) fn postgres_options(&self) -> Option<&PgConnectOptions> {
+        match &self.engine {
+            Engine::Sqlite { .. } => None,
+            Engine::Postgres { options, .. } => Some(options),
+        }
+    }
+
+    /// Copies a SQLite database into a new file, consistently and while others write; PostgreSQL has its own tools.
+    ///
+    /// # Errors
+    /// When the file exists or can't be written, or the database is PostgreSQL.
+    pub async fn copy_to(&self, file: &std::path::Path) -> Result<(), DbError> {
+        match &self.engine {
+            Engine::Sqlite { readers, .. } => {
+                let text = file.to_str().ok_or_else(|| DbError::Other("the backup's path is not UTF-8".to_owned()))?;
+                sqlx::query("VACUUM INTO ?").bind(text).execute(readers).await?;
+                Ok(())
+            }
+            Engine::Postgres { .. } => Err(DbError::Other("PostgreSQL is copied by pg_dump".to_owned())),
+        }
+    }
+
+    /// Closes all connections; what is in their transactions ends first.
+    pub async fn close(&self) {
+        match &self.engine {
+            Engine::Sqlite { writer, readers } => {
+                readers.close().await;
+                writer.close().await;
+            }
+            Engine::Postgres { pool, .. } => pool.close().await,
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! One text for both engines: the few words in which they differ stand in braces.
+use super::Dialect;
+
+/// The statement as the engine wants it: `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
+/// definitions, and PostgreSQL counts its placeholders. Statements hold no braces and no question marks of their own:
+/// values never stand in a statement's text.
+pub(super) fn text(statement: &str, dialect: Dialect) -> String {
+    let words: [(&str, &str); 7] = match dialect {
+        Dialect::Sqlite => [
+            ("{now}", "CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER)"),
+            ("{int}", "INTEGER"),
+            ("{id}", "INTEGER PRIMARY KEY AUTOINCREMENT"),
+            ("{strict}", "STRICT"),
+            ("{queue}", "STRICT"),
+            // SQLite has one writer: nobody else can hold a row.
+            ("{skip locked}", ""),
+            ("{for update}", ""),
+        ],
+        Dialect::Postgres => [
+            // Not now(), which stands still within a transaction: a lease counts from when it is given.
+            ("{now}", "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)"),
+            ("{int}", "BIGINT"),
+            ("{id}", "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"),
+            ("{strict}", ""),
+            // Rows of the queue change five times each: room beside them, and dead ones swept early.
+            ("{queue}", "WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.02)"),
+            ("{skip locked}", "FOR UPDATE SKIP LOCKED"),
+            ("{for update}", "FOR UPDATE"),
+        ],
+    };
+    let mut text = statement.to_owned();
+    for (word, meaning) in words {
+        text = text.replace(word, meaning);
+    }
+    if dialect == Dialect::Sqlite {
+        return text;
+    }
+    let mut counted = String::with_capacity(text.len() + 16);
+    let mut count = 0;
+    for c in text.chars() {
+        if c == '?' {
+            count += 1;
+            counted.push_str(&format!("${count}"));
+        } else {
+            counted.push(c);
+        }
+    }
+    counted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_engine_gets_its_own_words() {
+        let statement = "SELECT id FROM job WHERE a = ? AND b < {now} AND c = ? {skip locked}";
+        assert_eq!(
+            text(statement, Dialect::Postgres),
+            "SELECT id FROM job WHERE a = $1 AND b < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT) \
+             AND c = $2 FOR UPDATE SKIP LOCKED"
+        );
+        assert_eq!(
+            text(statement, Dialect::Sqlite),
+            "SELECT id FROM job WHERE a = ? AND b < CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER) AND c = ? "
+        );
+    }
+}

@@ -1,0 +1,114 @@
+//! A transaction, the only way to run statements.
+use super::{DbError, Dialect, Row, Value, statement, value};
+use sqlx::{AssertSqlSafe, Postgres, Sqlite};
+
+/// A transaction. Dropped without [`commit`](Self::commit), nothing of it stands.
+#[derive(Debug)]
+pub struct Transaction(Inner);
+
+#[derive(Debug)]
+enum Inner {
+    Sqlite(sqlx::Transaction<'static, Sqlite>),
+    Postgres(sqlx::Transaction<'static, Postgres>),
+}
+
+/// A query with its values, as the engine's own type. Not kept prepared: a name for it would live in the session.
+macro_rules! query {
+    ($database:ty, $text:expr, $values:expr) => {{
+        let mut query = sqlx::query::<$database>(AssertSqlSafe($text)).persistent(false);
+        for value in $values {
+            query = match value {
+                Value::Int(value) => query.bind(*value),
+                Value::Text(value) => query.bind(value.clone()),
+            };
+        }
+        query
+    }};
+}
+
+impl Transaction {
+    pub(super) fn sqlite(inner: sqlx::Transaction<'static, Sqlite>) -> Self {
+        Self(Inner::Sqlite(inner))
+    }
+
+    pub(super) fn postgres(inner: sqlx::Transaction<'static, Postgres>) -> Self {
+        Self(Inner::Postgres(inner))
+    }
+
+    /// Which database it is.
+    #[must_use]
+    pub fn dialect(&self) -> Dialect {
+        match self.0 {
+            Inner::Sqlite(_) => Dialect::Sqlite,
+            Inner::Postgres(_) => Dialect::Postgres,
+        }
+    }
+
+    /// Runs a statement and says how many rows it changed.
+    ///
+    /// # Errors
+    /// What the database says.
+    pub async fn execute(&mut self, statement: &'static str, values: &[Value]) -> Result<u64, DbError> {
+        let text = statement::text(statement, self.dialect());
+        Ok(match &mut self.0 {
+            Inner::Sqlite(inner) => query!(Sqlite, text, values).execute(&mut **inner).await?.rows_affected(),
+            Inner::Postgres(inner) => query!(Postgres, text, values).execute(&mut **inner).await?.rows_affected(),
+        })
+    }
+
+    /// Runs a statement and returns its rows.
+    ///
+    /// # Errors
+    /// What the database says.
+    pub async fn rows(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<Row>, DbError> {
+        let text = statement::text(statement, self.dialect());
+        Ok(match &mut self.0 {
+            Inner::Sqlite(inner) => {
+                let rows = query!(Sqlite, text, values).fetch_all(&mut **inner).await?;
+                rows.into_iter().map(|row| Row(value::Inner::Sqlite(row))).collect()
+            }
+            Inner::Postgres(inner) => {
+                let rows = query!(Postgres, text, values).fetch_all(&mut **inner).await?;
+                rows.into_iter().map(|row| Row(value::Inner::Postgres(row))).collect()
+            }
+        })
+    }
+
+    /// Runs a statement that has one row or none.
+    ///
+    /// # Errors
+    /// What the database says.
+    pub async fn row(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<Row>, DbError> {
+        Ok(self.rows(statement, values).await?.into_iter().next())
+    }
+
+    /// Runs a statement that has exactly one row.
+    ///
+    /// # Errors
+    /// What the database says, also that there is no row.
+    pub async fn one(&mut self, statement: &'static str, values: &[Value]) -> Result<Row, DbError> {
+        self.row(statement, values).await?.ok_or_else(|| DbError::Other(format!("no row: {statement}")))
+    }
+
+    /// Runs statements that are separated by semicolons and take no values: definitions of tables.
+    pub(super) async fn script(&mut self, script: &str) -> Result<(), DbError> {
+        let text = AssertSqlSafe(statement::text(script, self.dialect()));
+        match &mut self.0 {
+            Inner::Sqlite(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,
+            Inner::Postgres(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,
+        }
+        Ok(())
+    }
+
+    /// Makes everything stand that this transaction wrote. After an error nobody knows whether it does: ask.
+    ///
+    /// # Errors
+    /// What the database says.
+    pub async fn commit(self) -> Result<(), DbError> {
+        match self.0 {
+            Inner::Sqlite(inner) => inner.commit().await?,
+            Inner::Postgres(inner) => inner.commit().await?,
+        }
+        Ok(())
+    }
+}

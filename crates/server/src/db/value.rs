@@ -1,0 +1,101 @@
+//! What goes into a statement and what comes out. Two types are enough: integers (numbers, times, yes and no) and text
+//! (names, digests, JSON); points are text, too, so that they stay the same to the last digit.
+use super::DbError;
+use sqlx::{Row as _, postgres::PgRow, sqlite::SqliteRow};
+
+/// A value for a statement's next `?`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Value {
+    /// An integer, or nothing.
+    Int(Option<i64>),
+    /// Text, or nothing.
+    Text(Option<String>),
+}
+
+macro_rules! from {
+    ($($from:ty => $make:expr;)*) => {
+        $(impl From<$from> for Value {
+            fn from(value: $from) -> Self {
+                let make: fn($from) -> Self = $make;
+                make(value)
+            }
+        })*
+    };
+}
+
+from! {
+    i64 => |value| Self::Int(Some(value));
+    Option<i64> => Self::Int;
+    u32 => |value| Self::Int(Some(value.into()));
+    bool => |value| Self::Int(Some(value.into()));
+    &str => |value| Self::Text(Some(value.to_owned()));
+    &String => |value| Self::Text(Some(value.clone()));
+    String => |value| Self::Text(Some(value));
+    Option<String> => Self::Text;
+    Option<&str> => |value| Self::Text(value.map(str::to_owned));
+}
+
+/// The values of a statement, in the order of its `?`.
+#[macro_export]
+macro_rules! values {
+    ($($value:expr),* $(,)?) => { &[$($crate::db::Value::from($value)),*] };
+}
+
+/// A row of an answer. Columns are asked for by name; one that is not there, or holds another type, is a fault of the
+/// statement and ends in [`DbError::Other`].
+#[derive(Debug)]
+pub struct Row(pub(super) Inner);
+
+#[derive(Debug)]
+pub(super) enum Inner {
+    Sqlite(SqliteRow),
+    Postgres(PgRow),
+}
+
+impl Row {
+    /// An integer.
+    ///
+    /// # Errors
+    /// When the column holds nothing, or something else.
+    pub fn int(&self, column: &str) -> Result<i64, DbError> {
+        self.maybe_int(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
+    }
+
+    /// An integer, or nothing.
+    ///
+    /// # Errors
+    /// When the column holds something else.
+    pub fn maybe_int(&self, column: &str) -> Result<Option<i64>, DbError> {
+        Ok(match &self.0 {
+            Inner::Sqlite(row) => row.try_get(column)?,
+            Inner::Postgres(row) => row.try_get(column)?,
+        })
+    }
+
+    /// Text.
+    ///
+    /// # Errors
+    /// When the column holds nothing, or something else.
+    pub fn text(&self, column: &str) -> Result<String, DbError> {
+        self.maybe_text(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
+    }
+
+    /// Text, or nothing.
+    ///
+    /// # Errors
+    /// When the column holds something else.
+    pub fn maybe_text(&self, column: &str) -> Result<Option<String>, DbError> {
+        Ok(match &self.0 {
+            Inner::Sqlite(row) => row.try_get(column)?,
+            Inner::Postgres(row) => row.try_get(column)?,
+        })
+    }
+
+    /// Yes or no, stored as 1 or 0.
+    ///
+    /// # Errors
+    /// When the column holds something else.
+    pub fn flag(&self, column: &str) -> Result<bool, DbError> {
+        Ok(self.int(column)? != 0)
+    }
+}

@@ -1,0 +1,234 @@
+//! What became of jobs: results, grades and the history of both, written in one transaction with the end of the job.
+use crate::{
+    db::{DbError, Transaction},
+    queue::{self, Buried, Completion, Failure, Lease, Policy, Tick},
+    task::{JUDGE_ERROR, Outcome},
+    values,
+};
+
+/// Writes the result of a job, if its lease still holds; a late one is noted and changes nothing.
+///
+/// # Errors
+/// What the database says; nothing is written then unless the caller commits all the same.
+pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outcome) -> Result<Completion, DbError> {
+    let completion = queue::complete(transaction, lease).await?;
+    match completion {
+        Completion::Done => {
+            write_result(transaction, lease.job, lease.attempt, outcome).await?;
+        }
+        Completion::Late => note_late(transaction, lease, &format!("a result, {}", outcome.code)).await?,
+        Completion::Repeated => {}
+    }
+    Ok(completion)
+}
+
+/// Says that a try came to nothing; after the last one the judge error is written.
+///
+/// # Errors
+/// What the database says.
+pub async fn fail(
+    transaction: &mut Transaction,
+    policy: &Policy,
+    lease: &Lease,
+    fault: &str,
+) -> Result<Failure, DbError> {
+    let failure = queue::fail(transaction, policy, lease, fault).await?;
+    match failure {
+        Failure::Buried => bury(transaction, lease.job, lease.attempt, fault).await?,
+        Failure::Late => note_late(transaction, lease, "a failure").await?,
+        Failure::Retried => {
+            let row = about(transaction, lease.job).await?;
+            note(transaction, &row, "failed try", fault).await?;
+        }
+    }
+    Ok(failure)
+}
+
+/// Looks for silent workers, and writes the judge errors of jobs that were tried too often.
+///
+/// # Errors
+/// What the database says.
+pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick, DbError> {
+    let tick = queue::tick(transaction, policy).await?;
+    bury_all(transaction, &tick.buried).await?;
+    Ok(tick)
+}
+
+/// Gives up on a worker that is known to be dead.
+///
+/// # Errors
+/// What the database says.
+pub async fn abandon(transaction: &mut Transaction, policy: &Policy, worker: &str) -> Result<Tick, DbError> {
+    let tick = queue::abandon(transaction, policy, worker).await?;
+    bury_all(transaction, &tick.buried).await?;
+    Ok(tick)
+}
+
+/// What a job is about.
+struct About {
+    job: i64,
+    submission: Option<i64>,
+    campaign: Option<i64>,
+    assignment: Option<i64>,
+    course: Option<i64>,
+    worker: String,
+    task: String,
+    seconds: i64,
+}
+
+async fn about(transaction: &mut Transaction, job: i64) -> Result<About, DbError> {
+    let row = transaction
+        .one(
+            "SELECT job.submission, job.campaign, job.payload, job.worker, submission.assignment, assignment.course,
+                {now} - coalesce(job.started_at, {now}) AS took
+             FROM job
+             LEFT JOIN submission ON submission.id = job.submission
+             LEFT JOIN assignment ON assignment.id = submission.assignment
+             WHERE job.id = ?",
+            values![job],
+        )
+        .await?;
+    Ok(About {
+        job,
+        submission: row.maybe_int("submission")?,
+        campaign: row.maybe_int("campaign")?,
+        assignment: row.maybe_int("assignment")?,
+        course: row.maybe_int("course")?,
+        worker: row.maybe_text("worker")?.unwrap_or_default(),
+        task: row.text("payload")?,
+        seconds: row.int("took")? / 1000,
+    })
+}
+
+/// Writes an event about a job.
+async fn note(transaction: &mut Transaction, about: &About, kind: &str, text: &str) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "INSERT INTO event (happened_at, kind, course, assignment, submission, job, text)
+             VALUES ({now}, ?, ?, ?, ?, ?, ?)",
+            values![kind, about.course, about.assignment, about.submission, about.job, text],
+        )
+        .await?;
+    Ok(())
+}
+
+/// A worker came too late: it changes nothing, and is counted. A job that it made up is not even that.
+async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
+    let known =
+        transaction.row("SELECT id FROM job WHERE id = ? AND attempt >= ?", values![lease.job, lease.attempt]).await?;
+    if known.is_some() {
+        let row = about(transaction, lease.job).await?;
+        note(transaction, &row, "late answer", &format!("{what}, of attempt {}", lease.attempt)).await?;
+    }
+    Ok(())
+}
+
+async fn bury_all(transaction: &mut Transaction, jobs: &[Buried]) -> Result<(), DbError> {
+    for job in jobs {
+        bury(transaction, job.job, job.attempt, &job.fault).await?;
+    }
+    Ok(())
+}
+
+async fn bury(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str) -> Result<(), DbError> {
+    let row = write_result(transaction, job, attempt, &Outcome::judge_error(fault)).await?;
+    note(transaction, &row, "buried", fault).await
+}
+
+/// Writes a result and, unless it belongs to a regrade that nobody has decided on, the grade.
+async fn write_result(
+    transaction: &mut Transaction,
+    job: i64,
+    attempt: i64,
+    outcome: &Outcome,
+) -> Result<About, DbError> {
+    let about = about(transaction, job).await?;
+    // Jobs of other lanes have no result.
+    let Some(submission) = about.submission else { return Ok(about) };
+    let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
+    let result = transaction
+        .one(
+            "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
+                version, task, seconds, created_at)
+             VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id",
+            values![
+                job,
+                submission,
+                about.campaign,
+                attempt,
+                &about.worker,
+                &outcome.verdict,
+                &outcome.code,
+                outcome.points.clone(),
+                outcome.max_points.clone(),
+                &outcome.summary,
+                &outcome.version,
+                &about.task,
+                seconds
+            ],
+        )
+        .await?
+        .int("id")?;
+    for file in &outcome.files {
+        let size = i64::try_from(file.artefact.size).unwrap_or(i64::MAX);
+        transaction
+            .execute(
+                "INSERT INTO result_file (result, name, media_type, digest, size) VALUES (?, ?, ?, ?, ?)",
+                values![result, &file.name, &file.media_type, file.artefact.digest.as_str(), size],
+            )
+            .await?;
+    }
+    let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;
+    // A grader that failed takes nobody's grade away.
+    if about.campaign.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
+        let change = GradeChange { submission, result, by: None, campaign: None, reason: "graded" };
+        set_grade(transaction, &change).await?;
+    }
+    let text = match (&outcome.points, &outcome.max_points) {
+        (Some(points), Some(most)) => format!("{}: {points} of {most} points", outcome.code),
+        _ => outcome.code.clone(),
+    };
+    note(transaction, &about, if about.campaign.is_none() { "graded" } else { "regraded" }, &text).await?;
+    Ok(about)
+}
+
+/// Why another result is to count.
+#[derive(Debug, Clone, Copy)]
+pub struct GradeChange<'a> {
+    /// Whose grade.
+    pub submission: i64,
+    /// The result that counts from now on.
+    pub result: i64,
+    /// Who wants it; nobody when it is the first.
+    pub by: Option<i64>,
+    /// The regrade that it comes from.
+    pub campaign: Option<i64>,
+    /// The reason, as students read it.
+    pub reason: &'a str,
+}
+
+/// Makes a result count, and keeps what counted before.
+///
+/// # Errors
+/// What the database says.
+pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) -> Result<(), DbError> {
+    let old = transaction
+        .row("SELECT result FROM grade WHERE submission = ? {for update}", values![change.submission])
+        .await?;
+    let old = old.map(|row| row.int("result")).transpose()?;
+    transaction
+        .execute(
+            "INSERT INTO grade (submission, result, set_at) VALUES (?, ?, {now})
+             ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at",
+            values![change.submission, change.result],
+        )
+        .await?;
+    transaction
+        .execute(
+            "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
+             VALUES (?, ?, ?, ?, ?, ?, {now})",
+            values![change.submission, old, change.result, change.by, change.campaign, change.reason],
+        )
+        .await?;
+    Ok(())
+}

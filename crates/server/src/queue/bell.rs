@@ -1,0 +1,89 @@
+//! A bell that tells waiting workers to look at once. Only a convenience: nothing is told by it but that something may
+//! have changed, and whoever misses it looks again a little later anyway.
+use crate::{
+    db::{Database, DbError, Dialect, Transaction},
+    values,
+};
+use sqlx::postgres::{PgConnectOptions, PgListener, PgPoolOptions};
+use std::{sync::Arc, time::Duration};
+use tokio::sync::watch;
+
+/// The channel of PostgreSQL's LISTEN and NOTIFY.
+const CHANNEL: &str = "fosssim_queue";
+
+/// How long a lost listener waits before it connects again.
+const RECONNECT: Duration = Duration::from_secs(5);
+
+/// The bell of one process; on PostgreSQL it is heard by all processes.
+#[derive(Debug, Clone, Default)]
+pub struct Bell {
+    strokes: Arc<watch::Sender<u64>>,
+}
+
+/// Somebody who waits for the bell. Strokes between two waits are not missed.
+#[derive(Debug, Clone)]
+pub struct Ear(watch::Receiver<u64>);
+
+impl Bell {
+    /// Makes the bell ring everywhere when the transaction is committed. On SQLite nothing rings by itself: call
+    /// [`strike`](Self::strike) after the commit.
+    ///
+    /// # Errors
+    /// What the database says.
+    pub async fn ring(transaction: &mut Transaction) -> Result<(), DbError> {
+        if transaction.dialect() == Dialect::Postgres {
+            transaction.rows("SELECT CAST(pg_notify(?, '') AS TEXT) AS rung", values![CHANNEL]).await?;
+        }
+        Ok(())
+    }
+
+    /// Rings in this process.
+    pub fn strike(&self) {
+        self.strokes.send_modify(|strokes| *strokes += 1);
+    }
+
+    /// Somebody who will hear every stroke from now on.
+    #[must_use]
+    pub fn ear(&self) -> Ear {
+        Ear(self.strokes.subscribe())
+    }
+
+    /// Passes PostgreSQL's bell on to this process, for ever; ends at once where there is none. Behind a pooler that gives
+    /// every transaction another connection nobody hears it: then polling has to do.
+    pub async fn listen(self, database: Database) {
+        let Some(options) = database.postgres_options().cloned() else { return };
+        loop {
+            if let Err(error) = self.listen_once(&options).await {
+                tracing::warn!(%error, "the database's bell is not heard, so workers look by the clock");
+            }
+            tokio::time::sleep(RECONNECT).await;
+        }
+    }
+
+    async fn listen_once(&self, options: &PgConnectOptions) -> Result<(), sqlx::Error> {
+        let pool = PgPoolOptions::new().max_connections(1).connect_with(options.clone()).await?;
+        let mut listener = PgListener::connect_with(&pool).await?;
+        listener.listen(CHANNEL).await?;
+        // Whatever rang before is found by looking.
+        self.strike();
+        loop {
+            listener.try_recv().await?;
+            self.strike();
+        }
+    }
+}
+
+impl Ear {
+    /// Waits for a stroke, or until `patience` is over; whether there was one.
+    pub async fn wait(&mut self, patience: Duration) -> bool {
+        match tokio::time::timeout(patience, self.0.changed()).await {
+            Ok(Ok(())) => true,
+            Err(_) => false,
+            // The bell is gone, with everybody who could strike it: wait all the same, so that no caller spins.
+            Ok(Err(_)) => {
+                tokio::time::sleep(patience).await;
+                false
+            }
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Claiming.
+use super::{Claim, Lane, Lease, Policy, millis};
+use crate::{
+    db::{DbError, Transaction},
+    secret, values,
+};
+
+/// Claims the job whose turn it is, if there is one. Two workers never get the same: the row is locked, and passed over by
+/// others, until the caller commits.
+///
+/// # Errors
+/// What the database says.
+pub async fn claim(
+    transaction: &mut Transaction,
+    policy: &Policy,
+    lane: Lane,
+    worker: &str,
+) -> Result<Option<Claim>, DbError> {
+    let next = transaction
+        .row(
+            "SELECT id FROM job WHERE lane = ? AND state = 'waiting' AND run_after <= {now}
+             ORDER BY rank, id LIMIT 1 {skip locked}",
+            values![lane.name()],
+        )
+        .await?;
+    let Some(next) = next else { return Ok(None) };
+    let job = next.int("id")?;
+    let key = secret::random_hex();
+    let row = transaction
+        .one(
+            "UPDATE job SET state = 'running', attempt = attempt + 1, worker = ?, lease_key = ?,
+                lease_until = {now} + ?, started_at = {now}
+             WHERE id = ? RETURNING attempt, failures, submission, payload",
+            values![worker, &key, millis(policy.lease), job],
+        )
+        .await?;
+    Ok(Some(Claim {
+        lease: Lease { job, attempt: row.int("attempt")?, key },
+        submission: row.maybe_int("submission")?,
+        payload: row.text("payload")?,
+        failures: row.int("failures")?,
+    }))
+}

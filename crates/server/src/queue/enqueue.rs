@@ -1,0 +1,106 @@
+//! Putting jobs into the queue, and where they go.
+//!
+//! A job's **rank** is a time: when it would come if everybody waited for their turn. For the first waiting job of a
+//! student it is now; each further one comes [`Turn::Student`]'s spacing later, so that twenty uploads of one student do
+//! not hold up another's first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks do not
+//! change, and time goes on: so whatever waits is passed only by a bounded number of others, which is what ageing is for,
+//! and the place of a job in the queue is a count.
+use super::{Lane, millis};
+use crate::{
+    db::{DbError, Transaction},
+    values,
+};
+use std::time::Duration;
+
+/// Whose turn a job uses up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Turn {
+    /// A student's upload.
+    Student(i64),
+    /// Part of a regrade.
+    Campaign(i64),
+}
+
+impl Turn {
+    /// How much later a further job of the same owner comes.
+    fn spacing(self) -> Duration {
+        match self {
+            Self::Student(_) => Duration::from_secs(600),
+            Self::Campaign(_) => Duration::from_secs(20),
+        }
+    }
+
+    /// How much later than an upload of the same moment its first job comes.
+    fn delay(self) -> Duration {
+        match self {
+            Self::Student(_) => Duration::ZERO,
+            Self::Campaign(_) => Duration::from_secs(1800),
+        }
+    }
+
+    fn key(self) -> String {
+        match self {
+            Self::Student(account) => format!("student {account}"),
+            Self::Campaign(campaign) => format!("campaign {campaign}"),
+        }
+    }
+}
+
+/// A job to be put into the queue.
+#[derive(Debug, Clone)]
+pub struct NewJob<'a> {
+    /// What it is done by.
+    pub lane: Lane,
+    /// What it is about.
+    pub submission: Option<i64>,
+    /// The regrade that it belongs to.
+    pub campaign: Option<i64>,
+    /// Whose turn it uses up.
+    pub turn: Turn,
+    /// What to do.
+    pub payload: &'a str,
+}
+
+/// Enqueues a job within the caller's transaction and returns its number. Workers are told by [`super::Bell::ring`],
+/// within the same transaction.
+///
+/// # Errors
+/// What the database says.
+pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<i64, DbError> {
+    let key = job.turn.key();
+    // Two uploads of one student at the same moment may get the same rank: then the number decides, and nobody is hurt.
+    let last = transaction
+        .one(
+            "SELECT max(rank) AS last, {now} AS now FROM job WHERE fair_key = ? AND state IN ('waiting', 'running')",
+            values![&key],
+        )
+        .await?;
+    let own = last.int("now")? + millis(job.turn.delay());
+    let rank = match last.maybe_int("last")? {
+        Some(last) => own.max(last + millis(job.turn.spacing())),
+        None => own,
+    };
+    let row = transaction
+        .one(
+            "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
+             VALUES (?, ?, ?, ?, ?, 'waiting', ?, {now}, {now}) RETURNING id",
+            values![job.lane.name(), job.submission, job.campaign, key, job.payload, rank],
+        )
+        .await?;
+    row.int("id")
+}
+
+/// Takes a job out of the queue, also from the worker that runs it; whether there was anything to take.
+///
+/// # Errors
+/// What the database says.
+pub async fn cancel(transaction: &mut Transaction, job: i64) -> Result<bool, DbError> {
+    let changed = transaction
+        .execute(
+            "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+             WHERE id = ? AND state IN ('waiting', 'running')",
+            values![job],
+        )
+        .await?;
+    Ok(changed > 0)
+}

@@ -1,0 +1,159 @@
+//! The queue of jobs, as statements within the caller's transaction: so a job is enqueued together with the upload that
+//! it is about, and finished together with the result that it came to.
+//!
+//! A worker **claims** a job and holds it under a lease, which it **renews**; it **finishes** it, gives it back
+//! (**releases**) or says that it **failed**. Every claim has a number of its own, the attempt, and a key that only the
+//! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job
+//! whose worker went silent waits again, later each time, and after [`Policy::max_failures`] failures it is **buried**:
+//! somebody is to look at it. What a job is about, and what is written when it ends, is the concern of the rooms above.
+
+mod bell;
+mod claim;
+mod enqueue;
+mod hold;
+mod place;
+mod tick;
+
+pub use bell::{Bell, Ear};
+pub use claim::claim;
+pub use enqueue::{NewJob, Turn, cancel, enqueue};
+pub use hold::{Completion, Failure, complete, fail, release, renew};
+pub use place::{Place, place};
+pub use tick::{Buried, Tick, abandon, tick};
+
+use crate::secret;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// What a job is done by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Lane {
+    /// Workers grade.
+    Grading,
+    /// The service tells a learning platform about grades.
+    Passback,
+}
+
+impl Lane {
+    /// Its name in the table.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Grading => "grading",
+            Self::Passback => "passback",
+        }
+    }
+}
+
+/// How patient the queue is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Policy {
+    /// How long a worker may be silent.
+    pub lease: Duration,
+    /// After so many failures a job is buried.
+    pub max_failures: u32,
+    /// The wait after the first failure; each further one waits four times as long.
+    pub first_wait: Duration,
+    /// The longest wait between two tries.
+    pub longest_wait: Duration,
+}
+
+impl Default for Policy {
+    fn default() -> Self {
+        Self {
+            lease: Duration::from_secs(30),
+            max_failures: 5,
+            first_wait: Duration::from_secs(1),
+            longest_wait: Duration::from_secs(120),
+        }
+    }
+}
+
+impl Policy {
+    /// How often a worker renews its leases: two renewals may get lost.
+    #[must_use]
+    pub fn renew_every(&self) -> Duration {
+        self.lease / 4
+    }
+
+    /// How often somebody looks for leases that ran out.
+    #[must_use]
+    pub fn tick_every(&self) -> Duration {
+        self.lease / 8
+    }
+
+    /// When nobody has looked for so long, nobody could renew either: the database was away.
+    fn outage(&self) -> Duration {
+        self.lease / 2
+    }
+
+    /// How long a job waits after its `failures`th failure, at most.
+    fn longest(&self, failures: i64) -> Duration {
+        let steps = u32::try_from(failures.max(1) - 1).unwrap_or(u32::MAX).min(16);
+        self.first_wait.saturating_mul(4_u32.saturating_pow(steps)).min(self.longest_wait)
+    }
+
+    /// How long it waits this time: jobs that failed together do not come back together.
+    fn wait(&self, failures: i64) -> Duration {
+        let longest = self.longest(failures);
+        longest - longest / 4 * secret::random_byte().into() / 255
+    }
+}
+
+/// What a worker shows for the job that it holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Lease {
+    /// The job.
+    pub job: i64,
+    /// The number of the claim.
+    pub attempt: i64,
+    /// Known to the claimant alone.
+    pub key: String,
+}
+
+/// From so many failures on a job is suspected of killing its worker, and runs alone: others that would die with it count
+/// their failures, too.
+const SUSPECTED_AFTER: i64 = 2;
+
+/// A job that was claimed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Claim {
+    /// What to show from now on.
+    pub lease: Lease,
+    /// What the job is about.
+    pub submission: Option<i64>,
+    /// What to do, as it was enqueued.
+    pub payload: String,
+    /// How often it failed before.
+    pub failures: i64,
+}
+
+impl Claim {
+    /// Whether the job is to run alone in its worker.
+    #[must_use]
+    pub fn is_suspected(&self) -> bool {
+        self.failures >= SUSPECTED_AFTER
+    }
+}
+
+/// Milliseconds, as the database counts.
+fn millis(duration: Duration) -> i64 {
+    i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_failure_waits_longer_up_to_a_limit() {
+        let policy = Policy::default();
+        let waits: Vec<u64> = (1..=6).map(|failures| policy.longest(failures).as_secs()).collect();
+        assert_eq!(waits, [1, 4, 16, 64, 120, 120]);
+        assert_eq!(policy.longest(i64::MAX), policy.longest_wait);
+        let some: std::collections::BTreeSet<Duration> = (0..100).map(|_| policy.wait(3)).collect();
+        assert!(some.len() > 10 && some.first() >= Some(&Duration::from_secs(12)), "{some:?}");
+        assert!(some.last() <= Some(&Duration::from_secs(16)), "{some:?}");
+    }
+}

@@ -1,0 +1,65 @@
+//! Where a job stands, and how long it may take.
+use super::{Lane, Policy, millis};
+use crate::{
+    db::{DbError, Transaction},
+    values,
+};
+use std::time::Duration;
+
+/// How many finished jobs the expected time looks back on.
+const RECENT: i64 = 50;
+
+/// A waiting job's place in the queue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// How many jobs come before it.
+    pub ahead: i64,
+    /// When its result may be expected, from the recent jobs and the slots of the workers that are alive; nothing when
+    /// there are none of either.
+    pub expected: Option<Duration>,
+}
+
+/// A waiting job's place; nothing when it does not wait (any more).
+///
+/// # Errors
+/// What the database says.
+pub async fn place(
+    transaction: &mut Transaction,
+    policy: &Policy,
+    lane: Lane,
+    job: i64,
+) -> Result<Option<Place>, DbError> {
+    let own = transaction.row("SELECT rank FROM job WHERE id = ? AND state = 'waiting'", values![job]).await?;
+    let Some(own) = own else { return Ok(None) };
+    let rank = own.int("rank")?;
+    let ahead = transaction
+        .one(
+            "SELECT count(*) AS n FROM job
+             WHERE lane = ? AND state = 'waiting' AND (rank < ? OR (rank = ? AND id < ?))",
+            values![lane.name(), rank, rank, job],
+        )
+        .await?
+        .int("n")?;
+    let usual = transaction
+        .one(
+            "SELECT CAST(avg(took) AS {int}) AS took FROM (
+                SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
+                ORDER BY finished_at DESC LIMIT ?
+             ) AS recent",
+            values![lane.name(), RECENT],
+        )
+        .await?
+        .maybe_int("took")?;
+    let slots = transaction
+        .one(
+            "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker WHERE seen_at > {now} - ?",
+            values![2 * millis(policy.lease)],
+        )
+        .await?
+        .int("slots")?;
+    let expected = usual.filter(|_| slots > 0).map(|usual| {
+        let rounds = ahead / slots + 1;
+        Duration::from_millis(u64::try_from(rounds.saturating_mul(usual.max(1))).unwrap_or(0))
+    });
+    Ok(Some(Place { ahead, expected }))
+}

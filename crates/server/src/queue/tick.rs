@@ -1,0 +1,92 @@
+//! Looking for workers that went silent.
+//!
+//! Everybody who is alive ticks, and leases run out only while somebody does: after a gap the database itself was away,
+//! nobody could renew, and every lease begins anew. So a restart of PostgreSQL costs no job a try.
+use super::{Failure, Policy, hold::lose, millis};
+use crate::{
+    db::{DbError, Row, Transaction},
+    values,
+};
+
+/// What a tick found.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Tick {
+    /// How many jobs wait again.
+    pub retried: usize,
+    /// Jobs that were tried too often; whoever called writes what follows in the same transaction.
+    pub buried: Vec<Buried>,
+    /// Whether leases began anew because nobody had ticked.
+    pub outage: bool,
+}
+
+/// A job that was tried too often.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Buried {
+    /// Its number.
+    pub job: i64,
+    /// The number of its last claim.
+    pub attempt: i64,
+    /// What the last worker was called.
+    pub worker: String,
+    /// Why the last try came to nothing.
+    pub fault: String,
+}
+
+/// Gives up on workers whose leases ran out, at most every [`Policy::tick_every`], whoever calls.
+///
+/// # Errors
+/// What the database says.
+pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick, DbError> {
+    let pulse =
+        transaction.row("SELECT beat_at, {now} AS now FROM pulse WHERE id = 1 {skip locked}", values![]).await?;
+    // Somebody else is at it.
+    let Some(pulse) = pulse else { return Ok(Tick::default()) };
+    let (beat, now) = (pulse.int("beat_at")?, pulse.int("now")?);
+    if (0..millis(policy.tick_every())).contains(&(now - beat)) {
+        return Ok(Tick::default());
+    }
+    transaction.execute("UPDATE pulse SET beat_at = {now} WHERE id = 1", values![]).await?;
+    // A clock that was set back, or far ahead, is an outage, too.
+    if now < beat || now - beat > millis(policy.outage()) {
+        transaction
+            .execute("UPDATE job SET lease_until = {now} + ? WHERE state = 'running'", values![millis(policy.lease)])
+            .await?;
+        return Ok(Tick { outage: true, ..Tick::default() });
+    }
+    let lost = transaction
+        .rows(
+            "SELECT id, attempt, failures, worker FROM job WHERE state = 'running' AND lease_until < {now}
+             ORDER BY id {skip locked}",
+            values![],
+        )
+        .await?;
+    give_up(transaction, policy, lost, "its worker went silent").await
+}
+
+/// Gives up on a worker that is known to be dead, before its leases run out.
+///
+/// # Errors
+/// What the database says.
+pub async fn abandon(transaction: &mut Transaction, policy: &Policy, worker: &str) -> Result<Tick, DbError> {
+    let lost = transaction
+        .rows(
+            "SELECT id, attempt, failures, worker FROM job WHERE state = 'running' AND worker = ?
+             ORDER BY id {skip locked}",
+            values![worker],
+        )
+        .await?;
+    give_up(transaction, policy, lost, "its worker died").await
+}
+
+async fn give_up(transaction: &mut Transaction, policy: &Policy, lost: Vec<Row>, fault: &str) -> Result<Tick, DbError> {
+    let mut tick = Tick::default();
+    for row in lost {
+        let (job, attempt) = (row.int("id")?, row.int("attempt")?);
+        let worker = row.maybe_text("worker")?.unwrap_or_default();
+        match lose(transaction, policy, job, row.int("failures")? + 1, fault).await? {
+            Failure::Buried => tick.buried.push(Buried { job, attempt, worker, fault: fault.to_owned() }),
+            Failure::Retried | Failure::Late => tick.retried += 1,
+        }
+    }
+    Ok(tick)
+}

@@ -1,0 +1,258 @@
+//! The store of artefacts: submissions, reports, suites. Each lies under the SHA-256 of its bytes, is written once and
+//! never changed; whoever reads one gets the bytes that its name promises, or an error. A folder by default; whatever
+//! `object_store` knows otherwise.
+//!
+//! An artefact is safely stored before the database hears of it, so that what the database names is always there.
+use crate::secret::hex;
+use object_store::{
+    ObjectStore, ObjectStoreExt, PutPayload, WriteMultipart, local::LocalFileSystem, path::Path as Key,
+};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+use std::{fmt, io, path::Path, str::FromStr, sync::Arc};
+use thiserror::Error;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+
+/// How much is read at a time.
+const CHUNK: usize = 256 * 1024;
+
+/// The SHA-256 of an artefact's bytes, in lower-case hexadecimal.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Digest(String);
+
+/// What an artefact is called and how large it is.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Artefact {
+    /// The digest of its bytes.
+    pub digest: Digest,
+    /// How many bytes these are.
+    pub size: u64,
+}
+
+/// Why an artefact can't be stored or read.
+#[derive(Debug, Error)]
+pub enum StoreError {
+    /// There is none of this digest.
+    #[error("the store has no artefact {0}")]
+    Missing(Digest),
+    /// The bytes are not those that were stored: a damaged disk, or somebody's hand.
+    #[error("the artefact {0} is damaged in the store")]
+    Damaged(Digest),
+    /// More bytes came than allowed.
+    #[error("more than {0} bytes")]
+    TooLarge(u64),
+    /// The store can't be used: no space, no permission, not reachable.
+    #[error("the store failed: {0}")]
+    Failed(String),
+}
+
+impl From<object_store::Error> for StoreError {
+    fn from(error: object_store::Error) -> Self {
+        Self::Failed(error.to_string())
+    }
+}
+
+impl From<io::Error> for StoreError {
+    fn from(error: io::Error) -> Self {
+        Self::Failed(error.to_string())
+    }
+}
+
+impl Digest {
+    /// The digest of bytes.
+    #[must_use]
+    pub fn of(bytes: &[u8]) -> Self {
+        Self(hex(&Sha256::digest(bytes)))
+    }
+
+    /// As text.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    fn key(&self) -> Key {
+        Key::from(format!("sha256/{}/{}", &self.0[..2], &self.0[2..]))
+    }
+}
+
+impl FromStr for Digest {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_hex = |c: u8| c.is_ascii_digit() || (b'a'..=b'f').contains(&c);
+        if text.len() == 64 && text.bytes().all(is_hex) {
+            return Ok(Self(text.to_owned()));
+        }
+        Err("a digest is 64 digits of lower-case hexadecimal".to_owned())
+    }
+}
+
+impl TryFrom<String> for Digest {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<Digest> for String {
+    fn from(digest: Digest) -> Self {
+        digest.0
+    }
+}
+
+impl fmt::Display for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// The store. Cloning it is cheap.
+#[derive(Debug, Clone)]
+pub struct Store {
+    objects: Arc<dyn ObjectStore>,
+}
+
+impl Store {
+    /// A folder as a store; made when it is missing. What was stored survives a power cut.
+    ///
+    /// # Errors
+    /// When the folder can't be made.
+    pub fn folder(folder: &Path) -> Result<Self, StoreError> {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| StoreError::Failed(format!("cannot make {}: {error}", folder.display())))?;
+        let objects = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
+        Ok(Self { objects: Arc::new(objects) })
+    }
+
+    /// Stores bytes.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub async fn put(&self, bytes: Vec<u8>) -> Result<Artefact, StoreError> {
+        let artefact = Artefact { digest: Digest::of(&bytes), size: bytes.len() as u64 };
+        if !self.has(&artefact.digest).await? {
+            self.objects.put(&artefact.digest.key(), PutPayload::from(bytes)).await?;
+        }
+        Ok(artefact)
+    }
+
+    /// Stores a file, without ever holding it whole.
+    ///
+    /// # Errors
+    /// When the file can't be read, or changes meanwhile, or the store fails.
+    pub async fn put_file(&self, file: &Path) -> Result<Artefact, StoreError> {
+        let artefact = digest_of_file(file).await?;
+        if self.has(&artefact.digest).await? {
+            return Ok(artefact);
+        }
+        let mut input = tokio::fs::File::open(file).await?;
+        // What is not completed never shows under its name.
+        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artefact.digest.key()).await?);
+        let mut hasher = Sha256::new();
+        let mut chunk = vec![0; CHUNK];
+        loop {
+            let read = input.read(&mut chunk).await?;
+            if read == 0 {
+                break;
+            }
+            hasher.update(&chunk[..read]);
+            upload.wait_for_capacity(4).await?;
+            upload.write(&chunk[..read]);
+        }
+        if hex(&hasher.finalize()) != artefact.digest.0 {
+            upload.abort().await?;
+            return Err(StoreError::Failed(format!("{} changed while it was read", file.display())));
+        }
+        upload.finish().await?;
+        Ok(artefact)
+    }
+
+    /// Whether there is an artefact of this digest.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
+        match self.objects.head(&digest.key()).await {
+            Ok(_) => Ok(true),
+            Err(object_store::Error::NotFound { .. }) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The bytes of an artefact that is at most `most` bytes large.
+    ///
+    /// # Errors
+    /// When there is none, it is larger or damaged, or the store fails.
+    pub async fn bytes(&self, digest: &Digest, most: u64) -> Result<Vec<u8>, StoreError> {
+        let mut bytes = Vec::new();
+        self.copy(digest, most, &mut bytes).await?;
+        Ok(bytes)
+    }
+
+    /// Writes an artefact into a new file.
+    ///
+    /// # Errors
+    /// When there is none or it is damaged (no file is left then), the file can't be written, or the store fails.
+    pub async fn fetch(&self, digest: &Digest, file: &Path) -> Result<(), StoreError> {
+        let mut output = tokio::fs::File::create_new(file).await?;
+        let copied = self.copy(digest, u64::MAX, &mut output).await;
+        if copied.is_err() {
+            drop(tokio::fs::remove_file(file).await);
+        }
+        output.flush().await?;
+        copied
+    }
+
+    async fn copy(
+        &self,
+        digest: &Digest,
+        most: u64,
+        output: &mut (impl tokio::io::AsyncWrite + Unpin),
+    ) -> Result<(), StoreError> {
+        let found = match self.objects.get(&digest.key()).await {
+            Err(object_store::Error::NotFound { .. }) => return Err(StoreError::Missing(digest.clone())),
+            found => found?,
+        };
+        if found.meta.size > most {
+            return Err(StoreError::TooLarge(most));
+        }
+        let mut hasher = Sha256::new();
+        let mut input = tokio_util::io::StreamReader::new(found.into_stream());
+        let mut chunk = vec![0; CHUNK];
+        loop {
+            let read = input.read(&mut chunk).await?;
+            if read == 0 {
+                break;
+            }
+            hasher.update(&chunk[..read]);
+            output.write_all(&chunk[..read]).await?;
+        }
+        if hex(&hasher.finalize()) != digest.0 {
+            return Err(StoreError::Damaged(digest.clone()));
+        }
+        Ok(())
+    }
+}
+
+/// The digest and size of a file.
+///
+/// # Errors
+/// When it can't be read.
+pub async fn digest_of_file(file: &Path) -> io::Result<Artefact> {
+    let mut input = tokio::fs::File::open(file).await?;
+    let mut hasher = Sha256::new();
+    let mut size = 0;
+    let mut chunk = vec![0; CHUNK];
+    loop {
+        let read = input.read(&mut chunk).await?;
+        if read == 0 {
+            break;
+        }
+        size += read as u64;
+        hasher.update(&chunk[..read]);
+    }
+    Ok(Artefact { digest: Digest(hex(&hasher.finalize())), size })
+}

@@ -1,0 +1,118 @@
+//! What a worker is asked to do and what it answers: the same words in the queue, over HTTP and in the database.
+use crate::store::{Artefact, Digest};
+use serde::{Deserialize, Serialize};
+
+/// One grading, complete: whoever has this and the artefacts that it names can do it again.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Task {
+    /// What was handed in.
+    pub submission: Input,
+    /// What it is graded by.
+    pub suite: Suite,
+    /// The rule books, when the suite is not to decide: `parity`, `fair` or `both`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rules: Option<String>,
+    /// The program's name within a folder of sources.
+    pub program: String,
+    /// After so many seconds the grading is stopped, and what it has so far counts.
+    pub seconds: u64,
+}
+
+/// What was handed in.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Input {
+    /// What kind of thing it is.
+    pub form: Form,
+    /// What it was called, made harmless.
+    pub name: String,
+    /// Its bytes.
+    #[serde(flatten)]
+    pub artefact: Artefact,
+}
+
+/// The kinds of submissions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Form {
+    /// A program, ready to run.
+    Program,
+    /// An archive of sources that the suite says how to build.
+    Sources,
+    /// An archive of traces, one for each scene.
+    Traces,
+}
+
+impl Form {
+    /// Its name in tables and messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Program => "program",
+            Self::Sources => "sources",
+            Self::Traces => "traces",
+        }
+    }
+}
+
+/// What a submission is graded by.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Suite {
+    /// One that comes with the program.
+    Named(String),
+    /// An archive with a `suite.toml` and its scenes.
+    Archive(Digest),
+}
+
+/// What a grading came to.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// The verdict in words.
+    pub verdict: String,
+    /// The verdict in short: AC, WA, ..., JE.
+    pub code: String,
+    /// Points, as the grader wrote them; none after a judge error.
+    pub points: Option<String>,
+    /// The most that could be had.
+    pub max_points: Option<String>,
+    /// One line about it.
+    pub summary: String,
+    /// The grader's version.
+    pub version: String,
+    /// How long it took.
+    pub seconds: String,
+    /// Reports and logs.
+    pub files: Vec<OutputFile>,
+}
+
+impl Outcome {
+    /// The outcome of a job that was tried too often: our fault, and nobody's zero.
+    #[must_use]
+    pub fn judge_error(fault: &str) -> Self {
+        Self {
+            verdict: "judge error".to_owned(),
+            code: JUDGE_ERROR.to_owned(),
+            points: None,
+            max_points: None,
+            summary: format!("the grader failed: {fault}"),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            seconds: "0".to_owned(),
+            files: Vec::new(),
+        }
+    }
+}
+
+/// The verdict that is nobody's zero.
+pub const JUDGE_ERROR: &str = "JE";
+
+/// A report or log.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OutputFile {
+    /// What it is called, `grade.json` for example.
+    pub name: String,
+    /// What it holds.
+    pub media_type: String,
+    /// Its bytes.
+    #[serde(flatten)]
+    pub artefact: Artefact,
+}

@@ -1,0 +1,169 @@
+//! A child process that never outlives its owner: it leads a process group that is killed as a whole, and the kernel kills
+//! it when this process dies, however that happens.
+use std::{
+    io,
+    os::unix::process::{CommandExt, ExitStatusExt},
+    process::{Command, Stdio},
+    sync::{Arc, Mutex, PoisonError},
+};
+use tokio::sync::watch;
+
+/// How a child ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// By itself, with this exit code.
+    Code(i32),
+    /// By this signal.
+    Signal(i32),
+}
+
+/// A running child. Dropped, it is killed.
+#[derive(Debug)]
+pub(super) struct Child {
+    /// The group's number while it may be used: the leader is not reaped yet, so nobody else can have it.
+    group: Arc<Mutex<Option<libc::pid_t>>>,
+    end: watch::Receiver<Option<End>>,
+}
+
+impl Child {
+    /// Starts a child without input.
+    ///
+    /// # Errors
+    /// When it can't be started.
+    pub(super) fn start(mut command: Command) -> io::Result<Self> {
+        command.stdin(Stdio::null()).stdout(Stdio::null()).process_group(0);
+        let parent = std::process::id();
+        // SAFETY: prctl and getppid may be called between fork and exec.
+        unsafe {
+            command.pre_exec(move || {
+                libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
+                // The owner died before the line above.
+                if libc::getppid().unsigned_abs() != parent {
+                    return Err(io::Error::from_raw_os_error(libc::ESRCH));
+                }
+                Ok(())
+            });
+        }
+        let (started_sender, started) = std::sync::mpsc::channel();
+        let (end_sender, end) = watch::channel(None);
+        let group = Arc::new(Mutex::new(None));
+        let known = group.clone();
+        // The kernel counts the thread that forked as the parent: it waits for the child, and so outlives it.
+        std::thread::Builder::new().name("grader".to_owned()).spawn(move || {
+            let mut child = match command.spawn() {
+                Ok(child) => child,
+                Err(error) => return drop(started_sender.send(Err(error))),
+            };
+            let number = child.id().cast_signed();
+            *known.lock().unwrap_or_else(PoisonError::into_inner) = Some(number);
+            // When memory runs short the grader goes first, and not the worker.
+            drop(std::fs::write(format!("/proc/{number}/oom_score_adj"), "800"));
+            drop(started_sender.send(Ok(())));
+            wait_without_reaping(number);
+            let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
+            *known = None;
+            // SAFETY: the leader is not reaped yet, so the group is still this one.
+            unsafe { libc::kill(-number, libc::SIGKILL) };
+            let end = match child.wait() {
+                Ok(status) => match (status.code(), status.signal()) {
+                    (Some(code), _) => End::Code(code),
+                    (None, signal) => End::Signal(signal.unwrap_or(0)),
+                },
+                Err(_) => End::Signal(0),
+            };
+            end_sender.send_replace(Some(end));
+        })?;
+        started.recv().map_err(io::Error::other)??;
+        Ok(Self { group, end })
+    }
+
+    /// Waits for its end.
+    pub(super) async fn ended(&self) -> End {
+        let mut end = self.end.clone();
+        match end.wait_for(Option::is_some).await {
+            Ok(end) => (*end).unwrap_or(End::Signal(0)),
+            // The waiting thread is gone.
+            Err(_) => End::Signal(0),
+        }
+    }
+
+    /// Asks it to stop.
+    pub(super) fn interrupt(&self) {
+        self.signal(libc::SIGTERM, false);
+    }
+
+    /// Ends it and its group.
+    pub(super) fn kill(&self) {
+        self.signal(libc::SIGKILL, true);
+    }
+
+    fn signal(&self, signal: i32, whole_group: bool) {
+        if let Some(number) = *self.group.lock().unwrap_or_else(PoisonError::into_inner) {
+            // SAFETY: the leader is not reaped while the number is known.
+            unsafe { libc::kill(if whole_group { -number } else { number }, signal) };
+        }
+    }
+}
+
+impl Drop for Child {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// Waits until a child has ended, and leaves its number taken.
+fn wait_without_reaping(number: libc::pid_t) {
+    loop {
+        // SAFETY: a zeroed siginfo_t is valid, and the call writes it only.
+        let result = unsafe {
+            let mut info: libc::siginfo_t = std::mem::zeroed();
+            libc::waitid(libc::P_PID, number.unsigned_abs(), &raw mut info, libc::WEXITED | libc::WNOWAIT)
+        };
+        if result == 0 || io::Error::last_os_error().raw_os_error() != Some(libc::EINTR) {
+            return;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]);
+        command
+    }
+
+    #[tokio::test]
+    async fn ends_are_told() {
+        let end = async |script| Child::start(shell(script)).expect("a child").ended().await;
+        assert_eq!(end("exit 3").await, End::Code(3));
+        assert_eq!(end("kill -SEGV $$").await, End::Signal(libc::SIGSEGV));
+        assert!(Child::start(Command::new("/nowhere/fosssim-oracle")).is_err());
+    }
+
+    #[tokio::test]
+    async fn the_whole_group_dies() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("pid");
+        let script = format!("sleep 1000 & echo $! > {0}.new; mv {0}.new {0}; wait", file.display());
+        let child = Child::start(shell(&script)).expect("a child");
+        while !file.exists() {
+            tokio::task::yield_now().await;
+        }
+        let grandchild: i32 = std::fs::read_to_string(&file).expect("a file").trim().parse().expect("a number");
+        child.kill();
+        assert_eq!(child.ended().await, End::Signal(libc::SIGKILL));
+        // It is gone, or a zombie that waits for init: in any case it does not run. Dying takes it a moment.
+        let start = std::time::Instant::now();
+        loop {
+            let state = std::fs::read_to_string(format!("/proc/{grandchild}/stat")).unwrap_or_default();
+            if state.is_empty() || state.contains(") Z ") || state.contains(") X ") {
+                break;
+            }
+            assert!(start.elapsed().as_secs() < 60, "it lives on: {state}");
+            tokio::task::yield_now().await;
+        }
+    }
+}

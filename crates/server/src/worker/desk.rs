@@ -1,0 +1,74 @@
+//! Where workers get their jobs and bring their results: the database itself, or a server over HTTP.
+use crate::{
+    queue::Lease,
+    store::{Artefact, Digest},
+    task::{Outcome, Task},
+};
+use std::{future::Future, path::Path, time::Duration};
+use thiserror::Error;
+
+/// A job that was claimed.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// What to show from now on.
+    pub lease: Lease,
+    /// How often to renew it.
+    pub renew_every: Duration,
+    /// What to do.
+    pub task: Task,
+    /// Whether nothing else may run beside it in this worker: it may have killed workers before.
+    pub alone: bool,
+}
+
+/// Whether the lease still holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// It does, or did: what was asked is done.
+    Held,
+    /// It does not: somebody else has the job, and nothing was changed.
+    Lost,
+}
+
+/// Why a desk did not answer.
+#[derive(Debug, Error)]
+pub enum DeskError {
+    /// The same may succeed a moment later.
+    #[error("{0}")]
+    Away(String),
+    /// It never will.
+    #[error("{0}")]
+    Refused(String),
+}
+
+/// Where workers get their jobs and bring their results.
+pub trait Desk: Clone + Send + Sync + 'static {
+    /// The next job, if there is one. Not to be interrupted: the desk might have given away a job that nobody gets.
+    fn claim(&self) -> impl Future<Output = Result<Option<Job>, DeskError>> + Send;
+
+    /// Waits until there may be a job, or `patience` is over. May be interrupted.
+    fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;
+
+    /// Extends the lease.
+    fn renew(&self, lease: &Lease) -> impl Future<Output = Result<Answer, DeskError>> + Send;
+
+    /// Brings the result. Saying it twice is no harm.
+    fn finish(&self, lease: &Lease, outcome: &Outcome) -> impl Future<Output = Result<Answer, DeskError>> + Send;
+
+    /// Gives the job back at no cost.
+    fn release(&self, lease: &Lease) -> impl Future<Output = Result<Answer, DeskError>> + Send;
+
+    /// Says that the try came to nothing through no fault of the submission.
+    fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<Answer, DeskError>> + Send;
+
+    /// Copies an artefact of the job into a new file.
+    fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> impl Future<Output = Result<(), DeskError>> + Send;
+
+    /// Stores a file for the result of the job.
+    fn store(&self, lease: &Lease, file: &Path) -> impl Future<Output = Result<Artefact, DeskError>> + Send;
+
+    /// Says that this worker is alive; called every now and then.
+    fn tick(&self, slots: usize) -> impl Future<Output = Result<(), DeskError>> + Send;
+
+    /// How often [`tick`](Self::tick) is to be called.
+    fn tick_every(&self) -> Duration;
+}

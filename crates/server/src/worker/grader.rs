@@ -1,0 +1,63 @@
+//! What grades. Today that is the program `fosssim-oracle` as a child ([`super::Program`]); a worker does not care.
+use crate::task::Task;
+use std::{
+    future::Future,
+    path::{Path, PathBuf},
+};
+use thiserror::Error;
+use tokio_util::sync::CancellationToken;
+
+/// What a grading came to, with its files still in the working folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Graded {
+    /// The verdict in words.
+    pub verdict: String,
+    /// The verdict in short.
+    pub code: String,
+    /// Points, as the grader wrote them.
+    pub points: Option<String>,
+    /// The most that could be had.
+    pub max_points: Option<String>,
+    /// One line about it.
+    pub summary: String,
+    /// The grader's version.
+    pub version: String,
+    /// Reports and logs.
+    pub files: Vec<NewFile>,
+}
+
+/// A file that belongs to a result.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NewFile {
+    /// What it is called.
+    pub name: String,
+    /// What it holds.
+    pub media_type: String,
+    /// Where it lies.
+    pub path: PathBuf,
+}
+
+/// Why there is no verdict. Never the submission's fault.
+#[derive(Debug, Error)]
+pub enum GraderFault {
+    /// Something failed; another try may help.
+    #[error("{0}")]
+    Failed(String),
+    /// Somebody asked to stop.
+    #[error("the grading was stopped")]
+    Stopped,
+}
+
+/// What grades.
+pub trait Grader: Clone + Send + Sync + 'static {
+    /// Grades the submission that lies at `submission`, by the suite whose archive lies at `suite` if it is one, and may
+    /// use `folder` as it likes. When `stop` is cancelled it ends soon, and nothing that it started goes on.
+    fn grade(
+        &self,
+        task: &Task,
+        submission: &Path,
+        suite: Option<&Path>,
+        folder: &Path,
+        stop: CancellationToken,
+    ) -> impl Future<Output = Result<Graded, GraderFault>> + Send;
+}

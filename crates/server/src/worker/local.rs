@@ -1,0 +1,169 @@
+//! The desk of workers that hold the database themselves: those within the server, and those of who wants it so.
+use super::{Answer, Desk, DeskError, Job};
+use crate::{
+    db::{Database, DbError},
+    ledger,
+    queue::{self, Bell, Completion, Ear, Failure, Lane, Lease, Policy},
+    store::{Artefact, Digest, Store, StoreError},
+    task::Outcome,
+    values,
+};
+use std::{path::Path, time::Duration};
+use tokio::sync::Mutex;
+
+/// How often a worker looks although nobody rang.
+const LOOK_EVERY: Duration = Duration::from_secs(1);
+
+/// The database and the store as a desk.
+#[derive(Debug)]
+pub struct LocalDesk {
+    database: Database,
+    store: Store,
+    bell: Bell,
+    /// What this copy has heard.
+    ear: Mutex<Ear>,
+    policy: Policy,
+    worker: String,
+}
+
+impl Clone for LocalDesk {
+    fn clone(&self) -> Self {
+        Self::new(self.database.clone(), self.store.clone(), self.bell.clone(), self.policy, self.worker.clone())
+    }
+}
+
+impl From<DbError> for DeskError {
+    fn from(error: DbError) -> Self {
+        if error.is_transient() { Self::Away(error.to_string()) } else { Self::Refused(error.to_string()) }
+    }
+}
+
+impl From<StoreError> for DeskError {
+    fn from(error: StoreError) -> Self {
+        match error {
+            StoreError::Failed(_) => Self::Away(error.to_string()),
+            _ => Self::Refused(error.to_string()),
+        }
+    }
+}
+
+impl LocalDesk {
+    /// A desk for the worker of this name.
+    #[must_use]
+    pub fn new(database: Database, store: Store, bell: Bell, policy: Policy, worker: String) -> Self {
+        let ear = Mutex::new(bell.ear());
+        Self { database, store, bell, ear, policy, worker }
+    }
+}
+
+fn report(tick: &queue::Tick) {
+    if tick.outage {
+        tracing::warn!("nobody looked after the queue for a while, so all leases begin anew");
+    }
+    if tick.retried > 0 {
+        tracing::warn!(jobs = tick.retried, "jobs of workers that went silent wait again");
+    }
+    for job in &tick.buried {
+        tracing::error!(job = job.job, worker = job.worker, fault = job.fault, "a job was tried too often");
+    }
+}
+
+impl Desk for LocalDesk {
+    async fn claim(&self) -> Result<Option<Job>, DeskError> {
+        loop {
+            let mut transaction = self.database.begin().await?;
+            let tick = ledger::tick(&mut transaction, &self.policy).await?;
+            let claim = queue::claim(&mut transaction, &self.policy, Lane::Grading, &self.worker).await?;
+            transaction.commit().await?;
+            report(&tick);
+            let Some(claim) = claim else { return Ok(None) };
+            match serde_json::from_str(&claim.payload) {
+                Ok(task) => {
+                    let alone = claim.is_suspected();
+                    return Ok(Some(Job { lease: claim.lease, renew_every: self.policy.renew_every(), task, alone }));
+                }
+                // Written by another version of the program: not this worker's to do.
+                Err(error) => {
+                    self.fail(&claim.lease, &format!("the task can't be read: {error}")).await?;
+                }
+            }
+        }
+    }
+
+    async fn wait(&self, patience: Duration) {
+        self.ear.lock().await.wait(patience.min(LOOK_EVERY)).await;
+    }
+
+    async fn renew(&self, lease: &Lease) -> Result<Answer, DeskError> {
+        let mut transaction = self.database.begin().await?;
+        let held = queue::renew(&mut transaction, &self.policy, lease).await?;
+        transaction.commit().await?;
+        Ok(if held { Answer::Held } else { Answer::Lost })
+    }
+
+    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, DeskError> {
+        for file in &outcome.files {
+            if !self.store.has(&file.artefact.digest).await? {
+                return Err(DeskError::Refused(format!("{} is not in the store", file.name)));
+            }
+        }
+        let mut transaction = self.database.begin().await?;
+        let completion = ledger::finish(&mut transaction, lease, outcome).await?;
+        Bell::ring(&mut transaction).await?;
+        transaction.commit().await?;
+        self.bell.strike();
+        Ok(match completion {
+            Completion::Done | Completion::Repeated => Answer::Held,
+            Completion::Late => Answer::Lost,
+        })
+    }
+
+    async fn release(&self, lease: &Lease) -> Result<Answer, DeskError> {
+        let mut transaction = self.database.begin().await?;
+        let held = queue::release(&mut transaction, lease).await?;
+        Bell::ring(&mut transaction).await?;
+        transaction.commit().await?;
+        self.bell.strike();
+        Ok(if held { Answer::Held } else { Answer::Lost })
+    }
+
+    async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, DeskError> {
+        let mut transaction = self.database.begin().await?;
+        let failure = ledger::fail(&mut transaction, &self.policy, lease, fault).await?;
+        Bell::ring(&mut transaction).await?;
+        transaction.commit().await?;
+        self.bell.strike();
+        if failure == Failure::Buried {
+            tracing::error!(job = lease.job, fault, "a job was tried too often");
+        }
+        Ok(if failure == Failure::Late { Answer::Lost } else { Answer::Held })
+    }
+
+    async fn fetch(&self, _: &Lease, digest: &Digest, file: &Path) -> Result<(), DeskError> {
+        Ok(self.store.fetch(digest, file).await?)
+    }
+
+    async fn store(&self, _: &Lease, file: &Path) -> Result<Artefact, DeskError> {
+        Ok(self.store.put_file(file).await?)
+    }
+
+    async fn tick(&self, slots: usize) -> Result<(), DeskError> {
+        let slots = i64::try_from(slots).unwrap_or(i64::MAX);
+        let mut transaction = self.database.begin().await?;
+        transaction
+            .execute(
+                "INSERT INTO worker (name, version, slots, started_at, seen_at) VALUES (?, ?, ?, {now}, {now})
+                 ON CONFLICT (name) DO UPDATE SET slots = excluded.slots, seen_at = excluded.seen_at",
+                values![&self.worker, env!("CARGO_PKG_VERSION"), slots],
+            )
+            .await?;
+        let tick = ledger::tick(&mut transaction, &self.policy).await?;
+        transaction.commit().await?;
+        report(&tick);
+        Ok(())
+    }
+
+    fn tick_every(&self) -> Duration {
+        self.policy.tick_every()
+    }
+}

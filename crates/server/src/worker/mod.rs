@@ -1,0 +1,17 @@
+//! Workers: they fetch jobs from a [`Desk`], let a [`Grader`] do them, and bring the results back. A worker knows neither
+//! courses nor students; what it holds is a lease.
+
+mod child;
+mod desk;
+mod grader;
+mod liveness;
+mod local;
+mod program;
+mod slots;
+
+pub use desk::{Answer, Desk, DeskError, Job};
+pub use grader::{Graded, Grader, GraderFault, NewFile};
+pub use liveness::{Liveness, dead_workers, forget};
+pub use local::LocalDesk;
+pub use program::Program;
+pub use slots::{Options, work};

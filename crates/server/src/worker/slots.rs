@@ -1,0 +1,277 @@
+//! A worker's slots: each does one job after another.
+use super::{Answer, Desk, DeskError, Grader, GraderFault, Job};
+use crate::{
+    queue::Lease,
+    task::{Outcome, OutputFile, Suite},
+};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::{Duration, Instant},
+};
+use tokio::sync::{OwnedRwLockWriteGuard, RwLock};
+use tokio_util::sync::CancellationToken;
+
+/// How long a slot waits for a job before it asks again.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// The wait after the desk did not answer; it doubles up to the longest.
+const FIRST_WAIT: Duration = Duration::from_millis(200);
+const LONGEST_WAIT: Duration = Duration::from_secs(5);
+
+/// How often a desk that is away is asked again for the parts of a job.
+const PATIENT_TRIES: u32 = 5;
+
+/// How a worker works.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Jobs at one time.
+    pub slots: usize,
+    /// Where jobs get their folders; emptied by who owns it, not by the slots.
+    pub folder: PathBuf,
+}
+
+/// Does jobs until `stop` is cancelled; then gives back what it holds, and ends.
+pub async fn work<D: Desk, G: Grader>(desk: D, grader: G, options: Options, stop: CancellationToken) {
+    let gate = Arc::new(RwLock::new(()));
+    let mut slots = tokio::task::JoinSet::new();
+    for _ in 0..options.slots {
+        slots.spawn(slot(desk.clone(), grader.clone(), options.folder.clone(), gate.clone(), stop.clone()));
+    }
+    let ticking = async {
+        loop {
+            if let Err(error) = desk.tick(options.slots).await {
+                tracing::warn!(%error, "the worker can't say that it is alive");
+            }
+            tokio::time::sleep(desk.tick_every()).await;
+        }
+    };
+    tokio::select! {
+        () = ticking => {}
+        () = async { while slots.join_next().await.is_some() {} } => {}
+    }
+}
+
+async fn slot<D: Desk, G: Grader>(desk: D, grader: G, folder: PathBuf, gate: Arc<RwLock<()>>, stop: CancellationToken) {
+    let mut wait = FIRST_WAIT;
+    while !stop.is_cancelled() {
+        // Held together by all slots that claim or work; a job that must run alone waits until it has the gate for itself.
+        let mut passed = Some(gate.read().await);
+        match desk.claim().await {
+            Ok(None) => {
+                wait = FIRST_WAIT;
+                passed.take();
+                tokio::select! {
+                    () = desk.wait(PATIENCE) => {}
+                    () = stop.cancelled() => {}
+                }
+            }
+            Ok(Some(job)) => {
+                wait = FIRST_WAIT;
+                // A panic is this job's, not the worker's.
+                let lease = job.lease.clone();
+                let mine = gate.clone();
+                let alone = job.alone.then(|| {
+                    passed.take();
+                    mine.write_owned()
+                });
+                let done = tokio::spawn(run(desk.clone(), grader.clone(), job, folder.clone(), alone, stop.clone()));
+                if let Err(error) = done.await {
+                    tracing::error!(job = lease.job, %error, "the worker failed");
+                    settle(&desk, &lease, Ending::Failed(format!("the worker failed: {error}")), &stop).await;
+                }
+            }
+            Err(error) => {
+                passed.take();
+                tracing::warn!(%error, "no job to be had");
+                tokio::select! {
+                    () = tokio::time::sleep(wait) => {}
+                    () = stop.cancelled() => {}
+                }
+                wait = (wait * 2).min(LONGEST_WAIT);
+            }
+        }
+    }
+}
+
+/// How a job ended, to be told to the desk.
+enum Ending {
+    Finished(Outcome),
+    Failed(String),
+    /// The worker is to stop.
+    GivenBack,
+    /// The lease is lost: there is nobody to tell.
+    Lost,
+}
+
+async fn run<D: Desk, G: Grader>(
+    desk: D,
+    grader: G,
+    job: Job,
+    folder: PathBuf,
+    alone: Option<impl Future<Output = OwnedRwLockWriteGuard<()>>>,
+    stop: CancellationToken,
+) {
+    let lost = CancellationToken::new();
+    let keeping = tokio::spawn(keep(desk.clone(), job.lease.clone(), job.renew_every, lost.clone()));
+    let _gate = match alone {
+        Some(alone) => Some(alone.await),
+        None => None,
+    };
+    let ending = match job_folder(&folder) {
+        Err(error) => Ending::Failed(format!("no folder for the job: {error}")),
+        Ok(folder) => {
+            let halt = CancellationToken::new();
+            let grading = attempt(&desk, &grader, &job, folder.path(), halt.clone());
+            tokio::pin!(grading);
+            let ending = tokio::select! {
+                ending = &mut grading => Some(ending),
+                () = lost.cancelled() => None,
+                () = stop.cancelled() => None,
+            };
+            match ending {
+                Some(ending) => ending,
+                None => {
+                    // The grader ends its children before anything is told or removed.
+                    halt.cancel();
+                    match grading.await {
+                        // It was done at that very moment.
+                        Ending::Finished(outcome) if !lost.is_cancelled() => Ending::Finished(outcome),
+                        _ if lost.is_cancelled() => Ending::Lost,
+                        _ => Ending::GivenBack,
+                    }
+                }
+            }
+        }
+    };
+    settle(&desk, &job.lease, ending, &stop).await;
+    keeping.abort();
+}
+
+fn job_folder(folder: &Path) -> std::io::Result<tempfile::TempDir> {
+    std::fs::create_dir_all(folder)?;
+    tempfile::Builder::new().prefix("job-").tempdir_in(folder)
+}
+
+/// Renews a lease until it is lost.
+async fn keep<D: Desk>(desk: D, lease: Lease, every: Duration, lost: CancellationToken) {
+    loop {
+        tokio::time::sleep(every).await;
+        match desk.renew(&lease).await {
+            Ok(Answer::Held) => {}
+            Ok(Answer::Lost) => {
+                tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
+                return lost.cancel();
+            }
+            // The work goes on: whether it counts is decided when it is finished.
+            Err(error) => tracing::warn!(job = lease.job, %error, "the lease can't be renewed"),
+        }
+    }
+}
+
+/// Fetches what the job needs, grades, and stores what came of it.
+async fn attempt<D: Desk, G: Grader>(
+    desk: &D,
+    grader: &G,
+    job: &Job,
+    folder: &Path,
+    halt: CancellationToken,
+) -> Ending {
+    match try_attempt(desk, grader, job, folder, halt).await {
+        Ok(outcome) => Ending::Finished(outcome),
+        Err(GraderFault::Stopped) => Ending::GivenBack,
+        Err(GraderFault::Failed(fault)) => Ending::Failed(fault),
+    }
+}
+
+impl From<DeskError> for GraderFault {
+    fn from(error: DeskError) -> Self {
+        Self::Failed(error.to_string())
+    }
+}
+
+async fn try_attempt<D: Desk, G: Grader>(
+    desk: &D,
+    grader: &G,
+    job: &Job,
+    folder: &Path,
+    halt: CancellationToken,
+) -> Result<Outcome, GraderFault> {
+    let start = Instant::now();
+    let submission = folder.join("submission");
+    patiently(|| desk.fetch(&job.lease, &job.task.submission.artefact.digest, &submission)).await?;
+    let suite = match &job.task.suite {
+        Suite::Named(_) => None,
+        Suite::Archive(digest) => {
+            let file = folder.join("suite");
+            patiently(|| desk.fetch(&job.lease, digest, &file)).await?;
+            Some(file)
+        }
+    };
+    let work = folder.join("work");
+    std::fs::create_dir(&work).map_err(|error| GraderFault::Failed(format!("cannot make a folder: {error}")))?;
+    let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
+    let mut files = Vec::new();
+    for file in graded.files {
+        let artefact = patiently(|| desk.store(&job.lease, &file.path)).await?;
+        files.push(OutputFile { name: file.name, media_type: file.media_type, artefact });
+    }
+    Ok(Outcome {
+        verdict: graded.verdict,
+        code: graded.code,
+        points: graded.points,
+        max_points: graded.max_points,
+        summary: graded.summary,
+        version: graded.version,
+        seconds: format!("{:.3}", start.elapsed().as_secs_f64()),
+        files,
+    })
+}
+
+/// Asks a desk that is away a few times more: a hiccup of the network costs no try.
+async fn patiently<T, F: Future<Output = Result<T, DeskError>>>(ask: impl Fn() -> F) -> Result<T, DeskError> {
+    let mut wait = FIRST_WAIT;
+    for _ in 0..PATIENT_TRIES {
+        match ask().await {
+            Err(DeskError::Away(error)) => tracing::warn!(error, "the desk is away"),
+            answer => return answer,
+        }
+        tokio::time::sleep(wait).await;
+        wait = (wait * 2).min(LONGEST_WAIT);
+    }
+    ask().await
+}
+
+/// Tells the desk, as often as it takes: a result that is lost would have to be made again. A worker that is to stop says
+/// it a few times only; then the lease runs out.
+async fn settle<D: Desk>(desk: &D, lease: &Lease, ending: Ending, stop: &CancellationToken) {
+    let mut wait = FIRST_WAIT;
+    let mut tries_after_stop = 3;
+    loop {
+        let answer = match &ending {
+            Ending::Finished(outcome) => desk.finish(lease, outcome).await,
+            Ending::Failed(fault) => {
+                tracing::warn!(job = lease.job, fault, "a try came to nothing");
+                desk.fail(lease, fault).await
+            }
+            Ending::GivenBack => desk.release(lease).await,
+            Ending::Lost => return,
+        };
+        match answer {
+            Ok(Answer::Held) => return,
+            Ok(Answer::Lost) => return tracing::warn!(job = lease.job, "too late: the lease is lost"),
+            Err(DeskError::Refused(error)) => {
+                return tracing::error!(job = lease.job, error, "the result is refused; the lease will run out");
+            }
+            Err(DeskError::Away(error)) => tracing::warn!(job = lease.job, error, "the result can't be delivered yet"),
+        }
+        if stop.is_cancelled() {
+            tries_after_stop -= 1;
+            if tries_after_stop == 0 {
+                return;
+            }
+        }
+        tokio::time::sleep(wait).await;
+        wait = (wait * 2).min(LONGEST_WAIT);
+    }
+}

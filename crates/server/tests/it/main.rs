@@ -1,0 +1,8 @@
+//! The service's tests, in one binary. What touches the database runs on both engines.
+
+mod bell;
+mod migrations;
+mod queue;
+mod storm;
+mod support;
+mod worker;

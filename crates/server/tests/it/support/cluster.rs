@@ -1,0 +1,284 @@
+//! PostgreSQL for tests: from the system's packages, in a temporary folder, reached by a socket in it.
+//!
+//! [`Cluster`] is a server of one's own, for tests that kill it. [`Shared`] is one for all test processes: the first starts
+//! it, and a small shell that watches over it ends it when nobody has used it for a while.
+use fosssim_server::db::Address;
+use fosssim_testing::{Need, skip};
+use std::{
+    fs::{self, File},
+    os::unix::{
+        fs::{PermissionsExt, chown},
+        process::CommandExt,
+    },
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::atomic::{AtomicU32, Ordering},
+    time::{Duration, Instant},
+};
+
+/// PostgreSQL's programs, and who may run them: the server refuses to be root.
+struct Programs {
+    folder: PathBuf,
+    user: Option<(u32, u32)>,
+}
+
+impl Programs {
+    /// Nothing where PostgreSQL is not installed.
+    fn find() -> Option<Self> {
+        let mut folders: Vec<PathBuf> = fs::read_dir("/usr/lib/postgresql")
+            .map(|versions| versions.flatten().map(|version| version.path().join("bin")).collect())
+            .unwrap_or_default();
+        folders.sort();
+        let newest = folders.into_iter().rev().find(|folder| folder.join("initdb").exists());
+        let Some(folder) = newest else {
+            skip(Need::Postgres, "PostgreSQL is not installed (apt-get install postgresql)");
+            return None;
+        };
+        // SAFETY: geteuid has no preconditions.
+        let user = (unsafe { libc::geteuid() } == 0).then(|| {
+            let id = |flag: &str| -> u32 {
+                let output = Command::new("id").args([flag, "postgres"]).output().expect("id");
+                String::from_utf8_lossy(&output.stdout)
+                    .trim()
+                    .parse()
+                    .expect("the user postgres of PostgreSQL's package")
+            };
+            (id("-u"), id("-g"))
+        });
+        Some(Self { folder, user })
+    }
+
+    fn command(&self, name: &str) -> Command {
+        let mut command = Command::new(self.folder.join(name));
+        if let Some((user, group)) = self.user {
+            command.uid(user).gid(group);
+        }
+        command.stdin(Stdio::null()).current_dir("/");
+        command
+    }
+
+    fn own(&self, folder: &Path) {
+        fs::create_dir_all(folder).expect("a folder");
+        fs::set_permissions(folder, fs::Permissions::from_mode(0o755)).expect("permissions");
+        if let Some((user, group)) = self.user {
+            chown(folder, Some(user), Some(group)).expect("an owner");
+        }
+    }
+
+    fn init(&self, data: &Path) {
+        let output = self
+            .command("initdb")
+            .args(["--auth=trust", "--username=fosssim", "--encoding=UTF8", "--locale=C", "--no-sync", "-D"])
+            .arg(data)
+            .output()
+            .expect("initdb");
+        assert!(output.status.success(), "initdb: {}", String::from_utf8_lossy(&output.stderr));
+    }
+
+    fn server(&self, folder: &Path, fsync: bool) -> Command {
+        let mut command = self.command("postgres");
+        let log = File::options().create(true).append(true).open(folder.join("log")).expect("a log");
+        command.arg("-D").arg(folder.join("data")).arg("-k").arg(folder);
+        for setting in [
+            "listen_addresses=",
+            "max_connections=200",
+            "shared_buffers=16MB",
+            if fsync { "fsync=on" } else { "fsync=off" },
+        ] {
+            command.args(["-c", setting]);
+        }
+        command.stdout(Stdio::null()).stderr(log);
+        command
+    }
+
+    fn is_ready(&self, folder: &Path) -> bool {
+        let status = self.command("pg_isready").arg("-q").arg("-h").arg(folder).status();
+        status.expect("pg_isready").success()
+    }
+
+    fn wait_until_ready(&self, folder: &Path) {
+        let start = Instant::now();
+        while !self.is_ready(folder) {
+            let log = || fs::read_to_string(folder.join("log")).unwrap_or_default();
+            assert!(start.elapsed() < Duration::from_secs(120), "PostgreSQL does not start: {}", log());
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    fn create_database(&self, folder: &Path) -> Address {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = format!("test_{}_{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let output = self
+            .command("psql")
+            .arg("-h")
+            .arg(folder)
+            .args(["-U", "fosssim", "-d", "postgres", "-qc", &format!("DROP DATABASE IF EXISTS {name} WITH (FORCE)")])
+            .args(["-c", &format!("CREATE DATABASE {name}")])
+            .output()
+            .expect("psql");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let folder = folder.to_str().expect("a plain path").replace('/', "%2F");
+        Address::Postgres(format!("postgres://fosssim@{folder}/{name}"))
+    }
+}
+
+/// A server of one's own.
+pub(crate) struct Cluster {
+    programs: Programs,
+    folder: tempfile::TempDir,
+    server: Option<std::process::Child>,
+}
+
+impl Cluster {
+    /// A new server that really writes to the disk; nothing where PostgreSQL is not installed.
+    pub(crate) fn start() -> Option<Self> {
+        let programs = Programs::find()?;
+        let folder = tempfile::tempdir().expect("a folder");
+        programs.own(folder.path());
+        programs.init(&folder.path().join("data"));
+        let mut cluster = Self { programs, folder, server: None };
+        cluster.resume();
+        Some(cluster)
+    }
+
+    /// Starts the server again.
+    pub(crate) fn resume(&mut self) {
+        // The socket's lock of a killed server stays behind; the server itself sees that its owner is gone.
+        self.server = Some(self.programs.server(self.folder.path(), true).spawn().expect("postgres"));
+        self.programs.wait_until_ready(self.folder.path());
+    }
+
+    /// Kills the server and all its processes at once, like a power cut that spares the disk.
+    pub(crate) fn kill(&mut self) {
+        let Some(mut server) = self.server.take() else { return };
+        let children = fs::read_to_string(format!("/proc/{0}/task/{0}/children", server.id())).unwrap_or_default();
+        server.kill().expect("kill");
+        server.wait().expect("wait");
+        for child in children.split_whitespace() {
+            // SAFETY: a signal to a process that this test's own server started.
+            unsafe { libc::kill(child.parse().expect("a number"), libc::SIGKILL) };
+        }
+    }
+
+    pub(crate) fn new_database(&self) -> Address {
+        self.programs.create_database(self.folder.path())
+    }
+}
+
+impl Drop for Cluster {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// The server of all test processes, kept alive while this value lives.
+pub(crate) struct Shared {
+    programs: Programs,
+    folder: PathBuf,
+    _user: File,
+}
+
+impl Shared {
+    /// Joins the server of all test processes, and starts it when there is none.
+    #[expect(clippy::zombie_processes, reason = "server and watcher outlive the test that happens to start them")]
+    pub(crate) fn join() -> Option<Self> {
+        let programs = Programs::find()?;
+        // SAFETY: geteuid has no preconditions.
+        let folder = std::env::temp_dir().join(format!("fosssim-postgres-{}", unsafe { libc::geteuid() }));
+        programs.own(&folder);
+        let lock = |name: &str| {
+            File::options().create(true).truncate(false).write(true).open(folder.join(name)).expect("a lock file")
+        };
+        let door = lock("door");
+        door.lock().expect("the door");
+        if !programs.is_ready(&folder) {
+            drop(fs::remove_dir_all(folder.join("data")));
+            programs.init(&folder.join("data"));
+            programs.server(&folder, false).process_group(0).spawn().expect("postgres");
+            programs.wait_until_ready(&folder);
+            // Ends the server when nobody uses it any more: tests hold the lock `users` together.
+            let script = "cd \"$0\" && while sleep 15; do
+                if flock door -c 'flock --nonblock users true && kill -INT $(head -n1 data/postmaster.pid) && rm -r data'
+                then exit; fi; done";
+            Command::new("sh")
+                .args(["-c", script])
+                .arg(&folder)
+                .stdin(Stdio::null())
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .process_group(0)
+                .spawn()
+                .expect("a watching shell");
+        }
+        let user = lock("users");
+        user.lock_shared().expect("a share");
+        Some(Self { programs, folder, _user: user })
+    }
+
+    /// An empty database of its own.
+    pub(crate) fn new_database(&self) -> Address {
+        self.programs.create_database(&self.folder)
+    }
+}
+
+/// PgBouncer in front of the tests' server, as hard on its clients as it can be: every transaction gets another
+/// connection, prepared statements are not known, and no start-up setting is ignored.
+pub(crate) struct Pooler {
+    folder: tempfile::TempDir,
+    server: std::process::Child,
+}
+
+impl Pooler {
+    /// Nothing where PgBouncer is not installed.
+    pub(crate) fn start(cluster: &Shared) -> Option<Self> {
+        let program = Path::new("/usr/sbin/pgbouncer");
+        if !program.exists() {
+            skip(Need::Pgbouncer, "PgBouncer is not installed (apt-get install pgbouncer)");
+            return None;
+        }
+        let folder = tempfile::tempdir().expect("a folder");
+        cluster.programs.own(folder.path());
+        let place = folder.path().display();
+        let settings = format!(
+            "[databases]\n* = host={} user=fosssim\n[pgbouncer]\nlisten_addr =\nunix_socket_dir = {place}\n\
+             logfile = {place}/log\nauth_type = any\npool_mode = transaction\ndefault_pool_size = 4\n\
+             server_round_robin = 1\n",
+            cluster.folder.display()
+        );
+        fs::write(folder.path().join("settings"), settings).expect("settings");
+        let mut command = Command::new(program);
+        if let Some((user, group)) = cluster.programs.user {
+            command.uid(user).gid(group);
+        }
+        let server = command
+            .arg("--quiet")
+            .arg(folder.path().join("settings"))
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("pgbouncer");
+        let start = Instant::now();
+        while !folder.path().join(".s.PGSQL.6432").exists() {
+            let log = || fs::read_to_string(folder.path().join("log")).unwrap_or_default();
+            assert!(start.elapsed() < Duration::from_secs(60), "PgBouncer does not start: {}", log());
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        Some(Self { folder, server })
+    }
+
+    /// The same database, reached through the pooler.
+    pub(crate) fn address(&self, direct: &Address) -> Address {
+        let Address::Postgres(url) = direct else { panic!("no PostgreSQL: {direct}") };
+        let name = url.rsplit('/').next().expect("a name");
+        let folder = self.folder.path().to_str().expect("a plain path").replace('/', "%2F");
+        Address::Postgres(format!("postgres://fosssim@{folder}:6432/{name}"))
+    }
+}
+
+impl Drop for Pooler {
+    fn drop(&mut self) {
+        drop(self.server.kill());
+        drop(self.server.wait());
+    }
+}

@@ -1,0 +1,89 @@
+//! A fresh database of each engine.
+use super::cluster;
+use fosssim_server::db::{self, Address, Database};
+use std::future::Future;
+
+/// A database of its own, removed at the end.
+pub(crate) struct Fresh {
+    pub(crate) database: Database,
+    pub(crate) address: Address,
+    _folder: Option<tempfile::TempDir>,
+    _pooler: Option<cluster::Pooler>,
+    _cluster: Option<cluster::Shared>,
+}
+
+impl Fresh {
+    /// A SQLite file in a folder of its own, without tables.
+    pub(crate) async fn sqlite() -> Option<Self> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let address = Address::Sqlite(folder.path().join("fosssim.db"));
+        let database = Database::open(&address).await.expect("a database");
+        Some(Self { database, address, _folder: Some(folder), _pooler: None, _cluster: None })
+    }
+
+    /// A database in the tests' own PostgreSQL, without tables; nothing where PostgreSQL is not installed.
+    pub(crate) async fn postgres() -> Option<Self> {
+        let cluster = cluster::Shared::join()?;
+        let address = cluster.new_database();
+        let database = Database::open(&address).await.expect("a database");
+        Some(Self { database, address, _folder: None, _pooler: None, _cluster: Some(cluster) })
+    }
+
+    /// The same behind PgBouncer; nothing where either is not installed.
+    pub(crate) async fn pooled() -> Option<Self> {
+        let cluster = cluster::Shared::join()?;
+        let pooler = cluster::Pooler::start(&cluster)?;
+        let address = pooler.address(&cluster.new_database());
+        let database = Database::open(&address).await.expect("a database");
+        Some(Self { database, address, _folder: None, _pooler: Some(pooler), _cluster: Some(cluster) })
+    }
+
+    /// The same with all tables.
+    pub(crate) async fn with_tables(self) -> Self {
+        db::migrate(&self.database).await.expect("tables");
+        self
+    }
+}
+
+/// Runs a test's future to its end.
+pub(crate) fn run<T>(future: impl Future<Output = T>) -> T {
+    tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .expect("a runtime")
+        .block_on(future)
+}
+
+/// Makes a test for each engine from each `async fn name(fresh: Fresh)`.
+macro_rules! on_both_engines {
+    ($($name:ident),* $(,)?) => {
+        $crate::support::engines::tests! { sqlite, $($name)* }
+        $crate::support::engines::tests! { postgres, $($name)* }
+    };
+}
+pub(crate) use on_both_engines;
+
+/// The same, and once more behind a pooler.
+macro_rules! on_all_engines {
+    ($($name:ident),* $(,)?) => {
+        $crate::support::engines::on_both_engines! { $($name),* }
+        $crate::support::engines::tests! { pooled, $($name)* }
+    };
+}
+pub(crate) use on_all_engines;
+
+macro_rules! tests {
+    ($engine:ident, $($name:ident)*) => {
+        mod $engine {
+            $(#[test]
+            fn $name() {
+                $crate::support::engines::run(async {
+                    let Some(fresh) = $crate::support::engines::Fresh::$engine().await else { return };
+                    super::$name(fresh.with_tables().await).await;
+                });
+            })*
+        }
+    };
+}
+pub(crate) use tests;

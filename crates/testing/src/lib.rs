@@ -1,0 +1,188 @@
+//! What tests need of a machine, and what they say where it is not there. Only tests use it.
+//!
+//! A test that can't run asks [`skip`] and returns. That leaves a line in a list, which `cargo test` prints at its end
+//! (the test `skips` of this crate, which comes last because of the crate's name). Where `FOSSSIM_REQUIRE` names the need,
+//! or says `all`, the test fails instead: a machine that is known to have something can't pass without it.
+#![forbid(unsafe_code)]
+
+use std::{fmt, fs, io::Write, path::PathBuf};
+
+/// Needs whose absence makes a test fail, separated by commas.
+pub const REQUIRE: &str = "FOSSSIM_REQUIRE";
+
+/// The file that the list is kept in. Without it there is one per run of `cargo test`.
+pub const LIST: &str = "FOSSSIM_SKIPS";
+
+/// Something that not every machine has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Need {
+    /// The ground-truth corpus beside the checkout.
+    Corpus,
+    /// A kernel that can run programs safely.
+    Sandbox,
+    /// Namespaces, control groups and other walls that only some hosts have, and the right to do without some.
+    Walls,
+    /// A C compiler, `cc`.
+    Cc,
+    /// A C++ compiler, `c++`.
+    Cxx,
+    /// `make`.
+    Make,
+    /// `python3`.
+    Python,
+    /// `xmllint`.
+    Xmllint,
+    /// `setpriv`, and the right to use it.
+    Setpriv,
+    /// The shell `bash`.
+    Bash,
+    /// The shell `zsh`.
+    Zsh,
+    /// The shell `fish`.
+    Fish,
+    /// PostgreSQL's server, `/usr/lib/postgresql/*/bin`.
+    Postgres,
+    /// `pgbouncer`.
+    Pgbouncer,
+}
+
+impl Need {
+    /// All of them.
+    pub const ALL: [Self; 14] = [
+        Self::Corpus,
+        Self::Sandbox,
+        Self::Walls,
+        Self::Cc,
+        Self::Cxx,
+        Self::Make,
+        Self::Python,
+        Self::Xmllint,
+        Self::Setpriv,
+        Self::Bash,
+        Self::Zsh,
+        Self::Fish,
+        Self::Postgres,
+        Self::Pgbouncer,
+    ];
+
+    /// Its name in `FOSSSIM_REQUIRE`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Corpus => "corpus",
+            Self::Sandbox => "sandbox",
+            Self::Walls => "walls",
+            Self::Cc => "cc",
+            Self::Cxx => "c++",
+            Self::Make => "make",
+            Self::Python => "python3",
+            Self::Xmllint => "xmllint",
+            Self::Setpriv => "setpriv",
+            Self::Bash => "bash",
+            Self::Zsh => "zsh",
+            Self::Fish => "fish",
+            Self::Postgres => "postgres",
+            Self::Pgbouncer => "pgbouncer",
+        }
+    }
+}
+
+impl fmt::Display for Need {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+/// Says that the calling test can't run, and why; the test returns then.
+///
+/// # Panics
+/// When `FOSSSIM_REQUIRE` asks for the need, or holds a word that is none.
+pub fn skip(need: Need, why: impl fmt::Display) {
+    let why = why.to_string().replace(['\n', '\t'], " ");
+    let required = std::env::var(REQUIRE).unwrap_or_default();
+    if let Err(words) = allowed(need, &required) {
+        panic!("{words}: {why}");
+    }
+    let test = std::thread::current().name().unwrap_or("a test").to_owned();
+    eprintln!("skipped {test}: {why}");
+    let Some(list) = list() else { return };
+    // One write per line: tests of one run are threads and processes.
+    let line = format!("{need}\t{test}\t{why}\n");
+    let file = fs::OpenOptions::new().create(true).append(true).open(list);
+    drop(file.and_then(|mut file| file.write_all(line.as_bytes())));
+}
+
+/// Whether a test may be skipped for want of this.
+fn allowed(need: Need, required: &str) -> Result<(), String> {
+    for word in required.split(',').map(str::trim).filter(|word| !word.is_empty()) {
+        if word == "all" || word == need.name() {
+            return Err(format!("{REQUIRE} asks for {need}, and it is not here"));
+        }
+        if !Need::ALL.iter().any(|known| known.name() == word) {
+            let known: Vec<_> = Need::ALL.iter().map(|known| known.name()).collect();
+            return Err(format!("{REQUIRE} asks for `{word}`; known are all, {}", known.join(", ")));
+        }
+    }
+    Ok(())
+}
+
+/// The list of this run: tests and the summary have the same parent, cargo. Other runners print no summary, and get a
+/// list only where they are told one.
+#[must_use]
+pub fn list() -> Option<PathBuf> {
+    if let Some(list) = std::env::var_os(LIST) {
+        return Some(list.into());
+    }
+    let of_cargo = std::env::var_os("CARGO").is_some() && std::env::var_os("NEXTEST").is_none();
+    of_cargo.then(|| std::env::temp_dir().join(format!("fosssim-skips-{}", std::os::unix::process::parent_id())))
+}
+
+/// The list in few lines, by need: how many tests, and why.
+#[must_use]
+pub fn summary(list: &str) -> String {
+    let mut lines = String::new();
+    let mut total = 0;
+    for need in Need::ALL {
+        let of_need: Vec<(&str, &str)> = list
+            .lines()
+            .filter_map(|line| line.strip_prefix(need.name())?.strip_prefix('\t')?.split_once('\t'))
+            .collect();
+        let mut tests: Vec<&str> = of_need.iter().map(|(test, _)| *test).collect();
+        tests.sort_unstable();
+        tests.dedup();
+        if let Some((_, why)) = of_need.first() {
+            total += tests.len();
+            lines += &format!("  {need}: {} ({why})\n", tests.join(", "));
+        }
+    }
+    match total {
+        0 => "no test was skipped\n".to_owned(),
+        1 => format!("1 test was skipped, for want of:\n{lines}"),
+        total => format!("{total} tests were skipped, for want of:\n{lines}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_required_may_not_be_skipped() {
+        assert_eq!(allowed(Need::Corpus, ""), Ok(()));
+        assert_eq!(allowed(Need::Corpus, "sandbox, cc"), Ok(()));
+        assert!(allowed(Need::Corpus, "sandbox,corpus").is_err());
+        assert!(allowed(Need::Corpus, "all").is_err());
+        let error = allowed(Need::Corpus, "sandobx").expect_err("no need");
+        assert!(error.contains("`sandobx`") && error.contains("sandbox"), "{error}");
+    }
+
+    #[test]
+    fn the_list_is_told_by_need() {
+        let list = "cc\ta::one\tno cc\ncorpus\tb::two\tnothing at x\ncc\ta::three\tno cc\ncc\ta::one\tno cc\n";
+        assert_eq!(
+            summary(list),
+            "3 tests were skipped, for want of:\n  corpus: b::two (nothing at x)\n  cc: a::one, a::three (no cc)\n"
+        );
+        assert_eq!(summary(""), "no test was skipped\n");
+    }
+}

@@ -1,0 +1,189 @@
+//! MP4 by a program: pictures go to ffmpeg through a pipe.
+//!
+//! Its output is our own temporary file, so nothing appears under the target's name before it is whole. A program that takes
+//! no picture for a minute is ended. No name of a user is among its arguments but that file's, which begins with `file:`.
+use crate::{
+    cli::output::Output,
+    render::{Size, film::Rate},
+};
+use anyhow::{Context, Result, bail};
+use std::{
+    ffi::{OsStr, OsString},
+    io::{self, Read, Write},
+    process::{Child, ChildStdin, Command, Stdio},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+/// The program.
+const FFMPEG: &str = "ffmpeg";
+
+/// Encoders that can be put into an MP4, the best first, with the arguments that each takes.
+const ENCODERS: [(&str, &[&str]); 4] = [
+    ("libx264", &["-preset", "medium", "-crf", "20"]),
+    ("libopenh264", &["-b:v", "4M"]),
+    ("libvpx-vp9", &["-crf", "30", "-b:v", "0"]),
+    ("mpeg4", &["-q:v", "3"]),
+];
+
+/// A program that takes nothing for so long is ended.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// So much of what it says is kept.
+const WORDS: usize = 4096;
+
+/// A film that is being encoded.
+pub(super) struct Ffmpeg {
+    child: Arc<Mutex<Child>>,
+    pipe: Option<ChildStdin>,
+    words: Option<JoinHandle<String>>,
+    watch: Arc<Watch>,
+    /// Until it appears under its name.
+    output: Option<Output>,
+}
+
+/// What the thread that watches knows.
+#[derive(Default)]
+struct Watch {
+    pictures: AtomicU64,
+    over: AtomicBool,
+    given_up: AtomicBool,
+}
+
+impl Ffmpeg {
+    /// Whether there is an ffmpeg that can make an MP4, and by which encoder.
+    ///
+    /// # Errors
+    /// When there is none, with advice.
+    pub(super) fn find() -> Result<(&'static str, &'static [&'static str])> {
+        let run = Command::new(FFMPEG)
+            .args(["-hide_banner", "-loglevel", "error", "-encoders"])
+            .stdin(Stdio::null())
+            .stderr(Stdio::null())
+            .output();
+        let list = match run {
+            Ok(run) => String::from_utf8_lossy(&run.stdout).into_owned(),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
+                "an MP4 needs ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt install ffmpeg), or name \
+                 the output .apng or .gif, which need nothing"
+            ),
+            Err(error) => return Err(error).context("ffmpeg can't be started"),
+        };
+        // A line is ` V....D libx264   what it is`.
+        let has = |name: &str| list.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
+        let found = ENCODERS.into_iter().find(|(name, _)| has(name));
+        found.context("this ffmpeg has no encoder for MP4 (libx264, libopenh264, libvpx-vp9, mpeg4); name the output .apng or .gif")
+    }
+
+    /// Starts the program.
+    ///
+    /// # Errors
+    /// When it can't be started, or the output is no file.
+    pub(super) fn start(size: Size, rate: Rate, output: Output) -> Result<Self> {
+        let (encoder, options) = Self::find()?;
+        let Some(path) = output.temporary_path() else { bail!("an MP4 is written into a file; name one") };
+        let mut file = OsString::from("file:");
+        file.push(path);
+        let size = size.to_string();
+        let rate = rate.per_second().to_string();
+        let mut child = Command::new(FFMPEG)
+            .args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"])
+            .args(["-f", "rawvideo", "-pix_fmt", "rgba", "-s", &size, "-r", &rate, "-i", "pipe:0"])
+            .args(["-an", "-c:v", encoder])
+            .args(options)
+            .args(["-pix_fmt", "yuv420p", "-threads", "1", "-movflags", "+faststart"])
+            .args(["-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "mp4"].map(OsStr::new))
+            .arg(file)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .context("ffmpeg can't be started")?;
+        let (pipe, errors) = (child.stdin.take(), child.stderr.take());
+        let words = errors.map(|mut errors| {
+            thread::spawn(move || {
+                let mut words = Vec::new();
+                let _ = errors.by_ref().take(WORDS as u64).read_to_end(&mut words);
+                // The rest is taken so that the program does not wait for a reader.
+                let _ = io::copy(&mut errors, &mut io::sink());
+                String::from_utf8_lossy(&words).trim().to_owned()
+            })
+        });
+        let watch = Arc::new(Watch::default());
+        let child = Arc::new(Mutex::new(child));
+        end_when_stuck(&child, &watch);
+        Ok(Self { child, pipe, words, watch, output: Some(output) })
+    }
+
+    /// Hands a picture over.
+    ///
+    /// # Errors
+    /// When the program has ended.
+    pub(super) fn picture(&mut self, rgba: &[u8]) -> Result<()> {
+        let pipe = self.pipe.as_mut().context("ffmpeg takes no pictures")?;
+        pipe.write_all(rgba).context("ffmpeg takes no more pictures")?;
+        self.watch.pictures.fetch_add(1, Ordering::Relaxed);
+        Ok(())
+    }
+
+    /// Waits for the film, which then appears under its name. `drawn` is how drawing went.
+    ///
+    /// # Errors
+    /// When drawing or the program failed, with what it said; nothing appears then.
+    pub(super) fn finish(mut self, drawn: Result<()>) -> Result<()> {
+        drop(self.pipe.take());
+        self.watch.pictures.fetch_add(1, Ordering::Relaxed);
+        let status = loop {
+            // The lock is given back while it is waited, for the thread that watches.
+            let asked = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
+            match asked.context("ffmpeg can't be waited for")? {
+                Some(status) => break status,
+                None => thread::sleep(Duration::from_millis(10)),
+            }
+        };
+        self.watch.over.store(true, Ordering::Relaxed);
+        let words = self.words.take().and_then(|words| words.join().ok()).unwrap_or_default();
+        if self.watch.given_up.load(Ordering::Relaxed) {
+            bail!("ffmpeg took no picture for {} seconds and was ended", PATIENCE.as_secs());
+        }
+        if !status.success() {
+            bail!("ffmpeg failed ({status}): {words}");
+        }
+        drawn?;
+        self.output.take().map_or(Ok(()), Output::finish)
+    }
+}
+
+impl Drop for Ffmpeg {
+    fn drop(&mut self) {
+        self.watch.over.store(true, Ordering::Relaxed);
+        let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Ok(None) = child.try_wait() {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+/// A thread that ends the program when it is stuck, and goes away when it is over.
+fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<Watch>) {
+    let (child, watch) = (Arc::clone(child), Arc::clone(watch));
+    thread::spawn(move || {
+        let (mut seen, mut since) = (0, Instant::now());
+        while !watch.over.load(Ordering::Relaxed) {
+            thread::sleep(Duration::from_millis(200));
+            let pictures = watch.pictures.load(Ordering::Relaxed);
+            if pictures != seen {
+                (seen, since) = (pictures, Instant::now());
+            } else if since.elapsed() > PATIENCE && !watch.over.load(Ordering::Relaxed) {
+                watch.given_up.store(true, Ordering::Relaxed);
+                let _ = child.lock().unwrap_or_else(PoisonError::into_inner).kill();
+                return;
+            }
+        }
+    });
+}

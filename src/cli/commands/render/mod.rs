@@ -1,0 +1,360 @@
+//! `render`: a scene's motion as pictures, an animated PNG, a GIF or a movie.
+mod ffmpeg;
+mod motion;
+
+use crate::{
+    cli::{
+        console, exit,
+        input::{self, Identity},
+        output::{Folder, Output, has_extension},
+        pictures::{Render, RenderFormat},
+    },
+    render::{
+        Extent, Options, Painter, Raster, Size,
+        film::{Apng, Gif, Rate, png},
+        number::short,
+        shape::Shape,
+        svg,
+    },
+    scene::Scene,
+};
+use anyhow::{Context, Result, bail};
+use ffmpeg::Ffmpeg;
+use motion::{Motion, Picks};
+use std::{
+    io::{BufWriter, Write},
+    path::Path,
+};
+
+/// Films of more pictures than this are thinned out, unless `--every` says how: a minute at 25 per second.
+const LONG_FILM: u32 = 1500;
+
+/// No more pictures than this are drawn at a time.
+const MOST_PICTURES: u32 = 100_000;
+
+pub(super) fn run(arguments: &Render) -> Result<u8> {
+    let form = Form::of(arguments)?;
+    let scene = input::scene(&arguments.scene)?;
+    let picks = picks(arguments, form, &scene.scene)?;
+    let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::FASTEST) };
+    // What can't work is said before the work is done.
+    let target = Target::open(form, arguments)?;
+    let main = match &arguments.trace {
+        Some(trace) => motion::traced(&scene.scene, trace, picks)?,
+        None => motion::reference(&scene.scene, picks)?,
+    };
+    let overlay = &arguments.overlay;
+    let overlay = overlay.as_ref().map(|trace| motion::traced(&scene.scene, trace, picks)).transpose()?;
+    if main.pictures == 0 {
+        let why = main.stopped.map_or_else(String::new, |why| format!(": {why}"));
+        bail!("there is nothing to draw of {}{why}", main.name);
+    }
+    let stopped: Vec<String> = [Some(&main), overlay.as_ref()]
+        .into_iter()
+        .flatten()
+        .filter_map(|motion| Some(format!("{} ends early: {}\n", motion.name, motion.stopped.as_ref()?)))
+        .collect();
+    let options = Options { size: arguments.size, label: !arguments.no_label };
+    let mut reel = Reel::new(&scene.scene, main, overlay, options, picks);
+    let to_stdout = matches!(target, Target::Stream(_)) && arguments.output == Path::new("-");
+    let place = arguments.output.display().to_string();
+    let words = target.draw(form, &mut reel, rate)?;
+    for line in &stopped {
+        console::complain(line.as_bytes());
+    }
+    let summary = format!("{words} into {place}\n");
+    if to_stdout {
+        console::complain(summary.as_bytes());
+    } else {
+        console::report(&summary)?;
+    }
+    Ok(if stopped.is_empty() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}
+
+/// What is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// One picture.
+    One(Kind),
+    /// A folder with a picture per step.
+    Folder(Kind),
+    Apng,
+    Gif,
+    Mp4,
+}
+
+/// How a picture is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Svg,
+    Png,
+}
+
+impl Form {
+    /// What was asked for, by `--format` or by the name of the output.
+    fn of(arguments: &Render) -> Result<Self> {
+        let output = &arguments.output;
+        let by_name = |extension: &str| has_extension(output, extension);
+        let format = match arguments.format {
+            Some(format) => format,
+            None if by_name("apng") => RenderFormat::Apng,
+            None if by_name("gif") => RenderFormat::Gif,
+            None if by_name("mp4") => RenderFormat::Mp4,
+            None if by_name("svg") && arguments.step.is_some() => RenderFormat::Svg,
+            None if by_name("png") && arguments.step.is_some() => RenderFormat::Png,
+            None if by_name("svg") || by_name("png") => bail!(
+                "{} can hold one picture: add --step N, or name a folder and add --format svg or --format png; a name that \
+                 ends in .apng or .gif becomes a film",
+                output.display()
+            ),
+            None => bail!(
+                "say what to make of {}: --format svg or --format png for a folder with a picture per step, or a name that \
+                 ends in .apng, .gif or .mp4",
+                output.display()
+            ),
+        };
+        let single = arguments.step.is_some();
+        Ok(match format {
+            RenderFormat::Svg if single => Self::One(Kind::Svg),
+            RenderFormat::Png if single => Self::One(Kind::Png),
+            RenderFormat::Svg => Self::Folder(Kind::Svg),
+            RenderFormat::Png => Self::Folder(Kind::Png),
+            _ if single => bail!("--step is for one picture: add --format svg or --format png"),
+            RenderFormat::Apng => Self::Apng,
+            RenderFormat::Gif => Self::Gif,
+            RenderFormat::Mp4 => {
+                let size = arguments.size;
+                if size.width() % 2 + size.height() % 2 > 0 {
+                    bail!("an MP4 needs even width and height, not {size}; choose another --size");
+                }
+                Self::Mp4
+            }
+        })
+    }
+
+    /// Whether pictures follow each other in time, beginning with the start of the scene.
+    const fn is_film(self) -> bool {
+        matches!(self, Self::Apng | Self::Gif | Self::Mp4)
+    }
+}
+
+/// Which steps are drawn.
+fn picks(arguments: &Render, form: Form, scene: &Scene) -> Result<Picks> {
+    let last = scene.steps();
+    if let Some(step) = arguments.step {
+        if step > last {
+            bail!("the scene has {last} steps; there is no step {step}");
+        }
+        // Paths are the traces of what came before.
+        let first = if scene.display.paths.is_empty() { step } else { 0 };
+        return Ok(Picks { first, every: 1, last: step });
+    }
+    let every = match arguments.every {
+        Some(every) => every.get(),
+        None if form.is_film() => last.div_ceil(LONG_FILM).max(1),
+        None => 1,
+    };
+    // The original's first picture is that after the first step.
+    let first = if form.is_film() { 0 } else { every };
+    let picks = Picks { first, every, last };
+    let pictures = picks.count();
+    if pictures > MOST_PICTURES {
+        let least = last.div_ceil(MOST_PICTURES - 1);
+        bail!("these would be {pictures} pictures; more than {MOST_PICTURES} are not drawn, add --every {least}");
+    }
+    if pictures == 0 {
+        bail!("no step is drawn: the scene has {last} steps, and every {every}th is asked for");
+    }
+    Ok(picks)
+}
+
+/// A motion, ready to be drawn.
+struct Reel {
+    painter: Painter,
+    main: Motion,
+    overlay: Option<Motion>,
+    picks: Picks,
+    single: bool,
+}
+
+impl Reel {
+    fn new(scene: &Scene, main: Motion, overlay: Option<Motion>, options: Options, picks: Picks) -> Self {
+        let mut extent = main.extent;
+        if let Some(overlay) = &overlay {
+            extent.join(&overlay.extent);
+        }
+        let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
+        let start = Extent::of(scene, &start);
+        extent.join(&start);
+        let painter = Painter::new(scene, &extent.near(&start), options);
+        Self { painter, main, overlay, picks, single: false }
+    }
+
+    fn size(&self) -> Size {
+        self.painter.size()
+    }
+
+    /// Draws every picture; tells its number (from 1), its step and its shapes.
+    fn each(&mut self, mut draw: impl FnMut(u32, u32, &[Shape]) -> Result<()>) -> Result<()> {
+        let (mut place, mut other) = (Vec::new(), Vec::new());
+        let mut bar = console::Bar::new(self.main.pictures);
+        for number in 1..=self.main.pictures {
+            let step = self.picks.step(number);
+            if !self.main.next(&mut place)? {
+                bail!("the stored motion of {} is shorter than it was", self.main.name);
+            }
+            let overlaid = match &mut self.overlay {
+                Some(overlay) => overlay.next(&mut other)?,
+                None => false,
+            };
+            let shapes = self.painter.picture(step, &place, overlaid.then_some(&other[..]));
+            if !self.single || number == self.main.pictures {
+                draw(number, step, &shapes)?;
+            }
+            bar.at(number);
+        }
+        Ok(())
+    }
+
+    /// Draws every picture in pixels.
+    fn each_raster(&mut self, mut take: impl FnMut(u32, &Raster) -> Result<()>) -> Result<()> {
+        let mut raster = Raster::new(self.size());
+        let background = self.painter.background();
+        self.each(|number, _, shapes| {
+            raster.draw(background, shapes);
+            take(number, &raster)
+        })
+    }
+}
+
+/// Where pictures go.
+enum Target {
+    Folder(Folder),
+    Stream(Output),
+}
+
+impl Target {
+    fn open(form: Form, arguments: &Render) -> Result<Self> {
+        let inputs: Vec<Identity> = [Some(&arguments.scene), arguments.trace.as_ref(), arguments.overlay.as_ref()]
+            .into_iter()
+            .flatten()
+            .filter_map(|name| Some(Identity::of(&std::fs::metadata(name).ok()?)))
+            .collect();
+        if form == Form::Mp4 {
+            Ffmpeg::find()?;
+        }
+        Ok(match form {
+            Form::Folder(_) => Self::Folder(Folder::open(&arguments.output)?),
+            _ => Self::Stream(Output::create(&arguments.output, &inputs)?),
+        })
+    }
+
+    /// Draws everything, and says in words what it was.
+    fn draw(self, form: Form, reel: &mut Reel, rate: Rate) -> Result<String> {
+        let (pictures, size) = (reel.main.pictures, reel.size());
+        let steps = format!("steps {} to {}", reel.picks.step(1), reel.picks.step(pictures));
+        let every = match reel.picks.every {
+            1 => String::new(),
+            every => format!(", every {every}th"),
+        };
+        let film = |bytes: u64| {
+            let seconds = short(f64::from(pictures) / f64::from(rate.per_second()));
+            let bytes =
+                if bytes > 0 { format!(", {} bytes", crate::report::number::count(bytes)) } else { String::new() };
+            let per_second = rate.per_second();
+            format!("{pictures} pictures of {size}: {steps}{every}, {per_second} per second, {seconds} s{bytes},")
+        };
+        match (self, form) {
+            (Self::Folder(folder), Form::Folder(kind)) => {
+                let names = |number: u32| match kind {
+                    // The names that the original gives to its pictures.
+                    Kind::Svg => format!("frame{number:020}.svg"),
+                    Kind::Png => format!("frame{number:05}.png"),
+                };
+                let background = reel.painter.background();
+                let mut raster = Raster::new(size);
+                reel.each(|number, step, shapes| {
+                    let bytes = picture(kind, &mut raster, background, step, shapes)?;
+                    folder.write(&names(number), &bytes)
+                })?;
+                if folder.holds(&names(pictures + 1)) {
+                    let line =
+                        format!("{} also holds older pictures, from {} on\n", folder.name(), names(pictures + 1));
+                    console::complain(line.as_bytes());
+                }
+                Ok(format!("{pictures} pictures of {size}: {steps}{every}, {} to {},", names(1), names(pictures)))
+            }
+            (Self::Stream(mut output), Form::One(kind)) => {
+                reel.single = true;
+                let background = reel.painter.background();
+                let mut raster = Raster::new(size);
+                reel.each(|_, step, shapes| {
+                    let bytes = picture(kind, &mut raster, background, step, shapes)?;
+                    Ok(output.write_all(&bytes)?)
+                })?;
+                output.finish()?;
+                Ok(format!("A picture of {size}: step {},", reel.picks.last.min(reel.picks.step(pictures))))
+            }
+            (Self::Stream(output), Form::Mp4) => {
+                let mut encoder = Ffmpeg::start(size, rate, output)?;
+                // What ffmpeg says when it ends early explains more than that its pipe is closed.
+                let drawn = reel.each_raster(|_, raster| encoder.picture(raster.rgba()));
+                encoder.finish(drawn)?;
+                Ok(film(0))
+            }
+            (Self::Stream(output), form) => {
+                let mut out = Counted { out: BufWriter::new(output), bytes: 0 };
+                if form == Form::Gif {
+                    let mut film = Gif::new(&mut out, size, rate, &reel.painter.colours())?;
+                    reel.each_raster(|_, raster| Ok(film.picture(raster)?))?;
+                    film.finish()?;
+                } else {
+                    let mut film = Apng::new(&mut out, size, rate, pictures)?;
+                    reel.each_raster(|_, raster| Ok(film.picture(raster)?))?;
+                    film.finish()?;
+                }
+                let bytes = out.bytes;
+                out.out.into_inner().map_err(std::io::IntoInnerError::into_error)?.finish()?;
+                Ok(film(bytes))
+            }
+            (Self::Folder(_), _) => bail!("a folder takes pictures only"),
+        }
+    }
+}
+
+/// One picture as the bytes of its file.
+fn picture(
+    kind: Kind,
+    raster: &mut Raster,
+    background: crate::render::colour::Colour,
+    step: u32,
+    shapes: &[Shape],
+) -> Result<Vec<u8>> {
+    match kind {
+        Kind::Svg => Ok(svg::document(raster.size(), background, &format!("step {step}"), shapes).into_bytes()),
+        Kind::Png => {
+            raster.draw(background, shapes);
+            let mut bytes = Vec::new();
+            png(raster, &mut bytes).context("the picture can't be encoded")?;
+            Ok(bytes)
+        }
+    }
+}
+
+/// A writer that counts.
+struct Counted<W> {
+    out: W,
+    bytes: u64,
+}
+
+impl<W: Write> Write for Counted<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let count = self.out.write(bytes)?;
+        self.bytes += count as u64;
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}

@@ -1,0 +1,202 @@
+//! The motion that is drawn: where all bodies are after each step that is asked for.
+//!
+//! A motion is read or simulated once, and kept as plain numbers in memory, or in a nameless temporary file when it is
+//! large; so the view can be fitted to all of it, and a trace may come from a pipe.
+use crate::{
+    cli::{console, input},
+    render::Extent,
+    report::describe::step_error,
+    scene::Scene,
+    sim::{RootSearch, Simulation},
+    trace::{Frame, Layout, Reader},
+};
+use anyhow::{Context, Result, bail};
+use std::{
+    io::{BufReader, BufWriter, Read, Seek, Write},
+    path::Path,
+};
+use tempfile::SpooledTempFile;
+
+/// So many bytes of a motion are kept in memory.
+const KEPT: usize = 32 << 20;
+
+/// Which steps are drawn: `first`, `first + every` and so on up to `last`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Picks {
+    pub(super) first: u32,
+    /// At least 1.
+    pub(super) every: u32,
+    pub(super) last: u32,
+}
+
+impl Picks {
+    /// How many steps these are.
+    pub(super) fn count(self) -> u32 {
+        if self.first > self.last { 0 } else { (self.last - self.first) / self.every + 1 }
+    }
+
+    /// The step of picture `number` (from 1).
+    pub(super) fn step(self, number: u32) -> u32 {
+        self.first + (number - 1) * self.every
+    }
+
+    fn holds(self, step: u32) -> bool {
+        (self.first..=self.last).contains(&step) && (step - self.first).is_multiple_of(self.every)
+    }
+}
+
+/// Positions of all particles at the steps that are drawn.
+pub(super) struct Motion {
+    /// Whose motion it is, for messages.
+    pub(super) name: String,
+    /// How many steps it holds.
+    pub(super) pictures: u32,
+    /// The box around all of them.
+    pub(super) extent: Extent,
+    /// Why it ends before the scene does.
+    pub(super) stopped: Option<String>,
+    rows: BufReader<SpooledTempFile>,
+    width: usize,
+}
+
+impl Motion {
+    /// Replaces `row` by the next positions; false at the end.
+    ///
+    /// # Errors
+    /// When the temporary file can't be read.
+    pub(super) fn next(&mut self, row: &mut Vec<f64>) -> Result<bool> {
+        row.clear();
+        for place in 0..self.width {
+            let mut bytes = [0; 8];
+            if place == 0 && !self.rows.fill_buf_is_there()? {
+                return Ok(false);
+            }
+            self.rows.read_exact(&mut bytes).context("cannot read the temporary file again")?;
+            row.push(f64::from_le_bytes(bytes));
+        }
+        Ok(true)
+    }
+}
+
+/// Whether there is more to read.
+trait More {
+    fn fill_buf_is_there(&mut self) -> Result<bool>;
+}
+
+impl<R: Read> More for BufReader<R> {
+    fn fill_buf_is_there(&mut self) -> Result<bool> {
+        use std::io::BufRead;
+        Ok(!self.fill_buf().context("cannot read the temporary file again")?.is_empty())
+    }
+}
+
+/// A motion that is being kept.
+struct Keeper<'a> {
+    scene: &'a Scene,
+    picks: Picks,
+    file: BufWriter<SpooledTempFile>,
+    pictures: u32,
+    extent: Extent,
+}
+
+impl<'a> Keeper<'a> {
+    fn new(scene: &'a Scene, picks: Picks) -> Self {
+        let file = BufWriter::new(tempfile::spooled_tempfile(KEPT));
+        Self { scene, picks, file, pictures: 0, extent: Extent::default() }
+    }
+
+    fn step(&mut self, step: u32, positions: &[f64]) -> Result<()> {
+        if self.picks.holds(step) {
+            self.extent.add(self.scene, positions);
+            for value in positions {
+                self.file.write_all(&value.to_le_bytes()).context("cannot write a temporary file")?;
+            }
+            self.pictures += 1;
+        }
+        Ok(())
+    }
+
+    fn finish(self, name: String, stopped: Option<String>) -> Result<Motion> {
+        let context = "cannot write a temporary file";
+        let mut file = self.file.into_inner().map_err(std::io::IntoInnerError::into_error).context(context)?;
+        file.rewind().context(context)?;
+        let (rows, width) = (BufReader::new(file), 2 * self.scene.particles.len());
+        Ok(Motion { name, pictures: self.pictures, extent: self.extent, stopped, rows, width })
+    }
+}
+
+/// The reference's own motion.
+///
+/// # Errors
+/// When it can't be kept.
+pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
+    let mut keeper = Keeper::new(scene, picks);
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    keeper.step(0, &simulation.state().positions)?;
+    let mut bar = console::Bar::new(picks.last);
+    let mut stopped = None;
+    for step in 1..=picks.last {
+        if let Err(error) = simulation.step(&mut ()) {
+            let (step, words) = step_error(&error);
+            stopped = Some(format!("step {step} has no result, because {words}"));
+            break;
+        }
+        keeper.step(step, &simulation.state().positions)?;
+        bar.at(step);
+    }
+    drop(bar);
+    keeper.finish("the reference's run".to_owned(), stopped)
+}
+
+/// The motion that a trace holds.
+///
+/// # Errors
+/// When it can't be opened or kept, or the operating system fails while it is read. Damage ends the motion.
+pub(super) fn traced(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion> {
+    let mut trace = input::trace(name)?;
+    let layout = Layout::of(scene);
+    let mut reader = Reader::new(&mut trace.reader, layout);
+    if let Some(length) = trace.length {
+        reader = reader.with_length(length);
+    }
+    let mut keeper = Keeper::new(scene, picks);
+    let mut frame = Frame::default();
+    let mut stopped = None;
+    loop {
+        match reader.next(&mut frame) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(error) => {
+                stopped = Some(error.to_string());
+                break;
+            }
+        }
+        let record = reader.records() - 1;
+        let step = layout.step_of(record);
+        if record == layout.end_record(step) {
+            keeper.step(step, &frame.state.positions)?;
+            if step == picks.last {
+                break;
+            }
+        }
+    }
+    if let Some(message) = trace.failure() {
+        bail!("cannot read the trace {}: {message}", trace.name);
+    }
+    keeper.finish(format!("the trace {}", trace.name), stopped)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Picks;
+
+    #[test]
+    fn picks_are_counted_without_overflow() {
+        let picks = Picks { first: 0, every: 3, last: 10 };
+        assert_eq!((picks.count(), picks.step(4)), (4, 9));
+        assert_eq!((0..=10).filter(|&step| picks.holds(step)).collect::<Vec<_>>(), [0, 3, 6, 9]);
+        assert_eq!(Picks { first: 5, every: 5, last: 4 }.count(), 0);
+        let all = Picks { first: 1, every: 1, last: i32::MAX as u32 };
+        assert_eq!((all.count(), all.step(all.count())), (i32::MAX as u32, i32::MAX as u32));
+    }
+}

@@ -1,0 +1,103 @@
+//! `scene`: the scenes that come with the program, in the hands of whoever wants to look at them.
+use crate::{
+    cli::{
+        console, exit, output,
+        scenes::{Scene, SceneExport, SceneList, SceneShow},
+        selection::Selection,
+    },
+    report::{number::counted, scene as report},
+    scene::{self, LARGEST_SCENE},
+    suite::library,
+};
+use anyhow::{Context, Result, bail};
+use std::{fs, path::Path};
+
+pub(super) fn run(command: &Scene) -> Result<u8> {
+    match command {
+        Scene::List(SceneList { patterns, quiet }) => list(patterns, *quiet),
+        Scene::Show(SceneShow { name }) => show(name),
+        Scene::Export(arguments) => export(arguments),
+    }
+}
+
+/// Lists the scenes that these patterns name; without patterns, all.
+///
+/// # Errors
+/// A pattern that matches none.
+pub(super) fn list(patterns: &[String], quiet: bool) -> Result<u8> {
+    let names = matching(patterns)?;
+    if quiet {
+        let text: String = names.iter().map(|name| format!("asset:{name}\n")).collect();
+        console::print(text.as_bytes())?;
+        return Ok(exit::ACCEPTED);
+    }
+    let mut scenes = Vec::new();
+    for name in names {
+        let xml = library::scene(name).context("a scene that was just listed")?;
+        let loaded = scene::read(name, xml).map_err(|_| anyhow::anyhow!("the embedded scene {name} is not sound"))?;
+        scenes.push((name, loaded.scene));
+    }
+    console::report(&report::list(&scenes, console::style()))?;
+    Ok(exit::ACCEPTED)
+}
+
+fn show(name: &str) -> Result<u8> {
+    let name = name.strip_prefix("asset:").unwrap_or(name);
+    let name = name.strip_suffix(".xml").unwrap_or(name);
+    if let Some(xml) = library::scene(name) {
+        console::print(xml)?;
+        return Ok(exit::ACCEPTED);
+    }
+    // A name without its group is as good when there is only one of it.
+    let same: Vec<_> = library::names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
+    match (same[..].first().and_then(|only| library::scene(only)), same.len()) {
+        (Some(xml), 1) => {
+            console::print(xml)?;
+            Ok(exit::ACCEPTED)
+        }
+        _ => bail!("no scene {name} comes with the program; `fosssim-oracle scene list` lists those that do"),
+    }
+}
+
+fn export(arguments: &SceneExport) -> Result<u8> {
+    let names = matching(&arguments.patterns)?;
+    let (mut written, mut kept, mut other) = (0_u64, 0_u64, Vec::new());
+    for name in names {
+        let xml = library::scene(name).context("a scene that was just listed")?;
+        let path = arguments.output.join(format!("{name}.xml"));
+        match holds(&path, xml) {
+            Some(true) => kept += 1,
+            Some(false) if !arguments.force => other.push(path),
+            _ => {
+                let folder = path.parent().unwrap_or(&arguments.output);
+                fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+                output::write(&path, &[], xml)?;
+                written += 1;
+            }
+        }
+    }
+    if !arguments.quiet {
+        let rest = if kept > 0 { format!(", {} there already", counted(kept, "scene")) } else { String::new() };
+        let folder = arguments.output.display();
+        console::report(&format!("{} written to {folder}{rest}\n", counted(written, "scene")))?;
+    }
+    if let Some(first) = other.first() {
+        let more = if other.len() > 1 { format!(" and {} more", other.len() - 1) } else { String::new() };
+        bail!("{}{more}: left alone, because something else is in it; --force replaces it", first.display());
+    }
+    Ok(exit::ACCEPTED)
+}
+
+/// Whether a file holds these bytes; nothing when there is none.
+fn holds(path: &Path, bytes: &[u8]) -> Option<bool> {
+    let data = fs::symlink_metadata(path).ok()?;
+    let alike = data.is_file() && data.len() <= LARGEST_SCENE as u64;
+    Some(alike && fs::read(path).is_ok_and(|old| old == bytes))
+}
+
+/// The names of the embedded scenes that these patterns select.
+fn matching(patterns: &[String]) -> Result<Vec<&'static str>> {
+    let names: Vec<_> = library::names().collect();
+    let selection = Selection::new(patterns, &names)?;
+    Ok(names.into_iter().filter(|name| selection.takes(name)).collect())
+}

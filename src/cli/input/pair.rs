@@ -1,0 +1,196 @@
+//! Pairs as typed: their points and radii, or their names in a scene.
+use crate::{
+    num::vector::Vec2,
+    scene::Scene,
+    sim::{Pair, PairKind, PairMotion, PointMotion},
+};
+use anyhow::{Context, Result, bail};
+
+/// A pair and how it moves from its word: `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
+///
+/// # Errors
+/// When it is no such pair.
+pub(in crate::cli) fn motion(word: &str, radii: &str) -> Result<PairMotion> {
+    let mut points = word.split(':').collect::<Vec<_>>();
+    let kind = points.remove(0);
+    let moving = |index: usize| moving(points[index]);
+    let fixed = |index: usize| vector(points[index]);
+    let expect = |count: usize, what: &str| {
+        if points.len() == count {
+            return Ok(());
+        }
+        bail!("{kind} takes {count} points ({what}), not {}", points.len())
+    };
+    Ok(match kind_of(kind)? {
+        PairKind::ParticleParticle => {
+            expect(2, "the two centres")?;
+            PairMotion::Particles { centres: [moving(0)?, moving(1)?], radii: radii_of(radii)? }
+        }
+        PairKind::ParticleEdge => {
+            expect(3, "the particle's centre and the ends of the edge")?;
+            let ends = [moving(1)?, moving(2)?];
+            PairMotion::Edge { centre: moving(0)?, ends, radii: radii_of(radii)? }
+        }
+        PairKind::ParticleHalfPlane => {
+            expect(3, "the particle's centre, a point on the boundary, the normal")?;
+            let radius = number(radii).with_context(|| format!("the radius `{radii}`"))?;
+            let normal = fixed(2)?;
+            if normal == Vec2::zeros() {
+                bail!("the half-plane's normal is zero");
+            }
+            PairMotion::HalfPlane { centre: moving(0)?, radius: not_negative(radius)?, point: fixed(1)?, normal }
+        }
+    })
+}
+
+/// A pair of a scene: `pe:3,1`.
+///
+/// # Errors
+/// When the scene has no such pair, or detection never looks at it.
+pub(in crate::cli) fn of_scene(word: &str, scene: &Scene) -> Result<Pair> {
+    let (kind, indices) = word.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
+    let kind = kind_of(kind)?;
+    let (first, second) = indices.split_once(',').context("two indices are needed, as in pe:3,1")?;
+    let index = |text: &str, count: usize, what: &str| -> Result<u32> {
+        let index: u32 = text.trim().parse().with_context(|| format!("`{text}` is no index"))?;
+        if (index as usize) < count {
+            return Ok(index);
+        }
+        bail!("there is no {what} {index}; the scene has {count}, counted from 0")
+    };
+    let first = index(first, scene.particles.len(), "particle")?;
+    let (count, what) = match kind {
+        PairKind::ParticleParticle => (scene.particles.len(), "particle"),
+        PairKind::ParticleEdge => (scene.edges.len(), "edge"),
+        PairKind::ParticleHalfPlane => (scene.half_planes.len(), "half-plane"),
+    };
+    let second = index(second, count, what)?;
+    match kind {
+        PairKind::ParticleParticle if first == second => bail!("a particle makes no pair with itself"),
+        // Detection looks at each pair once, the lower index first.
+        PairKind::ParticleParticle => Ok(Pair { kind, first: first.min(second), second: first.max(second) }),
+        PairKind::ParticleEdge => {
+            let edge = &scene.edges[second as usize];
+            if [edge.first, edge.second].contains(&(first as usize)) {
+                bail!("particle {first} is an end of edge {second}; detection never looks at this pair");
+            }
+            Ok(Pair { kind, first, second })
+        }
+        PairKind::ParticleHalfPlane => Ok(Pair { kind, first, second }),
+    }
+}
+
+fn kind_of(word: &str) -> Result<PairKind> {
+    Ok(match word {
+        "pp" | "particle-particle" => PairKind::ParticleParticle,
+        "pe" | "particle-edge" => PairKind::ParticleEdge,
+        "ph" | "particle-half-plane" => PairKind::ParticleHalfPlane,
+        _ => bail!(
+            "`{word}` is no kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and half-plane)"
+        ),
+    })
+}
+
+/// A point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
+///
+/// # Errors
+/// When it is none of them.
+pub(in crate::cli) fn moving(word: &str) -> Result<PointMotion> {
+    if let Some((start, end)) = word.split_once("..") {
+        return from_to(start, end);
+    }
+    // A plus sign may also belong to a number or to its exponent: 1e+3,+2+4,1.
+    let separates = |&(place, _): &(usize, char)| {
+        let before = word[..place].trim_end();
+        before.contains(',') && before.ends_with(|c: char| c.is_ascii_digit() || c == '.')
+    };
+    match word.char_indices().filter(|&(_, c)| c == '+').find(separates) {
+        Some((place, _)) => Ok(PointMotion { start: vector(&word[..place])?, shift: vector(&word[place + 1..])? }),
+        None => Ok(PointMotion { start: vector(word)?, shift: Vec2::zeros() }),
+    }
+}
+
+/// A motion from its two ends; the displacement is their difference, as the course's code takes it.
+///
+/// # Errors
+/// When one is no point.
+pub(in crate::cli) fn from_to(start: &str, end: &str) -> Result<PointMotion> {
+    let (start, end) = (vector(start)?, vector(end)?);
+    Ok(PointMotion { start, shift: end - start })
+}
+
+/// `X,Y`
+///
+/// # Errors
+/// When it is no point with finite coordinates.
+pub(in crate::cli) fn vector(word: &str) -> Result<Vec2> {
+    let advice = || format!("`{word}` is no point; write X,Y as in 3,-1.5");
+    let (x, y) = word.split_once(',').with_context(advice)?;
+    Ok(Vec2::new(number(x).with_context(advice)?, number(y).with_context(advice)?))
+}
+
+fn radii_of(word: &str) -> Result<[f64; 2]> {
+    let advice = || format!("`{word}` are no radii; write R,R as in 1,0.5");
+    let (first, second) = word.split_once(',').with_context(advice)?;
+    let radius = |text| number(text).and_then(not_negative).with_context(advice);
+    Ok([radius(first)?, radius(second)?])
+}
+
+fn not_negative(radius: f64) -> Result<f64> {
+    if radius < 0.0 {
+        bail!("a radius is negative");
+    }
+    Ok(radius)
+}
+
+fn number(text: &str) -> Result<f64> {
+    let value: f64 = text.trim().parse().with_context(|| format!("`{text}` is no number"))?;
+    if !value.is_finite() {
+        bail!("`{text}` is not finite");
+    }
+    Ok(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(word: &str) -> [f64; 4] {
+        let PointMotion { start, shift } = moving(word).unwrap();
+        [start.x, start.y, shift.x, shift.y]
+    }
+
+    #[test]
+    fn points_move_by_a_displacement_or_to_an_end() {
+        assert_eq!(numbers("3,1+4,1"), [3.0, 1.0, 4.0, 1.0]);
+        assert_eq!(numbers("-3,-.5+-4,1"), [-3.0, -0.5, -4.0, 1.0]);
+        assert_eq!(numbers("1e+3,+2+4e+1,+1"), [1000.0, 2.0, 40.0, 1.0]);
+        assert_eq!(numbers("3,1..7,2"), [3.0, 1.0, 4.0, 1.0]);
+        assert_eq!(numbers("3,1"), [3.0, 1.0, 0.0, 0.0]);
+        assert_eq!(numbers(" 3 , 1 + 4 , 1 "), [3.0, 1.0, 4.0, 1.0]);
+    }
+
+    #[test]
+    fn what_is_no_point_is_refused_with_advice() {
+        for word in ["", "3", "3;1", "3,x", "3,1+4", "3,1,2", "nan,0", "3,1..", "1e999,0", "3,1+4,1+2,2"] {
+            let error = format!("{:#}", moving(word).unwrap_err());
+            assert!(error.contains("is no point"), "{word}: {error}");
+        }
+    }
+
+    #[test]
+    fn each_kind_says_what_it_takes() {
+        assert!(motion("pe:3,1+4,1:5,9+2,6:5,3+5,8", "1,1").is_ok());
+        assert!(motion("ph:0,1+0,-1:0,0:0,1", "0.25").is_ok());
+        for (pair, radii, says) in [
+            ("pe:3,1:5,9", "1,1", "pe takes 3 points (the particle's centre and the ends of the edge), not 2"),
+            ("pq:3,1:5,9", "1,1", "`pq` is no kind of pair"),
+            ("pp:3,1:5,9", "1", "`1` are no radii"),
+            ("pp:3,1:5,9", "1,-1", "a radius is negative"),
+            ("ph:3,1:0,0:0,0", "1", "the half-plane's normal is zero"),
+        ] {
+            let error = format!("{:#}", motion(pair, radii).unwrap_err());
+            assert!(error.contains(says), "{error}");
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Arguments of the commands that draw and look closely, as typed.
+use crate::render::Size;
+use clap::{Args, ValueEnum};
+use std::{num::NonZeroU32, path::PathBuf};
+
+/// What is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum RenderFormat {
+    /// Pictures as SVG: a folder of them, or one with --step.
+    Svg,
+    /// Pictures as PNG: a folder of them, or one with --step.
+    Png,
+    /// An animated PNG.
+    Apng,
+    /// A GIF.
+    Gif,
+    /// A movie, if ffmpeg is installed.
+    Mp4,
+}
+
+/// Draws a scene's motion: a picture per step, an animated PNG, a GIF, or a movie.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle render asset:HolisticTests/hourglass --output hourglass.gif
+  fosssim-oracle render scenes/test00.xml --overlay submission.bin --output both.apng
+  fosssim-oracle render scenes/test00.xml submission.bin --step 14 --output step14.svg
+  fosssim-oracle render scenes/creative.xml --format png --output pngs --size 1280x720
+
+Without a trace the reference's own run is drawn. Bodies have the scene's colours, and the scene's viewport is shown; \
+without one the view holds the whole motion. A folder gets frame00001.png and so on, as the original's -g 1 writes them, \
+or SVG files as its -m does. Films of more than 1500 pictures are thinned out unless --every says how.")]
+pub(super) struct Render {
+    /// The scene, a file or asset:Group/name.
+    pub(super) scene: PathBuf,
+    /// The trace to draw, a file, - for standard input, or asset:Group/name.
+    pub(super) trace: Option<PathBuf>,
+    /// A second trace, drawn on top in dashed outlines.
+    #[arg(long, value_name = "TRACE")]
+    pub(super) overlay: Option<PathBuf>,
+    /// The file or folder to write; the ending of a file's name says what it becomes.
+    #[arg(short, long, value_name = "FILE or DIR")]
+    pub(super) output: PathBuf,
+    /// What is drawn, if the name of the output does not say it.
+    #[arg(long, value_enum)]
+    pub(super) format: Option<RenderFormat>,
+    /// Width and height in pixels.
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    pub(super) size: Size,
+    /// Pictures per second of a film.
+    #[arg(long, value_name = "N", default_value_t = 25)]
+    pub(super) fps: u16,
+    /// Draw every Nth step only.
+    #[arg(long, value_name = "N")]
+    pub(super) every: Option<NonZeroU32>,
+    /// One picture: the state after this step; 0 is the start.
+    #[arg(long, value_name = "N", conflicts_with = "every")]
+    pub(super) step: Option<u32>,
+    /// Leave out step and time in the lower left corner.
+    #[arg(long)]
+    pub(super) no_label: bool,
+}
+
+/// How a detection is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum DetectFormat {
+    /// For people.
+    Text,
+    /// For programs; one JSON object.
+    Json,
+    /// A picture like the assignment's figure 2: the polynomials, where each is positive, where all are.
+    Svg,
+}
+
+/// Computes what detection makes of one pair: polynomials, zeros, intervals, decision, time of impact, normal.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1
+  fosssim-oracle detect --x1 1,4 --d1 1,4 --x2 2,1 --d2 3,5 --x3 6,2 --d3 3,7 --radii 1,2
+  fosssim-oracle detect --scene scenes/test00.xml --step 14 --pair pe:3,1
+  fosssim-oracle detect --scene scenes/test00.xml --trace submission.bin --step 14 --pair pe:3,1 --pass 2
+  fosssim-oracle detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1 --format svg --output figure.svg
+
+The first two are the assignment's worked examples. Their overlap polynomials are
+
+  -361 t^4 - 304 t^3 - 468 t^2 - 288 t
+  -16 t^4 - 68 t^2 + 36 t - 16
+
+A pair is one word: pp, pe or ph (particle with particle, edge, half-plane) and its points behind colons: the \
+particles' centres, the particle and the edge's two ends, or the particle, a point on the boundary and the normal. A \
+moving point is X,Y+DX,DY (start and displacement) or X,Y..X,Y (start and end).")]
+pub(super) struct Detect {
+    /// The kind of pair (pp, pe, ph) and its points.
+    #[arg(value_name = "KIND:POINTS")]
+    pub(super) word: Option<String>,
+    /// The radii of the two objects; of a particle and a half-plane, the particle's.
+    #[arg(long, value_name = "R,R", allow_hyphen_values = true)]
+    pub(super) radii: Option<String>,
+    #[command(flatten)]
+    pub(super) points: Points,
+    /// Look at a pair of this scene instead.
+    #[arg(long, value_name = "SCENE", requires = "step", requires = "pair", conflicts_with_all = ["word", "radii", "Points"])]
+    pub(super) scene: Option<PathBuf>,
+    /// The trace whose states are taken; without it the reference's run.
+    #[arg(long, value_name = "TRACE", requires = "scene")]
+    pub(super) trace: Option<PathBuf>,
+    /// The step, from 1.
+    #[arg(long, value_name = "N", requires = "scene")]
+    pub(super) step: Option<u32>,
+    /// The pair: pp:I,J, pe:I,J or ph:I,J with the indices of the scene.
+    #[arg(long, value_name = "KIND:I,J", requires = "scene")]
+    pub(super) pair: Option<String>,
+    /// The detection pass of the step, from 1.
+    #[arg(long, value_name = "N", requires = "scene", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) pass: u32,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = DetectFormat::Text)]
+    pub(super) format: DetectFormat,
+    /// Where to write it, instead of to standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// A pair in the notation of the assignment.
+#[derive(Debug, Args)]
+#[group(multiple = true, conflicts_with = "word")]
+#[command(next_help_heading = "The pair in the notation of the assignment")]
+pub(super) struct Points {
+    /// Start of the particle.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(super) x1: Option<String>,
+    /// Its displacement.
+    #[arg(long, value_name = "DX,DY", allow_hyphen_values = true, conflicts_with = "e1")]
+    pub(super) d1: Option<String>,
+    /// Or its end.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(super) e1: Option<String>,
+    /// Start of the second particle, or of the edge's first end.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(super) x2: Option<String>,
+    /// Its displacement.
+    #[arg(long, value_name = "DX,DY", allow_hyphen_values = true, conflicts_with = "e2")]
+    pub(super) d2: Option<String>,
+    /// Or its end.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(super) e2: Option<String>,
+    /// Start of the edge's second end.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "x2")]
+    pub(super) x3: Option<String>,
+    /// Its displacement.
+    #[arg(long, value_name = "DX,DY", allow_hyphen_values = true, conflicts_with = "e3")]
+    pub(super) d3: Option<String>,
+    /// Or its end.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(super) e3: Option<String>,
+    /// A point on the half-plane's boundary.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "normal", conflicts_with = "x2")]
+    pub(super) point: Option<String>,
+    /// The half-plane's normal.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "point")]
+    pub(super) normal: Option<String>,
+}

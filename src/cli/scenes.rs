@@ -1,0 +1,63 @@
+//! Arguments of the commands about scenes, as typed.
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+
+/// Lists the scenes that come with the program, prints one, or writes them into a folder.
+#[derive(Debug, Subcommand)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle scene show GeometricTests/ball-on-a-fixed-edge > scene.xml")]
+pub(super) enum Scene {
+    List(SceneList),
+    Show(SceneShow),
+    Export(SceneExport),
+}
+
+/// Lists the scenes that come with the program, with a line on each.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle scene list
+  fosssim-oracle scene list 'Geometric*'")]
+pub(super) struct SceneList {
+    /// Only scenes of these names, such as 'GeometricTests/*'.
+    #[arg(value_name = "GLOB")]
+    pub(super) patterns: Vec<String>,
+    /// Names only.
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+/// Prints a scene's XML.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle scene show GeometricTests/ball-on-a-fixed-edge > scene.xml")]
+pub(super) struct SceneShow {
+    /// The scene, Group/name or asset:Group/name.
+    #[arg(value_name = "SCENE")]
+    pub(super) name: String,
+}
+
+/// Writes scenes as FOLDER/Group/name.xml.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle scene export --output scenes
+  fosssim-oracle scene export 'HolisticTests/*' --output scenes
+
+A file that holds something else is left alone and named, unless --force is given.")]
+pub(super) struct SceneExport {
+    /// Only scenes of these names, such as 'GeometricTests/*'. Without any, all of them.
+    #[arg(value_name = "GLOB")]
+    pub(super) patterns: Vec<String>,
+    /// The folder; it is made when there is none.
+    #[arg(short, long, value_name = "DIR")]
+    pub(super) output: PathBuf,
+    /// Replace files that hold something else.
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Say nothing but what went wrong.
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}

@@ -1,0 +1,88 @@
+//! Scenes selected by name, as `grade --scene` and `scene list` take them.
+use anyhow::{Context, Result, bail};
+use glob::Pattern;
+
+/// Patterns of scene names; none selects everything.
+#[derive(Debug, Default)]
+pub(super) struct Selection {
+    patterns: Vec<Pattern>,
+}
+
+impl Selection {
+    /// A selection among these names.
+    ///
+    /// # Errors
+    /// A pattern that can't be understood, or that takes none of the names.
+    pub(super) fn new(words: &[String], names: &[&str]) -> Result<Self> {
+        let mut patterns = Vec::new();
+        for word in words {
+            let bare = word.strip_prefix("asset:").unwrap_or(word);
+            let bare = bare.strip_suffix(".xml").unwrap_or(bare);
+            let pattern = Pattern::new(bare).with_context(|| format!("the pattern {word}"))?;
+            if !names.iter().any(|name| takes(&pattern, name)) {
+                bail!("{word} names no scene; there are {}", near(bare, names));
+            }
+            patterns.push(pattern);
+        }
+        Ok(Self { patterns })
+    }
+
+    /// Whether a scene is selected.
+    pub(super) fn takes(&self, name: &str) -> bool {
+        self.patterns.is_empty() || self.patterns.iter().any(|pattern| takes(pattern, name))
+    }
+}
+
+/// A pattern is compared with the whole name, or with the name behind its group.
+fn takes(pattern: &Pattern, name: &str) -> bool {
+    pattern.matches(name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
+}
+
+/// So many names are given as examples.
+const EXAMPLES: usize = 3;
+
+/// A few names: those that have a word in common with what was typed, else the first ones.
+fn near(typed: &str, names: &[&str]) -> String {
+    let words: Vec<String> =
+        typed.split(|c: char| !c.is_alphanumeric()).filter(|word| word.len() > 2).map(str::to_lowercase).collect();
+    let common = |name: &str| words.iter().filter(|word| name.to_lowercase().contains(word.as_str())).count();
+    let mut sorted: Vec<&str> = names.to_vec();
+    // Stable: names with as much in common stay in their order.
+    sorted.sort_by_key(|name| std::cmp::Reverse(common(name)));
+    let shown = sorted.iter().take(EXAMPLES).copied().collect::<Vec<_>>().join(", ");
+    if names.len() > EXAMPLES { format!("{shown} and {} more", names.len() - EXAMPLES) } else { shown }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NAMES: [&str; 4] = ["Geometric/ball-on-edge", "Geometric/chain", "Impulses/ball", "Impulses/rope-bridge"];
+
+    fn selected(words: &[&str]) -> Vec<&'static str> {
+        let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+        let selection = Selection::new(&words, &NAMES).expect("a selection");
+        NAMES.into_iter().filter(|name| selection.takes(name)).collect()
+    }
+
+    #[test]
+    fn names_are_matched_whole_or_behind_their_group() {
+        assert_eq!(selected(&[]), NAMES);
+        assert_eq!(selected(&["Geometric/*"]), NAMES[..2]);
+        assert_eq!(selected(&["Geo*"]), NAMES[..2]);
+        assert_eq!(selected(&["ball*", "chain"]), NAMES[..3]);
+        assert_eq!(selected(&["asset:Impulses/ball"]), ["Impulses/ball"]);
+        assert_eq!(selected(&["rope-bridge.xml"]), ["Impulses/rope-bridge"]);
+    }
+
+    #[test]
+    fn a_pattern_without_a_scene_is_an_error_that_helps() {
+        let error = |word: &str| Selection::new(&[word.to_owned()], &NAMES).expect_err("none").to_string();
+        assert_eq!(
+            error("Impulses/rope"),
+            "Impulses/rope names no scene; there are Impulses/rope-bridge, Impulses/ball, Geometric/ball-on-edge \
+             and 1 more"
+        );
+        assert!(error("[").contains("pattern"), "{}", error("["));
+    }
+}

@@ -1,0 +1,12 @@
+// promise: No number of a descriptor is a way to execute a file.
+// expect: violation execveat
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    int fd = open("/proc/self/exe", O_RDONLY);
+    for (int number = 63; number >= 3; number--) dup2(fd, number);
+    for (int number = 0; number < 4096; number++) {
+        syscall(SYS_execveat, number, "", argv, NULL, AT_EMPTY_PATH);
+    }
+    breach("execveat");
+}

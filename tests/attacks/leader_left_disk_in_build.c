@@ -1,0 +1,19 @@
+// promise: The nameless files of build processes whose main threads have left count.
+// expect: folder
+// policy: tools
+#include "attack.h"
+static void rest(void) {
+    nameless(2);
+    for (;;) pause();
+}
+static void child(void (*rest)(void)) {
+    if (fork() == 0) {
+        setsid();
+        without_leader(rest);
+    }
+}
+int main(int argc, char **argv) {
+    begin(argc);
+    for (int i = 0; i < 6; i++) child(rest);
+    for (;;) pause();
+}

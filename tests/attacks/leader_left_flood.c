@@ -1,0 +1,10 @@
+// promise: A program whose main thread has left cannot flood standard output.
+// expect: output stdout
+#include "attack.h"
+static void rest(void) {
+    for (;;) write(1, full_block(), sizeof block);
+}
+int main(int argc, char **argv) {
+    begin(argc);
+    without_leader(rest);
+}

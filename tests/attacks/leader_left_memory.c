@@ -1,0 +1,11 @@
+// promise: A program whose main thread has left meets its memory limit.
+// expect: memory
+#include "attack.h"
+static void rest(void) {
+    take_memory(400);
+    for (;;) pause();
+}
+int main(int argc, char **argv) {
+    begin(argc);
+    without_leader(rest);
+}

@@ -1,0 +1,13 @@
+// promise: A build process made a child of the supervisor is ended like all others.
+// expect: exited 0
+// policy: tools
+#include "attack.h"
+static int for_ever(void *nothing) {
+    setsid();
+    for (;;) pause();
+}
+int main(int argc, char **argv) {
+    begin(argc);
+    static char stack[1 << 16];
+    if (clone(for_ever, stack + sizeof stack, CLONE_PARENT, NULL) < 0) return 0;
+}

@@ -1,0 +1,15 @@
+// promise: Build processes that have stopped are ended.
+// expect: exited 0
+// policy: tools
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    for (int i = 0; i < 3; i++) {
+        if (fork() == 0) {
+            setsid();
+            raise(SIGSTOP);
+            for (;;) pause();
+        }
+    }
+    usleep(50000);
+}

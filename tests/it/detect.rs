@@ -1,0 +1,161 @@
+//! `detect`: the calculator for one pair.
+use super::workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace};
+use serde_json::Value;
+
+fn detect(workspace: &Workspace, words: &str) -> Run {
+    workspace.run(["detect"].into_iter().chain(words.split(' ')))
+}
+
+/// The answer as JSON, checked against its schema.
+fn answer(workspace: &Workspace, words: &str) -> Value {
+    let run = detect(workspace, &format!("{words} --format json"));
+    assert_eq!((run.code, run.err().as_str()), (Some(0), ""), "{words}");
+    let json: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let schema: Value = serde_json::from_str(include_str!("../../schemas/detect.schema.json")).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<String> = validator.iter_errors(&json).map(|error| error.to_string()).collect();
+    assert!(errors.is_empty(), "{words}: {errors:#?}");
+    json
+}
+
+fn coefficients(json: &Value, number: usize) -> Vec<f64> {
+    let list = json["polynomials"][number]["coefficients"].as_array().unwrap();
+    list.iter().map(|value| value.as_f64().unwrap()).collect()
+}
+
+/// The worked examples of the assignment, in both notations; both stand in the help.
+#[test]
+fn the_assignments_examples() {
+    let workspace = Workspace::new();
+    let first = "pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1";
+    insta::assert_snapshot!("detect_first_example", detect(&workspace, first).shown());
+    assert_eq!(coefficients(&answer(&workspace, first), 0), [-361.0, -304.0, -468.0, -288.0, 0.0]);
+    let second = "--x1 1,4 --d1 1,4 --x2 2,1 --d2 3,5 --x3 6,2 --d3 3,7 --radii 1,2";
+    let json = answer(&workspace, second);
+    assert_eq!(coefficients(&json, 0), [-16.0, 0.0, -68.0, 36.0, -16.0]);
+    assert_eq!(json["answer"]["collides"], false);
+    let ends = "--x1 1,4 --e1 2,8 --x2 2,1 --e2 5,6 --x3 6,2 --e3 9,9 --radii 1,2";
+    assert_eq!(answer(&workspace, ends), json);
+    assert_eq!(answer(&workspace, "pe:1,4..2,8:2,1+3,5:6,2..9,9 --radii 1,2"), json);
+    let help = detect(&workspace, "--help").out();
+    assert!(help.contains(first) && help.contains(second), "{help}");
+    assert!(help.contains("-361 t^4 - 304 t^3 - 468 t^2 - 288 t") && help.contains("-16 t^4 - 68 t^2 + 36 t - 16"));
+}
+
+#[test]
+fn a_ball_meets_a_half_plane() {
+    let workspace = Workspace::new();
+    // The ball of the format's description: it touches at half the step.
+    let run = detect(&workspace, "ph:0,0.5+0,-0.5:0,0:0,1 --radii 0.25");
+    insta::assert_snapshot!("detect_half_plane", run.shown());
+    let json = answer(&workspace, "--x1 0,0.5 --d1 0,-0.5 --point 0,0 --normal 0,1 --radii 0.25");
+    assert_eq!((&json["answer"]["time"], &json["answer"]["normal"][1]), (&Value::from(0.5), &Value::from(-0.25)));
+    assert_eq!(json["certain"], true);
+    let later = answer(&workspace, "pp:0,0+1,0:10,0 --radii 1,1");
+    assert!((later["answer"]["time"].as_f64().unwrap() - 8.0).abs() < 1e-12);
+    assert_eq!(later["answer"]["collides"], false);
+}
+
+/// A scene's pair is what the step's trace logs for it.
+#[test]
+fn a_pair_of_a_scene_is_what_the_trace_logs() {
+    let workspace = Workspace::with_trace(BEAM);
+    let shown = workspace.run("trace show scene.xml trace.bin --step 2 --format json".split(' '));
+    let shown: Value = serde_json::from_slice(&shown.stdout).unwrap();
+    let logged: Vec<_> = shown["records"][1]["polynomials"].as_array().unwrap().to_vec();
+    let mut seen = 0;
+    for (word, kind, first, second) in [
+        ("pe:2,0", "particle-edge", 2, 0),
+        ("pp:0,2", "particle-particle", 0, 2),
+        ("pp:2,1", "particle-particle", 1, 2),
+    ] {
+        for source in ["", " --trace trace.bin"] {
+            let json = answer(&workspace, &format!("--scene scene.xml{source} --step 2 --pair {word}"));
+            let pair = serde_json::json!({ "kind": kind, "first": first, "second": second });
+            let of_pair = logged.iter().filter(|one| one["pair"] == pair && one["pass"]["index"] == 0);
+            let expected: Vec<_> = of_pair.map(|one| one["coefficients"].clone()).collect();
+            let own = json["polynomials"].as_array().unwrap();
+            assert_eq!(own.iter().map(|one| one["coefficients"].clone()).collect::<Vec<_>>(), expected);
+            assert_eq!(
+                json["place"]["logged"].as_array().map(Vec::as_slice),
+                (!source.is_empty()).then_some(&expected[..])
+            );
+            seen += expected.len();
+        }
+    }
+    assert_eq!(seen, 2 * (4 + 2 + 2));
+    let passes = answer(&workspace, "--scene scene.xml --step 2 --pair pe:2,0")["place"]["passes"].as_u64().unwrap();
+    assert!(passes > 1, "the beam is hit in this step");
+    let last = answer(&workspace, &format!("--scene scene.xml --step 2 --pair pe:2,0 --pass {passes}"));
+    assert_eq!(last["place"]["pass"]["index"], passes - 1);
+    insta::assert_snapshot!(
+        "detect_scene",
+        detect(&workspace, "--scene scene.xml --trace trace.bin --step 2 --pair pe:2,0").shown()
+    );
+}
+
+#[test]
+fn a_wrong_polynomial_of_a_trace_is_shown_beside_the_right_one() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    let mut trace = workspace.read("trace.bin");
+    // The first coefficient of the end record of step 1: state, one impulse, two counts, the first size.
+    let (record, place) = (32 + 4 + 4, 32 + 4 + 36 + 4 + 4);
+    let mid = 32 + 4 + 36 + 4 + (4 + 24) + (4 + 16);
+    let place = record + mid + place;
+    assert_eq!(f64::from_le_bytes(trace[place..place + 8].try_into().unwrap()), -0.25);
+    trace[place..place + 8].copy_from_slice(&(-0.75_f64).to_le_bytes());
+    workspace.write("trace.bin", trace);
+    let run = detect(&workspace, "--scene scene.xml --trace trace.bin --step 1 --pair ph:0,0");
+    assert!(run.out().contains("  overlap: differs\n    -0.75 t^2 + 0.5 t - 0.1875\n"), "{}", run.shown());
+    assert!(run.out().contains("  approach: the same\n"), "{}", run.shown());
+}
+
+#[test]
+fn scenes_without_continuous_detection_give_the_motion_of_the_step() {
+    let workspace = Workspace::new();
+    let two =
+        DRIFT.replace("</scene>", r#"<particle m="1" px="1" py="0" vx="0" vy="0" fixed="0" radius="0.5"/></scene>"#);
+    workspace.write("scene.xml", two);
+    let json = answer(&workspace, "--scene scene.xml --step 3 --pair pp:0,1");
+    assert_eq!((&json["place"]["pass"], &json["place"]["passes"]), (&Value::Null, &Value::from(0)));
+    assert_eq!(json["motion"]["points"][0]["start"], serde_json::json!([0.5, 0.25]));
+}
+
+#[test]
+fn what_can_not_be_looked_at_is_said() {
+    let workspace = Workspace::with_trace(BEAM);
+    for (words, says) in [
+        ("--radii 1,1", "name a pair"),
+        ("pe:3,1+4,1:5,9+2,6:5,3+5,8", "the radii are missing"),
+        ("pe:3,1+4,1:5,9+2,6 --radii 1,1", "pe takes 3 points"),
+        ("pp:1e200,0+1,0:0,0 --radii 1,1", "pp"),
+        ("--x1 0,0 --d1 1,0 --e1 1,0 --x2 1,1 --radii 1,1", "cannot be used with"),
+        ("--x1 0,0 --x2 1,1 --d3 1,1 --radii 1,1", "--x3"),
+        ("--x1 0,0 --radii 1,1", "the second object is missing"),
+        ("--scene scene.xml --step 4 --pair pe:2,0", "has 3 steps, counted from 1; there is no step 4"),
+        ("--scene scene.xml --step 0 --pair pe:2,0", "there is no step 0"),
+        ("--scene scene.xml --step 1 --pair pe:0,0", "particle 0 is an end of edge 0"),
+        ("--scene scene.xml --step 1 --pair pe:2,1", "there is no edge 1; the scene has 1"),
+        ("--scene scene.xml --step 1 --pair pp:1,1", "a particle makes no pair with itself"),
+        ("--scene scene.xml --step 1 --pair pe:2,0 --pass 99", "there is no pass 99"),
+        ("--scene scene.xml --step 1 --pair pe:2,0 --pass 0", "0 is not in 1.."),
+        ("--scene scene.xml --step 1", "--pair"),
+        ("--step 1 pp:0,0:1,1 --radii 1,1", "--scene"),
+    ] {
+        let run = detect(&workspace, words);
+        if words.starts_with("pp:1e200") {
+            // Parabolas have closed forms: infinities lead nowhere, and nothing hangs.
+            assert_eq!(run.code, Some(0), "{}", run.shown());
+            continue;
+        }
+        assert_eq!((run.code, run.stdout.len()), (Some(2), 0), "{words}: {}", run.shown());
+        assert!(run.err().contains(says), "{words}: {}", run.err());
+    }
+    let endless = detect(&workspace, "pe:1e200,0+4,1:5,9+2,6:5,3+5,8 --radii 1,1");
+    assert_eq!(endless.code, Some(2));
+    assert!(
+        endless.err().contains("the original hangs here: the root search of the overlap polynomial"),
+        "{}",
+        endless.err()
+    );
+}

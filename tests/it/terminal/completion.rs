@@ -1,0 +1,70 @@
+//! Completion scripts and manual pages, in the shells that they are for.
+use crate::workspace::{Workspace, finish};
+use fosssim_testing::{Need, skip};
+use std::process::Command;
+
+/// What bash offers for the last of these words, by the script as it is printed.
+fn offered(workspace: &Workspace, words: &[&str]) -> Vec<String> {
+    let list: Vec<String> = words.iter().map(|word| format!("'{word}'")).collect();
+    let (last, previous) = (words.len() - 1, words.get(words.len().wrapping_sub(2)).unwrap_or(&""));
+    let script = format!(
+        "source completions.bash\n\
+         function=$(complete -p fosssim-oracle | sed 's/.*-F \\([^ ]*\\).*/\\1/')\n\
+         COMP_WORDS=({}); COMP_CWORD={last}\n\
+         $function fosssim-oracle '{}' '{previous}'\n\
+         printf '%s\\n' \"${{COMPREPLY[@]}}\"\n",
+        list.join(" "),
+        words[last],
+    );
+    let mut bash = Command::new("bash");
+    let run = finish(bash.args(["--norc", "-c", &script]).current_dir(workspace.path("")));
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    assert_eq!(run.err(), "", "{words:?}");
+    run.out().lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn bash_completes_behind_a_command() {
+    let workspace = Workspace::new();
+    let script = workspace.run(["completions", "bash"]);
+    workspace.write("completions.bash", &script.stdout);
+    if Command::new("bash").arg("--version").output().is_err() {
+        skip(Need::Bash, "there is no bash");
+        return;
+    }
+    let offers = |words: &[&str]| offered(&workspace, words);
+    assert_eq!(offers(&["fosssim-oracle", "sim"]), ["simulate"]);
+    let options = offers(&["fosssim-oracle", "grade", "--f"]);
+    assert!(["--format", "--fresh", "--fail-fast"].iter().all(|known| options.iter().any(|offer| offer == known)));
+    assert!(options.iter().all(|option| option.starts_with("--f")), "{options:?}");
+    assert_eq!(offers(&["fosssim-oracle", "check", "--rules", ""]), ["parity", "fair", "both"]);
+    assert_eq!(offers(&["fosssim-oracle", "check", "--rules", "p"]), ["parity"]);
+    assert_eq!(offers(&["fosssim-oracle", "trace", "sh"]), ["show"]);
+    assert_eq!(offers(&["fosssim-oracle", "trace", "show", "--st"]), ["--step"]);
+    assert_eq!(offers(&["fosssim-oracle", "help", "trace", "di"]), ["diff"]);
+}
+
+#[test]
+fn zsh_and_fish_can_read_their_scripts() {
+    let workspace = Workspace::new();
+    for (need, file) in [(Need::Zsh, "_fosssim-oracle"), (Need::Fish, "fosssim-oracle.fish")] {
+        let shell = need.name();
+        workspace.write(file, &workspace.run(["completions", shell]).stdout);
+        match Command::new(shell).args(["-n", file]).current_dir(workspace.path("")).output() {
+            Ok(output) => assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr)),
+            Err(_) => skip(need, format_args!("there is no {shell}")),
+        }
+    }
+}
+
+#[test]
+fn the_foot_of_a_manual_page_names_the_program_and_its_version() {
+    let workspace = Workspace::new();
+    for page in [&["man"][..], &["man", "grade"], &["man", "trace", "diff"]] {
+        let text = workspace.run(page).out();
+        let foot = format!("\"fosssim-oracle {}\"", env!("CARGO_PKG_VERSION"));
+        let title = text.lines().find(|line| line.starts_with(".TH ")).expect("a title");
+        assert!(title.contains(&foot), "{title}");
+        assert!(!text.contains(".SH EXTRA"), "{page:?}");
+    }
+}

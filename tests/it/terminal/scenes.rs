@@ -1,0 +1,61 @@
+//! `scene`: the embedded scenes in hand.
+use crate::workspace::Workspace;
+use fosssim_oracle::suite::library;
+
+#[test]
+fn every_scene_is_listed_with_a_line_about_it() {
+    let workspace = Workspace::new();
+    let run = workspace.run(["scene", "list"]);
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    let text = run.out();
+    assert_eq!(text.lines().count(), library::names().count());
+    for (line, name) in text.lines().zip(library::names()) {
+        let words = line.strip_prefix(&format!("asset:{name}")).unwrap_or_else(|| panic!("{line}"));
+        assert!(words.contains(" step") && words.trim().len() > 20, "{line}");
+    }
+    assert_eq!(workspace.run(["suite", "scenes"]).out(), text);
+    let names = workspace.run(["scene", "list", "--quiet", "Geometric*", "asset:HolisticTests/balls-in-a-box"]).out();
+    let groups = |line: &str| line.starts_with("asset:GeometricTests/") || line == "asset:HolisticTests/balls-in-a-box";
+    assert!(names.lines().count() > 2 && names.lines().all(groups), "{names}");
+}
+
+#[test]
+fn a_scene_is_shown_as_it_is_and_can_be_judged_with() {
+    let workspace = Workspace::new();
+    let name = "HolisticTests/balls-in-a-box";
+    for word in ["HolisticTests/balls-in-a-box", "asset:HolisticTests/balls-in-a-box", "balls-in-a-box"] {
+        let run = workspace.run(["scene", "show", word]);
+        assert_eq!((run.code, run.stdout.as_slice()), (Some(0), library::scene(name).expect("a scene")), "{word}");
+    }
+    let run = workspace.run(["scene", "show", "HolisticTests/balls"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("scene list"), "{}", run.err());
+}
+
+#[test]
+fn scenes_are_exported_and_what_is_there_is_not_harmed() {
+    let workspace = Workspace::new();
+    let run = workspace.run(["scene", "export", "HolisticTests/*", "--output", "scenes"]);
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    let exported: Vec<_> = library::names().filter(|name| name.starts_with("HolisticTests/")).collect();
+    assert!(run.out().starts_with(&format!("{} scenes written to scenes", exported.len())), "{}", run.out());
+    for name in &exported {
+        assert_eq!(workspace.read(format!("scenes/{name}.xml")), library::scene(name).expect("a scene"));
+    }
+    let again = workspace.run(["scene", "export", "HolisticTests/*", "--output", "scenes"]);
+    assert!(again.out().contains("there already"), "{}", again.shown());
+    let mine = format!("scenes/{}.xml", exported[0]);
+    workspace.write(&mine, "mine");
+    let refused = workspace.run(["scene", "export", "--output", "scenes"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.shown());
+    assert!(refused.err().contains(&mine) && refused.err().contains("--force"), "{}", refused.err());
+    assert_eq!(workspace.read(&mine), b"mine");
+    assert!(workspace.exists(format!("scenes/{}.xml", library::names().next().expect("a scene"))), "the others are");
+    let forced = workspace.run(["scene", "export", "--output", "scenes", "--force", "--quiet"]);
+    assert_eq!((forced.code, forced.out()), (Some(0), String::new()), "{}", forced.shown());
+    assert_eq!(workspace.read(&mine), library::scene(exported[0]).expect("a scene"));
+    let run = workspace.run(["scene", "export", "NoSuchTests/*", "--output", "none"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("NoSuchTests/* names no scene; there are "), "{}", run.err());
+    assert!(!workspace.exists("none"));
+}
