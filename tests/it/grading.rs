@@ -193,6 +193,30 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
     assert_eq!(keys.len(), lines, "nothing was run twice");
 }
 
+/// The flood is as long as the limit, so that program and grader end it at the same time.
+#[test]
+fn a_flood_behind_the_trace_gets_one_verdict_however_busy_the_machine_is() {
+    let Some(workspace) = workspace() else { return };
+    submit(&workspace, &["flood-trace"]);
+    for (rules, verdict) in [("both", "AC"), ("fair", "BT")] {
+        for jobs in ["1", "3", "12"] {
+            let run = workspace.run([
+                "grade",
+                "submissions/fosssim-sample.flood-trace",
+                "--suite=suite.toml",
+                "--rules",
+                rules,
+                "--jobs",
+                jobs,
+                "--format=csv",
+            ]);
+            let rows = csv::Reader::from_reader(&run.stdout[..]).into_records();
+            let verdicts: Vec<_> = rows.map(|row| row.expect("a row")[3].to_owned()).collect();
+            assert!(!verdicts.is_empty() && verdicts.iter().all(|one| one == verdict), "{jobs} jobs: {}", run.shown());
+        }
+    }
+}
+
 #[test]
 fn what_can_not_be_run_is_explained() {
     let Some(workspace) = workspace() else { return };

@@ -8,7 +8,7 @@ use fosssim_judge::{
     fair::{self, Refusal},
     share,
 };
-use fosssim_sandbox::{self as sandbox, Ended};
+use fosssim_sandbox::{self as sandbox, Ended, Stream};
 
 /// What a report keeps of each of the program's streams.
 const KEPT_OUTPUT: usize = 4096;
@@ -34,7 +34,7 @@ pub struct Run<'a> {
 #[must_use]
 pub fn conclude(run: &Run<'_>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
-    let (of_program, program_says) = verdict_of_program(&program.ended);
+    let (of_program, program_says) = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(judged, rules, run.trace_bytes);
     let account = judged.account(rules.official());
     // A program that was stopped has a trace without end; saying so too would blame it twice.
@@ -76,10 +76,13 @@ pub fn conclude(run: &Run<'_>) -> SceneResult {
     }
 }
 
-/// What the program's end alone says.
-fn verdict_of_program(ended: &Ended) -> (Verdict, String) {
+/// What the program's end alone says. Bytes behind the last record mean the same however many they are: a program that is
+/// stopped because of them ended when the judge had what it came for.
+fn verdict_of_program(ended: &Ended, judged: &Outcome) -> (Verdict, String) {
+    let had_all = judged.stop.is_none() && judged.trailing_bytes;
     let verdict = match ended {
         Ended::Exited(0) => Verdict::Accepted,
+        Ended::OutputLimit(Stream::Trace) if had_all => Verdict::Accepted,
         Ended::Cancelled => Verdict::NotRun,
         Ended::Exited(_) | Ended::Signalled(_) | Ended::CouldNotStart(_) => Verdict::RuntimeError,
         Ended::CpuLimit | Ended::WallLimit => Verdict::TimeLimit,

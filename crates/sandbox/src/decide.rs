@@ -72,6 +72,16 @@ pub(super) fn ended(order: &Order, report: &Report, stderr: &[u8]) -> Ended {
     Ended::Exited(code)
 }
 
+/// How a run ended whose trace is longer than allowed, or not. The reader's count decides, and not who came first: the
+/// program may have ended, been killed, or met another limit before the supervisor heard of it.
+pub(super) fn beyond_trace(ended: Ended, is_beyond: bool) -> Ended {
+    match ended {
+        Ended::Cancelled => Ended::Cancelled,
+        _ if is_beyond => Ended::OutputLimit(Stream::Trace),
+        ended => ended,
+    }
+}
+
 /// What the kernel's refusal to execute means.
 fn start_problem(errno: i32) -> StartProblem {
     match errno {

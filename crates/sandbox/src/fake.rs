@@ -95,4 +95,34 @@ mod tests {
         assert_eq!(read(5), (b"frame".to_vec(), Some(TraceTooLong { limit: 5 })));
         assert_eq!(read(0), (Vec::new(), Some(TraceTooLong { limit: 0 })));
     }
+
+    #[test]
+    fn a_trace_beyond_its_limit_is_one_whoever_ended_first() {
+        for ended in [Ended::Exited(0), Ended::Exited(1), Ended::Signalled(13), Ended::CpuLimit, Ended::WallLimit] {
+            let ending = ended.clone();
+            let backend = Backend::fake(move |_| FakeRun { ended: ending.clone(), ..FakeRun::wrote(*b"frames") });
+            let end = |trace_bytes| {
+                let limits = Limits { trace_bytes, ..Limits::default() };
+                backend.start(&Job::new("program", "folder").trace_pipe("t").limits(limits)).unwrap().wait().unwrap()
+            };
+            assert_eq!(end(5).ended, Ended::OutputLimit(crate::Stream::Trace), "{ended:?}");
+            assert_eq!(end(6).ended, ended);
+        }
+        let cancelled = Backend::fake(|_| FakeRun { ended: Ended::Cancelled, ..FakeRun::wrote(*b"frames") });
+        let job = Job::new("program", "folder").trace_pipe("t").limits(Limits { trace_bytes: 5, ..Limits::default() });
+        assert_eq!(cancelled.start(&job).unwrap().wait().unwrap().ended, Ended::Cancelled);
+    }
+
+    /// A reader that wants no more than the limit never meets it, whatever lies behind.
+    #[test]
+    fn the_limit_is_met_only_by_who_reads_on() {
+        let backend = Backend::fake(|_| FakeRun::wrote(*b"frames and more"));
+        let limits = Limits { trace_bytes: 6, ..Limits::default() };
+        let mut running = backend.start(&Job::new("program", "folder").trace_pipe("t").limits(limits)).unwrap();
+        let mut trace = running.trace().unwrap();
+        let mut buffer = [0; 64];
+        assert_eq!(trace.read(&mut buffer).unwrap(), 6);
+        drop(trace);
+        assert_eq!(running.wait().unwrap().ended, Ended::Exited(0));
+    }
 }

@@ -38,8 +38,8 @@ pub struct Running {
 enum State {
     /// Under a supervisor.
     Supervised(Box<Supervised>),
-    /// Known already.
-    Known(Box<Outcome>),
+    /// Known already, with the limit of its trace.
+    Known(Box<Outcome>, u64),
     /// Handed out.
     Taken,
 }
@@ -50,6 +50,7 @@ struct Supervised {
     session: Option<i32>,
     user: Option<u32>,
     order: Order,
+    trace_limit: u64,
     layers: Arc<[LayerReport]>,
 }
 
@@ -72,7 +73,7 @@ impl Running {
             traced: traced.clone(),
             control: control.clone(),
         });
-        let supervised = Supervised { child, session, user, order, layers };
+        let supervised = Supervised { child, session, user, order, trace_limit: trace_bytes, layers };
         Self { state: State::Supervised(Box::new(supervised)), trace, traced, canceller: Canceller { control } }
     }
 
@@ -86,7 +87,7 @@ impl Running {
             traced: traced.clone(),
             control: control.clone(),
         });
-        Self { state: State::Known(Box::new(outcome)), trace, traced, canceller: Canceller { control } }
+        Self { state: State::Known(Box::new(outcome), trace_bytes), trace, traced, canceller: Canceller { control } }
     }
 
     /// The bytes that the program writes into its trace pipe; `None` without one, and from the second call on.
@@ -116,7 +117,10 @@ impl Running {
         }
         match std::mem::replace(&mut self.state, State::Taken) {
             State::Supervised(supervised) => self.conclude(*supervised),
-            State::Known(outcome) => Ok(*outcome),
+            State::Known(outcome, limit) => {
+                let traced = self.traced.load(Ordering::Relaxed);
+                Ok(Outcome { ended: decide::beyond_trace(outcome.ended, traced > limit), ..*outcome })
+            }
             State::Taken => unreachable!("`wait` takes the run by value"),
         }
     }
@@ -149,8 +153,9 @@ impl Running {
             return Err(SandboxError::NotExecuted { program, source: io::Error::from_raw_os_error(errno) });
         }
         let traced = self.traced.load(Ordering::Relaxed);
+        let ended = decide::ended(&supervised.order, &report, &stderr);
         Ok(Outcome {
-            ended: decide::ended(&supervised.order, &report, &stderr),
+            ended: decide::beyond_trace(ended, traced > supervised.trace_limit),
             cpu: Duration::from_micros(report.cpu_micros),
             wall: Duration::from_micros(report.wall_micros),
             peak_memory: report.peak_memory,
@@ -228,26 +233,32 @@ enum Source {
 
 impl Read for TraceReader {
     /// Reads on. An error that holds [`TraceTooLong`] comes instead of the first byte beyond the limit, for good, and
-    /// the program is stopped.
+    /// the program is stopped. Nobody who can do with the bytes within the limit gets to see it, however the bytes were
+    /// shared out among reads.
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let before = self.traced.load(Ordering::Relaxed);
-        if before > self.limit {
-            return Err(io::Error::other(TraceTooLong { limit: self.limit }));
-        }
-        let length = match &mut self.source {
-            Source::Pipe(file) => file.read(buffer)?,
-            Source::Bytes(bytes) => bytes.read(buffer)?,
-        };
-        let after = before + length as u64;
-        self.traced.store(after, Ordering::Relaxed);
-        if after <= self.limit {
+        let room = usize::try_from(self.limit.saturating_sub(before)).unwrap_or(usize::MAX).min(buffer.len());
+        if room > 0 || buffer.is_empty() {
+            let length = self.source.read(&mut buffer[..room])?;
+            self.traced.store(before + length as u64, Ordering::Relaxed);
             return Ok(length);
         }
-        command(&self.control, COMMAND_TRACE_LIMIT);
-        match usize::try_from(self.limit - before) {
-            // What still belongs to the trace is delivered; the next read says why there is no more.
-            Ok(rest) if rest > 0 => Ok(rest),
-            _ => Err(io::Error::other(TraceTooLong { limit: self.limit })),
+        if before == self.limit {
+            if self.source.read(&mut [0])? == 0 {
+                return Ok(0);
+            }
+            self.traced.store(before + 1, Ordering::Relaxed);
+            command(&self.control, COMMAND_TRACE_LIMIT);
+        }
+        Err(io::Error::other(TraceTooLong { limit: self.limit }))
+    }
+}
+
+impl Read for Source {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::Pipe(file) => file.read(buffer),
+            Self::Bytes(bytes) => bytes.read(buffer),
         }
     }
 }

@@ -5,7 +5,7 @@ use fosssim_model::{
     sim::{RootSearch, Simulation},
     trace::{Layout, Recorder},
 };
-use fosssim_sandbox::{Ended, FakeRun, Job};
+use fosssim_sandbox::{Ended, FakeRun, Job, Stream};
 use std::{
     path::Path,
     sync::{Arc, Mutex},
@@ -14,6 +14,9 @@ use std::{
 const SUITE: &str = "schema = 1\nname = \"test\"\nhints = \"full\"\n[[group]]\nname = \"first\"\npoints = 10\n\
                      scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
                      scenes = [\"asset:PenaltyTests/*\"]\n";
+
+/// A limit for traces that the right ones of the small plan keep, in bytes.
+const SMALL_TRACE: usize = 1 << 20;
 
 fn small_plan() -> Plan {
     plan::load(SUITE, Path::new("nowhere")).expect("a sound suite")
@@ -53,6 +56,20 @@ fn act(job: &Job) -> FakeRun {
         Some("slow") => FakeRun { ended: Ended::WallLimit, ..FakeRun::wrote([]) },
         Some("lengthy") => FakeRun { cpu: Duration::from_secs(10), ..FakeRun::wrote(right_trace(job)) },
         Some("fault-while-judging" | "fault-while-explaining") => FakeRun::wrote(right_trace(job)),
+        Some(name) if name.starts_with("right-then-") => {
+            let more = if name.contains("flood") { 2 * SMALL_TRACE } else { usize::from(name.contains("byte")) };
+            let ended = match name.rsplit('-').next() {
+                Some("exits") => Ended::Exited(0),
+                Some("fails") => Ended::Exited(1),
+                Some("crashes") => Ended::Signalled(11),
+                Some("unread") => Ended::Signalled(13),
+                Some("stopped") => Ended::OutputLimit(Stream::Trace),
+                Some("sleeps") => Ended::WallLimit,
+                other => panic!("no end {other:?}"),
+            };
+            FakeRun { ended, ..FakeRun::wrote([&right_trace(job)[..], &vec![b'x'; more]].concat()) }
+        }
+        Some("flood-of-nonsense") => FakeRun::wrote(vec![0xff; 2 * SMALL_TRACE]),
         Some("hostile") => FakeRun::ended(Ended::Violation { call: "ptrace".to_owned() }),
         name => panic!("no part for {name:?}"),
     }
@@ -332,4 +349,49 @@ fn a_wrong_first_record_costs_by_the_fair_rules_what_follows_from_it() {
     let scene = grade.scenes().next().expect("a scene");
     assert_eq!((grade.verdict, scene.right_steps), (Verdict::WrongAnswer, scene.steps - 1));
     assert!(scene.details[0].starts_with("first divergence: step 0: particle 0"), "{scene:?}");
+}
+
+#[test]
+fn bytes_behind_the_last_record_have_one_consequence_whoever_ends_first() {
+    let (parity, fair) = (Verdict::Accepted, Verdict::BadTrace);
+    for (name, by_parity, by_fair) in [
+        ("right-then-exits", Verdict::Accepted, Verdict::Accepted),
+        ("right-then-sleeps", Verdict::TimeLimit, Verdict::TimeLimit),
+        ("right-then-crashes", Verdict::RuntimeError, Verdict::RuntimeError),
+        ("right-then-byte-exits", parity, fair),
+        ("right-then-byte-sleeps", Verdict::TimeLimit, Verdict::TimeLimit),
+        ("right-then-byte-crashes", Verdict::RuntimeError, Verdict::RuntimeError),
+        ("right-then-byte-fails", Verdict::RuntimeError, Verdict::RuntimeError),
+        // Beyond the limit nobody waits for the program's end, so it can't count.
+        ("right-then-flood-exits", parity, fair),
+        ("right-then-flood-stopped", parity, fair),
+        ("right-then-flood-unread", parity, fair),
+        ("right-then-flood-fails", parity, fair),
+        ("right-then-flood-sleeps", parity, fair),
+    ] {
+        for (rules, expected) in [(Rules::Both, by_parity), (Rules::Parity, by_parity), (Rules::Fair, by_fair)] {
+            let (stage, mut plan) = (Stage::new(), Plan { rules, ..small_plan() });
+            plan.limits.trace = SMALL_TRACE as u64;
+            let grade = stage.grade_by(&plan, &[name]).remove(0);
+            assert_eq!(
+                (grade.verdict, grade.groups[0].verdict),
+                (expected, expected),
+                "{name} by {rules:?}: {grade:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_trace_beyond_its_limit_before_the_last_record_is_an_output_limit() {
+    let (stage, mut plan) = (Stage::new(), small_plan());
+    plan.limits.trace = 100;
+    for rules in [Rules::Both, Rules::Fair] {
+        plan.rules = rules;
+        let names = ["right", "right-then-flood-exits", "right-then-flood-unread", "flood-of-nonsense"];
+        for grade in stage.grade_by(&plan, &names) {
+            assert_eq!(grade.verdict, Verdict::OutputLimit, "{grade:?}");
+            assert!(grade.scenes().all(|scene| scene.verdict == Verdict::OutputLimit), "{grade:?}");
+        }
+    }
 }
