@@ -114,6 +114,7 @@ pub(super) struct Simulate {
 #[command(after_help = "\
 Example:
   fosssim-oracle check scenes/test00.xml submission.bin
+  fosssim-oracle check scenes/test00.xml submission.bin --step 14
   fosssim-oracle check scenes/test00.xml submission.bin --format json --output report.json
   fosssim-oracle check --self scenes/*.xml")]
 pub(super) struct Check {
@@ -136,6 +137,12 @@ pub(super) struct Check {
     /// Where to write the report, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Show all wrong steps, not only the first one, with expected and actual values.
+    #[arg(long, conflicts_with_all = ["step", "own"])]
+    pub(super) all: bool,
+    /// Show these steps alone, from 1; 0 is the first record. Several are separated by commas.
+    #[arg(long, short, value_name = "N", value_delimiter = ',', conflicts_with = "own")]
+    pub(super) step: Vec<u32>,
     /// Do not look for the mistake that explains a wrong trace.
     #[arg(long)]
     pub(super) no_explain: bool,

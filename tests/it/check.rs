@@ -2,7 +2,10 @@
 use super::workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace, finish, trace_of};
 use fosssim_oracle::{
     judge::{Rules, parity},
-    report::{check::Check, style::Style},
+    report::{
+        check::{Check, WrongSteps},
+        style::Style,
+    },
     scene,
     trace::{Frame, Layout, Reader, Writer},
 };
@@ -150,7 +153,9 @@ fn colours_only_decorate() {
     let scene = scene::read("scene", BOUNCE.as_bytes()).unwrap().scene;
     let trace = changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0));
     let outcome = parity::judge(&scene, &trace[..], &parity::Options::default(), &mut ());
-    let check = Check { scene: "s", trace: "t", outcome: &outcome, explanations: &[], rules: Rules::Both, audit: true };
+    let steps = &WrongSteps::default();
+    let (explanations, rules) = (&[][..], Rules::Both);
+    let check = Check { scene: "s", trace: "t", outcome: &outcome, explanations, rules, steps, audit: true };
     let coloured = check.text(Style::Colour);
     let mut plain = String::new();
     for piece in coloured.split('\x1b') {
@@ -460,4 +465,61 @@ fn another_scenes_trace_is_asked_about_and_not_explained() {
         assert_eq!(json["explanations"][0]["key"], "other-scene");
         assert_eq!(json["explanations"].as_array().map(Vec::len), Some(1));
     }
+}
+
+/// The moving ball's states in every step are wrong, and the second has a wrong velocity, too.
+fn wrong_drift() -> Vec<u8> {
+    changed(DRIFT, |frames| {
+        frames[1].state.positions[0] += 1e-3;
+        frames[3].state.positions[0] += 1e-3;
+        frames[3].state.velocities[1] = -0.5;
+    })
+}
+
+#[test]
+fn all_wrong_steps_are_shown_on_demand() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", DRIFT);
+    workspace.write("trace.bin", wrong_drift());
+    let short = workspace.run(["check", "scene.xml", "trace.bin"]).out();
+    let run = workspace.run(["check", "scene.xml", "trace.bin", "--all"]);
+    assert_eq!(run.code, Some(1));
+    assert!(!short.contains("Step 3 of 4"), "{short}");
+    insta::assert_snapshot!("all_steps", run.shown());
+    let (_, json) = reports(DRIFT, &wrong_drift());
+    assert_eq!(json["wrong_step_numbers"].as_array().map(Vec::len), json["wrong_steps"].as_u64().map(|n| n as usize));
+    assert!(json["shown_steps"].is_null(), "{json:#}");
+    let json = checked_json(&workspace, &["--all"]);
+    let shown: Vec<_> = json["shown_steps"].as_array().unwrap().iter().map(|step| &step["step"]).collect();
+    assert_eq!(shown, json["wrong_step_numbers"].as_array().unwrap().iter().collect::<Vec<_>>());
+}
+
+#[test]
+fn single_steps_are_shown_alone() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", DRIFT);
+    workspace.write("trace.bin", wrong_drift());
+    let run = workspace.run(["check", "scene.xml", "trace.bin", "--step", "3,0"]);
+    assert_eq!(run.code, Some(1));
+    insta::assert_snapshot!("two_steps", run.shown());
+    let json = checked_json(&workspace, &["--step", "3"]);
+    let [step] = &json["shown_steps"].as_array().unwrap()[..] else { panic!("{json:#}") };
+    assert_eq!((&step["step"], step["findings"][0]["kind"].as_str()), (&3.into(), Some("position")), "{json:#}");
+    let run = workspace.run(["check", "scene.xml", "trace.bin", "--step", "5"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err().contains("has 4 steps; there is no step 5"), "{}", run.err());
+    // What could not be judged is not called right.
+    workspace.write("cut.bin", &wrong_drift()[..150]);
+    let run = workspace.run(["check", "scene.xml", "cut.bin", "--step", "4"]);
+    assert!(run.out().contains("Step 4 of 4: not judged"), "{}", run.shown());
+}
+
+fn checked_json(workspace: &Workspace, options: &[&str]) -> Value {
+    let run = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json"].iter().chain(options));
+    let value: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let schema: Value = serde_json::from_str(include_str!("../../schemas/check.schema.json")).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<_> = validator.iter_errors(&value).map(|error| error.to_string()).collect();
+    assert!(errors.is_empty(), "{errors:#?}\n{value:#}");
+    value
 }

@@ -1,5 +1,9 @@
 //! The original's rule book: lock-step comparison (oracle-behaviour.md 4 to 6).
-use super::{finding::Kind, outcome::Outcome, rules::Book};
+use super::{
+    finding::{Finding, Kind},
+    outcome::{Counts, Outcome},
+    rules::Book,
+};
 use fosssim_model::{
     scene::Scene,
     sim::{Impulse, RootSearch},
@@ -41,6 +45,29 @@ pub trait Progress {
     fn step_begins(&mut self, _step: u32) {}
     /// A step has been judged.
     fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {}
+    /// The same step holds something wrong; not called for what is left of damaged records.
+    fn step_wrong(&mut self, _wrong: &WrongStep<'_>) {}
+}
+
+/// A step in which a book has found something.
+#[derive(Debug, Clone, Copy)]
+pub struct WrongStep<'a> {
+    /// The step, from 1.
+    pub step: u32,
+    /// What the original's rules have found.
+    pub parity: StepFindings<'a>,
+    /// What the fair rules have found; empty when they were not asked. What only the whole trace tells, such as mixed forms, is
+    /// not among it.
+    pub fair: StepFindings<'a>,
+}
+
+/// What one book has found in one step.
+#[derive(Debug, Clone, Copy)]
+pub struct StepFindings<'a> {
+    /// The first finding of each kind, in the order in which they were made.
+    pub firsts: &'a [Finding],
+    /// How many there are of each kind besides.
+    pub more: Counts,
 }
 
 impl Progress for () {}

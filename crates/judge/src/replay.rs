@@ -6,7 +6,7 @@
 use super::{
     fair::{self, Context, Records, StepJudgement},
     outcome::{Damage, Outcome, Stop, Unreadable},
-    parity::{Options, Progress},
+    parity::{Options, Progress, StepFindings, WrongStep},
     rules::Book,
     tally::{self, Buffers, StepResult, Tally},
 };
@@ -327,6 +327,12 @@ impl<'a, R: Read> Replay<'a, R> {
             progress.step_judged(slot.step, &slot.result.remarks);
             if slot.result.counts.total() > 0 && !self.damaged {
                 outcome.wrong_steps += 1;
+            }
+            let is_right = slot.result.firsts.is_empty() && slot.fair.findings.is_empty();
+            if !is_right && !self.damaged {
+                let parity = StepFindings { firsts: &slot.result.firsts, more: slot.result.more() };
+                let fair = StepFindings { firsts: &slot.fair.findings, more: slot.fair.more };
+                progress.step_wrong(&WrongStep { step: slot.step, parity, fair });
             }
             slot.mid.shrink();
             slot.end.shrink();

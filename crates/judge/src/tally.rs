@@ -49,6 +49,15 @@ impl StepResult {
         self.identical = false;
     }
 
+    /// How many findings of each kind there are besides the first.
+    pub(super) fn more(&self) -> Counts {
+        let mut more = Counts::default();
+        for kind in self.firsts.iter().map(Finding::kind) {
+            more.add(kind, self.counts.get(kind).saturating_sub(1));
+        }
+        more
+    }
+
     fn record(&mut self, finding: Finding) {
         let kind = finding.kind();
         if self.counts.get(kind) == 0 {

@@ -7,8 +7,16 @@ use crate::{
         output::Output,
     },
     diagnose,
-    judge::{Outcome, Overall, Rules, Stop, Unreadable, fair, parity},
-    report::{self, style::Style},
+    judge::{
+        Outcome, Overall, Rules, Stop, Unreadable, fair,
+        parity::{self, Progress, Remark, WrongStep},
+    },
+    report::{
+        self,
+        check::{Shown, WrongSteps},
+        number::counted,
+        style::Style,
+    },
     sim::{RootSearch, StepError},
 };
 use anyhow::{Result, bail};
@@ -41,12 +49,25 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         fair: rules.ask_fair(),
         ..parity::Options::default()
     };
-    let mut bar = console::Bar::new(scene.scene.steps());
+    let steps = scene.scene.steps();
+    if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
+        bail!("the scene {} has {}; there is no step {step}", scene.name, counted(steps.into(), "step"));
+    }
+    let shown = if arguments.all {
+        Shown::All
+    } else if arguments.step.is_empty() {
+        Shown::None
+    } else {
+        Shown::These(arguments.step.clone())
+    };
+    let mut heard = Heard { bar: console::Bar::new(steps), wrong: WrongSteps::new(shown) };
     let lasting = is_lasting(name);
-    let most = if lasting || arguments.no_explain { 0 } else { KEPT };
+    let explain = !arguments.no_explain && arguments.step.is_empty();
+    let most = if lasting || !explain { 0 } else { KEPT };
     let mut reader = Kept { inner: &mut trace.reader, bytes: Vec::new(), most };
-    let outcome = parity::judge(&scene.scene, &mut reader, &options, &mut bar);
+    let outcome = parity::judge(&scene.scene, &mut reader, &options, &mut heard);
     let kept = reader.bytes;
+    let Heard { bar, wrong } = heard;
     drop(bar);
     match &outcome.stop {
         Some(Stop::Step(StepError::VortexHessian { .. })) => bail!(
@@ -66,7 +87,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
             }
         }
     }
-    let explanations = if !arguments.no_explain && is_wrong(&outcome) {
+    let explanations = if explain && is_wrong(&outcome) {
         let bytes = if lasting { again(name) } else { kept };
         diagnose::explain(&scene.scene, &bytes)
     } else {
@@ -74,7 +95,15 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     };
     let (scene, trace) = (scene.name.as_str(), trace.name.as_str());
     let audit = arguments.audit;
-    let check = report::check::Check { scene, trace, outcome: &outcome, explanations: &explanations, rules, audit };
+    let check = report::check::Check {
+        scene,
+        trace,
+        outcome: &outcome,
+        explanations: &explanations,
+        rules,
+        steps: &wrong,
+        audit,
+    };
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let text = match arguments.format {
         Format::Text => check.text(style),
@@ -89,6 +118,22 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         bail!("{disagreements} disagreements between certificates and the root finder; please report this");
     }
     Ok(if check.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}
+
+/// Shows how far judging is, and gathers the wrong steps.
+struct Heard {
+    bar: console::Bar,
+    wrong: WrongSteps,
+}
+
+impl Progress for Heard {
+    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
+        self.bar.step_judged(step, remarks);
+    }
+
+    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
+        self.wrong.step_wrong(wrong);
+    }
 }
 
 /// Whether there is something to explain: the fair rules know better what is a mistake.

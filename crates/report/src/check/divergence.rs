@@ -14,9 +14,12 @@ pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
         0 => "First divergence: the first record".to_owned(),
         step => format!("First divergence: step {step} of {steps}, frame {}{record}", finding.frame),
     };
-    let mut text = format!("{}\n  {}\n", style.paint(Look::Strong, &heading), finding.what());
-    text += &side_by_side(&finding.detail, style);
-    text
+    format!("{}\n{}", style.paint(Look::Strong, &heading), block(finding, style))
+}
+
+/// One finding in words, and its values side by side.
+pub(super) fn block(finding: &Finding, style: Style) -> String {
+    format!("  {}\n{}", finding.what(), side_by_side(&finding.detail, style))
 }
 
 fn side_by_side(detail: &Detail, style: Style) -> String {

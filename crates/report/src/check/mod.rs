@@ -6,8 +6,10 @@
 mod divergence;
 mod fair;
 mod fair_view;
+mod steps;
 mod text;
 
+pub use steps::{LISTED, Shown, WrongSteps};
 pub use text::stopped;
 
 use super::{
@@ -21,6 +23,7 @@ use fosssim_judge::{Book, Kind, Outcome, Overall, Rules, Ruling, Stop, Unreadabl
 use fosssim_mistakes::diagnose::Explanation;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use steps::StepView;
 
 /// A judged trace with the names under which people know it.
 #[derive(Debug, Clone, Copy)]
@@ -35,6 +38,8 @@ pub struct Check<'a> {
     pub explanations: &'a [Explanation],
     /// Which rule books were asked.
     pub rules: Rules,
+    /// The wrong steps, and which of them are shown one by one.
+    pub steps: &'a WrongSteps,
     /// Whether certificates were audited, so that the counts of root searches are worth showing.
     pub audit: bool,
 }
@@ -110,6 +115,8 @@ impl Check<'_> {
             steps: outcome.steps,
             steps_judged: outcome.steps_judged,
             wrong_steps: account.wrong_steps,
+            wrong_step_numbers: steps::numbers(self),
+            shown_steps: steps::views(self),
             problem: outcome.stop.as_ref().map(Problem::from),
             damage: outcome.damage.as_ref().map(|damage| Place {
                 step: damage.step,
@@ -167,6 +174,8 @@ struct View<'a> {
     steps: u32,
     steps_judged: u32,
     wrong_steps: u64,
+    wrong_step_numbers: Vec<u32>,
+    shown_steps: Option<Vec<StepView>>,
     problem: Option<Problem>,
     damage: Option<Place>,
     trailing_bytes: bool,

@@ -7,7 +7,7 @@ use super::{
         style::{Look, Style},
         table::{Align, Cell, Table},
     },
-    Check, divergence, fair,
+    Check, divergence, fair, steps,
 };
 use fosssim_judge::{Account, Book, Detail, Finding, Outcome, Overall, Ruling, Stop, Unreadable, share};
 use fosssim_mistakes::diagnose::Explanation;
@@ -15,6 +15,11 @@ use fosssim_mistakes::diagnose::Explanation;
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let outcome = check.outcome;
     let mut parts = vec![head(check, style)];
+    if steps::only_these(check) {
+        parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
+        parts.extend(steps::render(check, style));
+        return parts.join("\n");
+    }
     let is_other_scene = check.explanations.iter().any(Explanation::is_other_scene);
     parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
     parts.push(residuals(outcome, style));
@@ -33,6 +38,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     }
     if !is_other_scene {
         parts.extend(explanations(check, style));
+        parts.extend(steps::render(check, style));
     }
     parts.extend(notes(check, style));
     parts.join("\n")

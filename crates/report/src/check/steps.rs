@@ -1,0 +1,230 @@
+//! The wrong steps of a trace, one by one: gathered while it is judged, and shown with expected and actual values.
+use super::super::{
+    number::{count, counted},
+    style::{Look, Style},
+    view::FindingView,
+};
+use super::{Check, divergence, fair_view::CountedView};
+use fosssim_judge::{
+    Account, Book, Counts, Finding,
+    parity::{Progress, StepFindings, WrongStep},
+};
+use serde::Serialize;
+
+/// So many wrong steps are kept by number, and so many with what is wrong in them.
+pub const LISTED: usize = 1000;
+
+/// Which steps a report shows one by one.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Shown {
+    /// None; only the numbers of the wrong ones are kept.
+    #[default]
+    None,
+    /// All wrong steps, the first [`LISTED`].
+    All,
+    /// These steps, wrong or right; 0 is the first record.
+    These(Vec<u32>),
+}
+
+/// What is wrong in one step, by one book.
+#[derive(Debug, Clone)]
+struct Step {
+    number: u32,
+    /// The first finding of each kind.
+    firsts: Vec<Finding>,
+    /// How many there are besides.
+    more: Counts,
+}
+
+/// The wrong steps by one book, the first [`LISTED`], in their order.
+#[derive(Debug, Clone, Default)]
+struct Steps {
+    numbers: Vec<u32>,
+    kept: Vec<Step>,
+}
+
+/// Hears which steps are wrong while a trace is judged.
+#[derive(Debug, Clone, Default)]
+pub struct WrongSteps {
+    shown: Shown,
+    parity: Steps,
+    fair: Steps,
+}
+
+impl WrongSteps {
+    /// Keeps what a report about these steps needs.
+    #[must_use]
+    pub fn new(shown: Shown) -> Self {
+        Self { shown, ..Self::default() }
+    }
+
+    /// What a book has found; what it could tell only from the whole trace is among it.
+    fn by(&self, book: Book, account: Account<'_>) -> Steps {
+        let mut steps = match book {
+            Book::Parity => self.parity.clone(),
+            Book::Fair => self.fair.clone(),
+        };
+        for finding in account.examples.iter().chain(account.first_divergence) {
+            let findings = StepFindings { firsts: std::slice::from_ref(finding), more: Counts::default() };
+            steps.add(finding.step, findings, &self.shown);
+        }
+        steps
+    }
+}
+
+impl Progress for WrongSteps {
+    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
+        self.parity.add(wrong.step, wrong.parity, &self.shown);
+        self.fair.add(wrong.step, wrong.fair, &self.shown);
+    }
+}
+
+impl Steps {
+    /// Adds findings of a step that may be here already.
+    fn add(&mut self, step: u32, findings: StepFindings<'_>, shown: &Shown) {
+        if findings.firsts.is_empty() {
+            return;
+        }
+        // The first record is no step.
+        if let (Err(place), true, true) = (self.numbers.binary_search(&step), step > 0, self.numbers.len() < LISTED) {
+            self.numbers.insert(place, step);
+        }
+        let wanted = match shown {
+            Shown::None => false,
+            Shown::All => true,
+            Shown::These(steps) => steps.contains(&step),
+        };
+        if !wanted {
+            return;
+        }
+        let place = match self.kept.binary_search_by_key(&step, |kept| kept.number) {
+            Ok(place) => place,
+            Err(_) if self.kept.len() >= LISTED => return,
+            Err(place) => {
+                self.kept.insert(place, Step { number: step, firsts: Vec::new(), more: Counts::default() });
+                place
+            }
+        };
+        let kept = &mut self.kept[place];
+        for first in findings.firsts {
+            if !kept.firsts.iter().any(|known| known.kind() == first.kind()) {
+                kept.firsts.push(*first);
+            }
+        }
+        kept.more += findings.more;
+    }
+}
+
+/// What the official book has found, or the other one, where the official has nothing.
+fn steps_of(check: &Check<'_>) -> (Book, Steps) {
+    let of = |book| (book, check.steps.by(book, check.outcome.account(book)));
+    let official = of(check.book());
+    if official.1.numbers.is_empty() && official.1.kept.is_empty() && check.rules.ask_fair() {
+        return of(Book::Fair);
+    }
+    official
+}
+
+/// The numbers of the official book's wrong steps, the first [`LISTED`].
+pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
+    check.steps.by(check.book(), check.outcome.account(check.book())).numbers
+}
+
+/// Whether only certain steps are asked for, so that the rest of the report is left out.
+pub(super) fn only_these(check: &Check<'_>) -> bool {
+    matches!(check.steps.shown, Shown::These(_))
+}
+
+/// The section about single steps; nothing when none was asked for, or none is wrong.
+pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
+    let (book, steps) = steps_of(check);
+    let blocks: Vec<String> = match &check.steps.shown {
+        Shown::None => return None,
+        Shown::All => steps.kept.iter().map(|step| block(check, step, style)).collect(),
+        Shown::These(asked) => asked
+            .iter()
+            .map(|&number| match steps.kept.iter().find(|step| step.number == number) {
+                Some(step) => block(check, step, style),
+                None => format!("{}\n", style.paint(Look::Strong, &nothing_wrong(check, number))),
+            })
+            .collect(),
+    };
+    let mut text = blocks.join("\n");
+    let wrong = check.outcome.account(book).wrong_steps;
+    let shown = steps.kept.iter().filter(|step| step.number > 0).count() as u64;
+    if check.steps.shown == Shown::All && shown < wrong {
+        text += &format!("\n{} more are wrong; --step N shows any of them\n", counted(wrong - shown, "step"));
+    }
+    (!text.is_empty()).then_some(text)
+}
+
+fn nothing_wrong(check: &Check<'_>, step: u32) -> String {
+    let outcome = check.outcome;
+    let sound = outcome.steps_judged - outcome.damaged_steps;
+    match step {
+        0 if check.rules.ask_fair() => "First record: nothing is wrong".to_owned(),
+        0 => "First record: only the fair rules look at it".to_owned(),
+        _ if step <= sound => format!("Step {step} of {}: nothing is wrong", outcome.steps),
+        _ if step <= outcome.steps_judged => {
+            format!("Step {step} of {}: not looked at, because the trace is damaged there or before", outcome.steps)
+        }
+        _ => format!("Step {step} of {}: not judged, because the trace can't be followed so far", outcome.steps),
+    }
+}
+
+fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
+    let findings = step.firsts.len() as u64 + step.more.total();
+    let frame = step.firsts.first().map_or(0, |first| first.frame);
+    let heading = match step.number {
+        0 => format!("First record: {}", counted(findings, "finding")),
+        number => format!("Step {number} of {}, frame {frame}: {}", check.outcome.steps, counted(findings, "finding")),
+    };
+    let mut text = style.paint(Look::Strong, &heading) + "\n";
+    for finding in &step.firsts {
+        text += &divergence::block(finding, style);
+        match step.more.get(finding.kind()) {
+            0 => {}
+            more => text += &format!("  and {} more of this kind ({})\n", count(more), finding.kind()),
+        }
+    }
+    text
+}
+
+/// What is wrong in one step, for programs.
+#[derive(Debug, Serialize)]
+pub(super) struct StepView {
+    step: u32,
+    findings: Vec<CountedView>,
+}
+
+/// The steps that were asked for; nothing when none was.
+pub(super) fn views(check: &Check<'_>) -> Option<Vec<StepView>> {
+    let (book, steps) = steps_of(check);
+    let view = |step: &Step| StepView {
+        step: step.number,
+        findings: step
+            .firsts
+            .iter()
+            .map(|first| CountedView {
+                count: 1 + step.more.get(first.kind()),
+                first: match book {
+                    Book::Parity => FindingView::from(first),
+                    Book::Fair => FindingView::fair(first),
+                },
+            })
+            .collect(),
+    };
+    match &check.steps.shown {
+        Shown::None => None,
+        Shown::All => Some(steps.kept.iter().map(view).collect()),
+        Shown::These(asked) => Some(
+            asked
+                .iter()
+                .map(|&number| {
+                    let found = steps.kept.iter().find(|step| step.number == number);
+                    found.map_or(StepView { step: number, findings: Vec::new() }, view)
+                })
+                .collect(),
+        ),
+    }
+}
