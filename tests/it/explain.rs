@@ -132,9 +132,41 @@ fn a_dropped_term_is_named_with_an_example() {
     let (_, told) = text.split_once("likely mistake: ").expect("a likely mistake");
     assert!(told.starts_with("Particle-edge: A product is missing"), "{text}");
     let told = told.lines().next().unwrap_or_default();
-    let sentence = told.split(" (reproduces").next().unwrap_or_default();
+    let sentence = told.split(" (in ").next().unwrap_or_default();
     assert_eq!(formula_in(sentence), None, "no formula: {text}");
     assert!(!text.contains("expected") && !text.contains("t^2"), "no value: {text}");
+}
+
+/// One wrong coefficient, one name and one expected number for it, whichever book speaks.
+#[test]
+fn the_headline_names_the_coefficient_that_differs() {
+    let workspace = Workspace::new();
+    write_trace(&workspace, "pe-linear-one-ab");
+    for rules in ["parity", "fair"] {
+        let run = workspace.run(["check", SPINNING, "submission.bin", "--rules", rules, "--format", "json"]);
+        let report: Value = serde_json::from_str(&run.out()).unwrap();
+        let first = &report["first_divergence"];
+        assert_eq!(first["coefficient"], 1, "{rules}: {first}");
+        let text = workspace.run(["check", SPINNING, "submission.bin", "--rules", rules]).out();
+        let (_, block) = text.split_once("First divergence").expect("a first divergence");
+        let headline = block.lines().nth(1).expect("a headline");
+        let (_, expected) = headline.split_once("expected ").expect("one number");
+        assert!(headline.contains("coefficient of t: "), "{headline}");
+        let row = block.lines().find(|line| line.contains("<- differs")).expect("a marked row");
+        assert!(row.trim().starts_with("t ") && row.contains(expected), "{row}, expected {expected}");
+    }
+}
+
+#[test]
+fn the_example_of_a_wrong_normal_shows_both() {
+    let (_, scene) =
+        assets().into_iter().find(|(name, _)| name.ends_with("head-on-equal-masses")).expect("a built-in scene");
+    let trace = simulated(&scene, student::find("pp-contact-reversed")).unwrap();
+    let explanations = explain(&scene, &trace);
+    let example = explanations[0].example.as_ref().expect("an example");
+    assert!(example.place.starts_with("contact of particle 0 and particle 1"), "{example:?}");
+    assert!(example.expected.len() == 3 && example.expected[0] == -example.actual[0], "{example:?}");
+    assert_eq!(example.expected[2].to_bits(), example.actual[2].to_bits());
 }
 
 #[test]

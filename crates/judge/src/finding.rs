@@ -211,14 +211,16 @@ pub enum Detail {
     Coefficient {
         /// Which polynomial.
         place: PolynomialPlace,
-        /// The power of t whose coefficient differs.
+        /// The highest power of t whose coefficient differs once the factor on which most agree is taken out.
         power: usize,
-        /// The reference's coefficient, rescaled to the trace's magnitude.
+        /// The reference's coefficient times that factor.
         expected: f64,
         /// The trace's coefficient.
         actual: f64,
         /// Their distance.
         residual: f64,
+        /// What the original compares; `None` from the fair rules.
+        rescaled: Option<Rescaled>,
         /// The reference's whole polynomial, not rescaled.
         expected_polynomial: Polynomial,
         /// The trace's whole polynomial.
@@ -285,6 +287,19 @@ pub enum Detail {
         /// The first such polynomial.
         place: PolynomialPlace,
     },
+}
+
+/// A coefficient as the original compares it: rescaled by sums of moduli, so that one wrong coefficient moves all others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rescaled {
+    /// The highest power of t whose coefficient is beyond the original's bound.
+    pub power: usize,
+    /// The reference's coefficient, rescaled to the trace's magnitude.
+    pub expected: f64,
+    /// The trace's coefficient.
+    pub actual: f64,
+    /// Their distance.
+    pub residual: f64,
 }
 
 /// A part of a step's collision handling.

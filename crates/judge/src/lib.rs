@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod differing;
 pub mod fair;
 mod finding;
 mod outcome;
@@ -19,7 +20,8 @@ pub mod study;
 mod tally;
 mod words;
 
-pub use finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Role};
+pub use differing::{differing, factor};
+pub use finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Role};
 pub use outcome::{Counts, Damage, Outcome, Overall, Residuals, Stop, Unreadable};
 pub use rules::{Account, Book, Rules, Ruling};
 pub use words::{PairWords, PassWords, Power, passes};

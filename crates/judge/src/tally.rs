@@ -4,7 +4,8 @@
 //! as it is known, so nothing of the reference's log is stored. Only at the end of the step is it known whether the
 //! two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
 use super::{
-    finding::{Detail, Finding, Kind, PolynomialPlace, Role},
+    differing::{differing, factor},
+    finding::{Detail, Finding, Kind, PolynomialPlace, Rescaled, Role},
     outcome::{Counts, Residuals},
     parity::Remark,
 };
@@ -284,18 +285,32 @@ impl<'a> Tally<'a> {
             // Parity's exception: NaN passes, because the original asks whether the distance is larger.
             if residual > PARITY_COEFFICIENT {
                 self.buffers.pending.record(Kind::Coefficient, || {
-                    finding(Detail::Coefficient {
-                        place,
-                        power: own.len() - 1 - number,
-                        expected: rescaled,
-                        actual: coefficient,
-                        residual,
-                        expected_polynomial: *expected,
-                        actual_polynomial: shown,
-                    })
+                    let power = own.len() - 1 - number;
+                    let rescaled = Rescaled { power, expected: rescaled, actual: coefficient, residual };
+                    finding(wrong_coefficient(place, rescaled, expected, &shown))
                 });
             }
         }
+    }
+}
+
+/// A wrong coefficient, under the name that a person would give it.
+fn wrong_coefficient(place: PolynomialPlace, rescaled: Rescaled, expected: &Polynomial, actual: &Polynomial) -> Detail {
+    let (own, logged) = (expected.coefficients(), actual.coefficients());
+    let factor = factor(own, logged);
+    // What the original's bound alone rejects is named as the original does.
+    let power = differing(own, logged, factor).first().copied().unwrap_or(rescaled.power);
+    let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
+    let (right, wrong) = (factor * of(own), of(logged));
+    Detail::Coefficient {
+        place,
+        power,
+        expected: right,
+        actual: wrong,
+        residual: (wrong - right).abs(),
+        rescaled: Some(rescaled),
+        expected_polynomial: *expected,
+        actual_polynomial: *actual,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Findings in words: one sentence that says where, what was expected and what was there.
 //!
-//! Numbers are written so that reading them back gives the same value. Reports that lay values out side by side use
-//! the fields of [`Detail`] instead.
+//! Vectors have as many digits as tell them apart; other numbers are written so that reading them back gives the same
+//! value. Reports that lay values out side by side use the fields of [`Detail`] instead.
 use super::finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Role};
 use fosssim_model::{
     sim::{Pair, PairKind, Pass, Stage},
@@ -30,13 +30,12 @@ impl Display for What<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Finding { step, detail, .. } = self.0;
         match *detail {
-            Detail::Position { particle, expected: [ex, ey], actual: [ax, ay], residual } if *step == 0 => {
-                write!(f, "particle {particle} starts at ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}")
+            Detail::Position { particle, expected, actual, .. } if *step == 0 => {
+                write!(f, "particle {particle} starts at {}", Apart { expected, actual })
             }
-            Detail::Velocity { particle, expected: [ex, ey], actual: [ax, ay], residual } if *step == 0 => write!(
-                f,
-                "particle {particle} starts with velocity ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}"
-            ),
+            Detail::Velocity { particle, expected, actual, .. } if *step == 0 => {
+                write!(f, "particle {particle} starts with velocity {}", Apart { expected, actual })
+            }
             Detail::RecordsDiffer { part: RecordPart::Impulses } if *step == 0 => {
                 f.write_str("the first record holds impulses, before anything has moved")
             }
@@ -69,15 +68,12 @@ impl Display for Detail {
                     actual.time
                 )
             }
-            Self::WrongNormal { expected, actual, residual } => write!(
-                f,
-                "{}: contact normal ({}, {}), expected ({}, {}), distance {residual}",
-                PairWords(expected.pair),
-                actual.normal.x,
-                actual.normal.y,
-                expected.normal.x,
-                expected.normal.y,
-            ),
+            Self::WrongNormal { expected, actual, .. } => {
+                let pair = PairWords(expected.pair);
+                let (expected, actual) = (expected.normal, actual.normal);
+                let apart = Apart { expected: [expected.x, expected.y], actual: [actual.x, actual.y] };
+                write!(f, "{pair}: contact normal {apart}")
+            }
             Self::PolynomialCount { expected, actual, per_pass } => {
                 write!(f, "{actual} polynomials logged, expected {expected}")?;
                 match passes(*expected, *actual, *per_pass) {
@@ -106,16 +102,13 @@ impl Display for Detail {
             Self::Coefficient { place, power, expected, actual, .. } => {
                 write!(f, "{place}, {}: {actual}, expected {expected}", Power(*power))
             }
-            Self::Position { particle, expected, actual, residual } => {
-                let ([ax, ay], [ex, ey]) = (actual, expected);
-                write!(f, "particle {particle} ends at ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}")
+            Self::Position { particle, expected, actual, .. } => {
+                let (expected, actual) = (*expected, *actual);
+                write!(f, "particle {particle} ends at {}", Apart { expected, actual })
             }
-            Self::Velocity { particle, expected, actual, residual } => {
-                let ([ax, ay], [ex, ey]) = (actual, expected);
-                write!(
-                    f,
-                    "particle {particle} ends with velocity ({ax}, {ay}), expected ({ex}, {ey}), distance {residual}"
-                )
+            Self::Velocity { particle, expected, actual, .. } => {
+                let (expected, actual) = (*expected, *actual);
+                write!(f, "particle {particle} ends with velocity {}", Apart { expected, actual })
             }
             Self::ContactTime { expected, actual } => write!(
                 f,
@@ -150,6 +143,34 @@ impl Display for Detail {
                 write!(f, "{place}: the other one of the two accepted forms; a program uses one of them throughout")
             }
         }
+    }
+}
+
+/// Two vectors, the wrong one first, with as many digits as tell them apart, and their distance.
+struct Apart {
+    expected: [f64; 2],
+    actual: [f64; 2],
+}
+
+impl Display for Apart {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let ([ex, ey], [ax, ay]) = (self.expected, self.actual);
+        let distance = (ax - ex).hypot(ay - ey);
+        let size = [ex, ey, ax, ay].into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        // Two digits of the distance, and six in all at least.
+        let digits =
+            |number: f64| format!("{number:e}").split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
+        let least = digits(size).map(|power| 5 - power);
+        let places = digits(distance).map(|power| 1 - power).max(least).unwrap_or(0).max(0);
+        let short = |value: f64| match usize::try_from(places) {
+            Ok(places @ 0..=15) if value.abs() < 1e9 => format!("{value:.places$}")
+                .parse::<f64>()
+                .map_or_else(|_| value.to_string(), |rounded| rounded.to_string()),
+            _ => value.to_string(),
+        };
+        write!(f, "({}, {}), expected ({}, {}), distance ", short(ax), short(ay), short(ex), short(ey))?;
+        let rounded = format!("{distance:.2e}").parse().unwrap_or(distance);
+        if (1e-4..1e6).contains(&distance) { write!(f, "{rounded}") } else { write!(f, "{rounded:e}") }
     }
 }
 
@@ -278,6 +299,7 @@ mod tests {
             expected: 3.5,
             actual: 4.0,
             residual: 0.5,
+            rescaled: None,
             expected_polynomial: polynomial,
             actual_polynomial: polynomial,
         };
@@ -297,6 +319,23 @@ mod tests {
         assert_eq!(
             Finding { step: 0, frame: 0, detail }.to_string(),
             "step 0: the first record holds impulses, before anything has moved"
+        );
+    }
+
+    #[test]
+    fn vectors_have_as_many_digits_as_tell_them_apart() {
+        let words = |expected, actual| Apart { expected, actual }.to_string();
+        assert_eq!(
+            words([0.123_456_789_012, -1.0], [0.123_456_789_912, -1.0]),
+            "(0.12345678991, -1), expected (0.12345678901, -1), distance 9e-10"
+        );
+        assert_eq!(
+            words([1.0 / 3.0, 2.0 / 3.0], [0.5, 2.0 / 3.0]),
+            "(0.5, 0.666667), expected (0.333333, 0.666667), distance 0.167"
+        );
+        assert_eq!(
+            words([1e300, 0.0], [f64::NAN, 0.0]),
+            "(NaN, 0), expected (1e300, 0), distance NaN".replace("1e300", &1e300.to_string())
         );
     }
 

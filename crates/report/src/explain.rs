@@ -3,7 +3,10 @@
 //! They show what they are given: how much that is, [`Hints::cut`](fosssim_grading::config::Hints::cut) decides. Words may
 //! come from a submission only as numbers.
 use super::{number::exact, view::Number};
-use fosssim_mistakes::diagnose::{Example, Explanation};
+use fosssim_mistakes::{
+    diagnose::{Example, Explanation},
+    student::find,
+};
 use serde::Serialize;
 
 /// So many other mistakes that can't be told apart are listed.
@@ -29,8 +32,11 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
     let mut lines = vec![match explanation {
         Explanation { what, samples: 0, .. } => what.clone(),
         Explanation { what, reproduced: 0, samples, .. } => format!("{what} ({samples} looked at)"),
+        Explanation { key, what, reproduced, samples, .. } if find(key).is_some() => {
+            format!("likely mistake: {what} (in {reproduced} of {samples} wrong steps tried)")
+        }
         Explanation { what, reproduced, samples, .. } => {
-            format!("likely mistake: {what} (reproduces {reproduced} of {samples})")
+            format!("likely mistake: {what} (fits {reproduced} of {samples} polynomials looked at)")
         }
     }];
     lines.extend(explanation.details.iter().map(|detail| format!("  {detail}")));
@@ -185,7 +191,7 @@ pub(crate) mod tests {
     #[test]
     fn the_likeliest_mistake_comes_first_with_all_that_is_known() {
         insta::assert_snapshot!(lines(&explanations()).join("\n"), @r"
-        likely mistake: The sum of radii is not squared. (reproduces 11 of 12)
+        likely mistake: The sum of radii is not squared. (in 11 of 12 wrong steps tried)
           t^2: R^2 (e1.e1) has weight 0, expected 1
           not told apart from: a, b, c and 2 more
           example: step 3, particle 3 and edge 1, pass 0

@@ -3,7 +3,7 @@
 //! `schemas/check.schema.json` documents the shape of a check. A field's meaning never changes within one schema
 //! version; fields may be added.
 use super::number;
-use fosssim_judge::{Detail, Finding, Kind, PolynomialPlace};
+use fosssim_judge::{Detail, Finding, Kind, PolynomialPlace, Rescaled};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage},
     trace::LoggedImpulse,
@@ -187,10 +187,33 @@ pub struct FindingView {
     pub actual: Option<Value>,
     /// Their distance, where there is one.
     pub residual: Option<Number>,
-    /// The bound of the distance.
+    /// The bound of the distance; for coefficients, of the distance after rescaling.
     pub tolerance: Option<Number>,
+    /// A coefficient as the original compares it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rescaled: Option<RescaledView>,
     /// The same in words.
     pub text: String,
+}
+
+/// A coefficient as the original compares it, after rescaling by sums of moduli.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RescaledView {
+    /// The power of t.
+    pub coefficient: usize,
+    /// The reference's coefficient, rescaled to the trace's magnitude.
+    pub expected: Number,
+    /// The trace's coefficient.
+    pub actual: Number,
+    /// Their distance.
+    pub residual: Number,
+}
+
+impl From<&Rescaled> for RescaledView {
+    fn from(rescaled: &Rescaled) -> Self {
+        let Rescaled { power, expected, actual, residual } = *rescaled;
+        Self { coefficient: power, expected: Number(expected), actual: Number(actual), residual: Number(residual) }
+    }
 }
 
 /// The bound that a kind's distance is held to.
@@ -227,6 +250,7 @@ impl From<&Finding> for FindingView {
             actual: None,
             residual: None,
             tolerance: tolerance(finding.kind()).map(Number),
+            rescaled: None,
             text: finding.what().to_string(),
         };
         view.fill(&finding.detail);
@@ -276,9 +300,11 @@ impl FindingView {
                 expected,
                 actual,
                 residual,
+                rescaled,
                 expected_polynomial,
                 actual_polynomial,
             } => {
+                self.rescaled = rescaled.as_ref().map(RescaledView::from);
                 self.place(place, expected_polynomial.coefficients(), actual_polynomial.coefficients());
                 self.coefficient = Some(*power);
                 self.compare(Value::Number(Number(*expected)), Value::Number(Number(*actual)));

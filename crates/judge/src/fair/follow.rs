@@ -355,6 +355,7 @@ impl<'a> Follower<'a> {
                 expected,
                 actual,
                 residual: (actual - expected).abs(),
+                rescaled: None,
                 expected_polynomial: right,
                 actual_polynomial: shown,
             },

@@ -1,31 +1,50 @@
 //! What the letters of a formula mean, said where the formula stands.
 
-/// The sentence that explains the short names of differences that occur in these lines; `None` where none does.
+/// The sentence that explains the short names of differences, and of the sum of the radii, that occur in these lines;
+/// `None` where none does.
 pub(super) fn of(lines: &[String]) -> Option<String> {
-    let example = lines.iter().find_map(|line| difference(line))?;
-    let ends = if lines.iter().any(|line| line.contains('3')) {
-        "1 is the particle, 2 and 3 are the edge's ends"
-    } else {
-        "1 is the first particle, 2 the second"
-    };
-    let (kind, one, two) = example;
-    let (start, shift) = (format!("x{one}{two}"), format!("d{one}{two}"));
-    let told = if kind == 'x' { start } else { shift };
-    let prefix = if kind == 'x' { "x" } else { "dx" };
-    Some(format!(
-        "Here {told} is {prefix}{one} - {prefix}{two}, and so on; x is a position at the start of the step, dx a displacement; {ends}."
-    ))
+    let example = lines.iter().find_map(|line| difference(line, |_| true));
+    let is_edge = lines.iter().any(|line| difference(line, |number| number == '3').is_some() || line.contains("re^2"));
+    let reach = lines.iter().any(|line| words(line).any(|word| word == "R"));
+    let mut parts = Vec::new();
+    if let Some((kind, one, two)) = example {
+        let (start, shift) = (format!("x{one}{two}"), format!("d{one}{two}"));
+        let told = if kind == 'x' { start } else { shift };
+        let prefix = if kind == 'x' { "x" } else { "dx" };
+        parts.push(format!("{told} is {prefix}{one} - {prefix}{two}, and so on"));
+        parts.push("x is a position at the start of the step, dx a displacement".to_owned());
+    }
+    if reach {
+        parts.push(format!("R is r1 + {}", if is_edge { "re, the particle's and the edge's radius" } else { "r2" }));
+    }
+    if example.is_some() {
+        let ends = if is_edge {
+            "1 is the particle, 2 and 3 are the edge's ends"
+        } else {
+            "1 is the first particle, 2 the second"
+        };
+        parts.push(ends.to_owned());
+    } else if lines.iter().any(|line| line.contains("(p-x)") || line.contains("dx.n")) {
+        parts.push("x is the particle's position at the start of the step, dx its displacement".to_owned());
+        parts.push("p and n are the half-plane's point and normal".to_owned());
+    }
+    (!parts.is_empty()).then(|| format!("Here {}.", parts.join("; ")))
 }
 
-/// The first name such as `x21` or `d32` in a line: its letter and its two numbers.
-fn difference(line: &str) -> Option<(char, char, char)> {
-    let letters: Vec<char> = line.chars().collect();
-    letters.windows(3).enumerate().find_map(|(index, window)| {
-        let [kind, one, two] = window else { return None };
-        let begins = index == 0 || !letters[index - 1].is_alphanumeric();
-        let ends = letters.get(index + 3).is_none_or(|next| !next.is_alphanumeric());
-        let is_number = |letter: &char| ('1'..='3').contains(letter);
-        (begins && ends && matches!(kind, 'x' | 'd') && is_number(one) && is_number(two)).then_some((*kind, *one, *two))
+/// The words of a line: what is no letter and no digit parts them.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    line.split(|letter: char| !letter.is_alphanumeric())
+}
+
+/// The first name such as `x21` or `d32` in a line with such a number: its letter and its two numbers.
+fn difference(line: &str, has: impl Fn(char) -> bool) -> Option<(char, char, char)> {
+    words(line).find_map(|word| {
+        let mut letters = word.chars();
+        let name = (letters.next()?, letters.next()?, letters.next()?);
+        let (kind, one, two) = name;
+        let is_number = |letter: char| ('1'..='3').contains(&letter);
+        let is_name = matches!(kind, 'x' | 'd') && is_number(one) && is_number(two) && letters.next().is_none();
+        (is_name && (has(one) || has(two))).then_some(name)
     })
 }
 
@@ -43,11 +62,14 @@ mod tests {
         assert!(text.starts_with("Here d21 is dx2 - dx1, and so on;") && text.contains("edge's ends"), "{text}");
         let text = told("t: -x21.d21 stands where -2 x21.d21 belongs.").expect("it has short names");
         assert!(text.starts_with("Here x21 is x2 - x1,") && text.contains("first particle"), "{text}");
+        let text = told("t^2: R^2 i has weight 2, expected 1 (i = d32.d32)").expect("it has short names");
+        assert!(text.contains("R is r1 + re") && text.contains("edge's ends"), "{text}");
+        let text = told("t^1: R^2 has weight 1, expected 0; multiplied by 0.3").expect("it has short names");
+        assert_eq!(text, "Here R is r1 + r2.");
     }
 
     #[test]
     fn nothing_is_explained_where_nothing_needs_it() {
-        assert_eq!(told("-(dx.n) t + ((p-x).n) lacks the factor (dx.n)."), None);
         assert_eq!(told("dx2 stands where dx3 belongs."), None);
     }
 }

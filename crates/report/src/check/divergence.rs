@@ -4,8 +4,7 @@ use super::super::{
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
-use fosssim_judge::{Detail, Finding, PassWords, Power};
-use fosssim_num::tolerances::PARITY_COEFFICIENT;
+use fosssim_judge::{Detail, Finding, PassWords, Power, Rescaled, differing, factor};
 
 /// The block about one finding, with a heading and without advice.
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
@@ -54,14 +53,16 @@ fn side_by_side(detail: &Detail, style: Style) -> String {
         Detail::VanishingPolynomial { place, expected, actual } => {
             logged_by(place) + &polynomials(expected.coefficients(), actual.coefficients(), style)
         }
-        Detail::Coefficient { place, power, expected, actual, expected_polynomial, actual_polynomial, .. } => {
+        Detail::Coefficient { place, power, expected, rescaled, expected_polynomial, actual_polynomial, .. } => {
             let (reference, trace) = (expected_polynomial.coefficients(), actual_polynomial.coefficients());
+            let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
+            // The factor that the finding was made with.
+            let factor = if own == 0.0 { factor(reference, trace) } else { expected / own };
             let mut text = logged_by(place);
-            text += &polynomials(reference, trace, style);
-            let unscaled = reference.iter().rev().nth(*power);
-            if unscaled.is_some_and(|value| value.to_bits() != expected.to_bits()) {
+            text += &polynomials_with(reference, trace, factor, Some(*power), style);
+            if let Some(Rescaled { power, expected, actual, .. }) = rescaled {
                 text += &format!(
-                    "  compared after rescaling to the trace's magnitude: {} {}, expected {}\n",
+                    "  (the original rescales by sums of moduli before it compares: {} {}, {})\n",
                     Power(*power),
                     exact(*actual),
                     exact(*expected)
@@ -89,30 +90,23 @@ fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
     format!("  number {} in the record's list; {}\n", place.index, PassWords(place.pass))
 }
 
-/// Two polynomials by power, marked where they part.
-///
-/// The rules rescale before they compare, so one wrong coefficient moves all the others. What is marked is what a
-/// person would call wrong: when some coefficients agree as they are, those that do not; else those that do not agree
-/// after rescaling.
+/// Two polynomials by power, marked where they part once the factor on which most coefficients agree is taken out.
 fn polynomials(expected: &[f64], actual: &[f64], style: Style) -> String {
+    polynomials_with(expected, actual, factor(expected, actual), None, style)
+}
+
+/// The same with this factor, which the expected values carry; one power is known to differ.
+fn polynomials_with(expected: &[f64], actual: &[f64], factor: f64, wrong: Option<usize>, style: Style) -> String {
     let of = |coefficients: &[f64], power: usize| coefficients.iter().rev().nth(power).copied();
     let powers = expected.len().max(actual.len());
-    let sum = |coefficients: &[f64]| coefficients.iter().fold(0.0, |sum: f64, c| sum + c.abs());
-    let (reference, trace) = (sum(expected), sum(actual));
-    let as_it_is = |power| match (of(expected, power), of(actual, power)) {
-        (Some(expected), Some(actual)) => !((expected - actual).abs() > 1e-9 * expected.abs()),
-        (expected, actual) => expected.is_none() && actual.is_none(),
-    };
-    let rescaled = |power| match (of(expected, power), of(actual, power)) {
-        (Some(expected), Some(actual)) => !((actual - expected * trace / reference).abs() > PARITY_COEFFICIENT),
-        (expected, actual) => expected.is_none() && actual.is_none(),
-    };
-    let some_agree = (0..powers).any(|power| as_it_is(power) && of(expected, power).is_some_and(|c| c != 0.0));
-    let all_agree = (0..powers).all(as_it_is);
+    let is_one = (factor - 1.0).abs() <= 1e-12 || !factor.is_finite();
+    let factor = if is_one { 1.0 } else { factor };
+    let differing = differing(expected, actual, factor);
     let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Left]);
     table.heading(["", "expected", "actual", ""]);
     for power in (0..powers).rev() {
-        let agrees = if some_agree && !all_agree { as_it_is(power) } else { rescaled(power) };
+        let is_missing = of(expected, power).is_some() != of(actual, power).is_some();
+        let agrees = !is_missing && !differing.contains(&power) && wrong != Some(power);
         let text = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), exact);
         let name = match power {
             0 => "1".to_owned(),
@@ -122,9 +116,13 @@ fn polynomials(expected: &[f64], actual: &[f64], style: Style) -> String {
         let found = text(of(actual, power));
         let found = if agrees { found.into() } else { Cell::looking(Look::Bad, found) };
         let mark = if agrees { "".into() } else { Cell::looking(Look::Bad, "<- differs") };
-        table.row([name.into(), text(of(expected, power)).into(), found, mark]);
+        table.row([name.into(), text(of(expected, power).map(|value| factor * value)).into(), found, mark]);
     }
-    table.render(style)
+    let mut text = table.render(style);
+    if !is_one {
+        text += &format!("  expected values carry the trace's factor {}; any positive one is right\n", exact(factor));
+    }
+    text
 }
 
 /// Contact normal (x, y) and time.

@@ -242,7 +242,7 @@ fn advice(finding: &Finding, style: Style) -> String {
             &["the inputs of this polynomial: for the reference the two objects do not move relative to each other"]
         }
         Detail::Coefficient { .. } => &[
-            "the formula of this polynomial; coefficients are compared after rescaling to the trace's magnitude",
+            "the formula of this coefficient; any positive factor of the whole polynomial is right",
             "in a later detection pass of the step, a wrong response before it changes the coefficients, too",
         ],
         Detail::Position { .. } | Detail::Velocity { .. } => {

@@ -194,7 +194,8 @@ fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleranc
     sorted(ours).iter().zip(&sorted(theirs)).all(same)
 }
 
-fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
+/// Whether two contacts are the same but for round-off.
+pub(super) fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
     let within = by.normal * (1.0 + largest(ours.normal));
     (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)
         && same_number(ours.normal.x, theirs.normal.x, within)

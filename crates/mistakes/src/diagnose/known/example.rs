@@ -2,7 +2,7 @@
 use super::{
     candidates::{Correct, resimulate},
     capture::Capture,
-    compare::Difference,
+    compare::{Difference, ROUND_OFF, same_impulse},
     scan::Sample,
 };
 use crate::{
@@ -13,6 +13,7 @@ use fosssim_judge::Role;
 use fosssim_model::{
     scene::Scene,
     sim::{Pair, PairKind, RootSearch, Simulation, State},
+    trace::LoggedImpulse,
 };
 use fosssim_num::vector::at;
 
@@ -47,11 +48,7 @@ pub(super) fn example(scene: &Scene, correct: Correct, sample: &Sample) -> Examp
             let (ours, theirs) = (ours.end.polynomials.len(), theirs.end.polynomials.len());
             ("number of polynomials".to_owned(), count(ours), count(theirs))
         }
-        Some(Difference::Impulses) => {
-            let (ours, theirs) = (ours.end.impulses.len(), theirs.end.impulses.len());
-            let same_number = if ours == theirs { "contacts in the impulse list" } else { "number of impulses" };
-            (same_number.to_owned(), count(ours), count(theirs))
-        }
+        Some(Difference::Impulses) => contacts(&ours.end.impulses, &theirs.end.impulses),
         Some(Difference::MidState(particle)) => match (&ours.mid, &theirs.mid) {
             (Some(ours), Some(theirs)) => state(particle, "mid record", &ours.state, &theirs.state),
             _ => (format!("particle {particle}, mid record"), Vec::new(), Vec::new()),
@@ -60,6 +57,34 @@ pub(super) fn example(scene: &Scene, correct: Correct, sample: &Sample) -> Examp
         Some(Difference::MidLists) | None => ("lists of the mid record".to_owned(), Vec::new(), Vec::new()),
     };
     Example { step: sample.step, place, given: Vec::new(), expected, actual }
+}
+
+/// The first contact that differs: normal and time, three numbers.
+fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (String, Vec<f64>, Vec<f64>) {
+    let key = |contact: &LoggedImpulse| (contact.kind, contact.first, contact.second);
+    let values = |contact: &LoggedImpulse| vec![contact.normal.x, contact.normal.y, contact.time];
+    let place = |contact: &LoggedImpulse| {
+        let other = match contact.kind {
+            0 => "particle",
+            1 => "edge",
+            2 => "half-plane",
+            _ => "object of unknown kind",
+        };
+        format!("contact of particle {} and {other} {}, normal and time", contact.first, contact.second)
+    };
+    for contact in ours {
+        match theirs.iter().find(|other| key(other) == key(contact)) {
+            Some(other) if !same_impulse(contact, other, &ROUND_OFF) => {
+                return (place(contact), values(contact), values(other));
+            }
+            Some(_) => {}
+            None => return (place(contact), values(contact), Vec::new()),
+        }
+    }
+    match theirs.iter().find(|contact| ours.iter().all(|other| key(other) != key(contact))) {
+        Some(contact) => (place(contact), Vec::new(), values(contact)),
+        None => ("number of impulses".to_owned(), count(ours.len()), count(theirs.len())),
+    }
 }
 
 /// Position and velocity of a particle: four numbers.

@@ -25,7 +25,7 @@ mod tests;
 
 pub use sample::{Body, Motion, Sample};
 
-use super::Explanation;
+use super::{Explanation, notation};
 use crate::plain::formula_in;
 use fosssim_model::sim::PairKind;
 use inputs::EXCHANGES;
@@ -60,7 +60,10 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
         explanations.push(shared(&covered, &key));
         open = rest;
     }
+    let (hopeless, open): (Vec<Suspect>, Vec<Suspect>) =
+        open.into_iter().partition(|suspect| suspect.candidates.is_empty());
     explanations.extend(open.iter().map(Suspect::alone));
+    explanations.extend(unexplained(&hopeless));
     explanations.extend(missing(&kinds, samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
     debug_assert!(explanations.iter().all(|one| formula_in(&one.what).is_none()), "{explanations:?}");
@@ -103,28 +106,18 @@ impl Suspect<'_> {
         self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
     }
 
-    /// The explanation of this polynomial for itself.
+    /// The explanation of this polynomial for itself; it has a guess.
     fn alone(&self) -> Explanation {
         let samples = self.study.cases.len() as u64;
-        let Some(best) = self.candidates.first() else {
-            return Explanation {
-                key: "unexplained".to_owned(),
-                what: format!("No simple mistake explains the polynomial: {}.", self.study.subject.name()),
-                details: self.study.differences(),
-                reproduced: 0,
-                samples,
-                example: example::smallest(&self.study).map(|(_, example)| example),
-                same_as: Vec::new(),
-            };
-        };
+        let best = &self.candidates[0];
         let equal = |other: &&Candidate| {
             let is_likely = other.cost <= best.cost + AS_LIKELY;
             is_likely && other.reproduced == best.reproduced && other.key != best.key
         };
         Explanation {
             key: best.key.clone(),
-            what: format!("{}: {}.", best.sentence, self.study.subject.name()),
-            details: best.details.clone(),
+            what: placed(&[self.study.subject.name()], &best.sentence),
+            details: with_notation(best.details.clone()),
             reproduced: best.reproduced as u64,
             samples,
             example: example::smallest(&self.study).map(|(_, example)| example),
@@ -164,6 +157,26 @@ fn exchanged_inputs(study: &Study) -> Vec<Candidate> {
     EXCHANGES.iter().filter(|exchange| exchange.concerns(study.subject.kind())).filter_map(of).collect()
 }
 
+/// One explanation that says for which polynomials there is none.
+fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
+    let first = hopeless.first()?;
+    let names: Vec<&str> = hopeless.iter().map(|suspect| suspect.study.subject.name()).collect();
+    let plural = if names.len() > 1 { "s" } else { "" };
+    let lines = |suspect: &Suspect| {
+        let name = if names.len() > 1 { format!("{}: ", suspect.study.subject.name()) } else { String::new() };
+        suspect.study.differences().into_iter().map(move |line| format!("{name}{line}")).collect::<Vec<_>>()
+    };
+    Some(Explanation {
+        key: "unexplained".to_owned(),
+        what: format!("No simple mistake explains the polynomial{plural}: {}.", names.join(", ")),
+        details: distinct(hopeless.iter().flat_map(lines)),
+        reproduced: 0,
+        samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
+        example: example::smallest(&first.study).map(|(_, example)| example),
+        same_as: Vec::new(),
+    })
+}
+
 /// The key of general guesses that reproduces all samples of the most polynomials, among equals the likeliest; a
 /// polynomial's own likeliest guess counts for that polynomial. `None` if nothing reproduces all samples of any.
 fn best_shared_key(open: &[Suspect]) -> Option<String> {
@@ -195,13 +208,27 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
     let examples = covered.iter().filter_map(|suspect| example::smallest(&suspect.study));
     Explanation {
         key: key.to_owned(),
-        what: format!("{}: {}.", guesses[0].sentence, names.join(", ")),
-        details: distinct(guesses.iter().flat_map(|guess| guess.details.iter().cloned())),
+        what: placed(&names, &guesses[0].sentence),
+        details: with_notation(distinct(guesses.iter().flat_map(|guess| guess.details.iter().cloned()))),
         reproduced: samples,
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
         same_as: distinct(others),
     }
+}
+
+/// Details with their letters explained.
+fn with_notation(mut details: Vec<String>) -> Vec<String> {
+    details.extend(notation::of(&details));
+    details
+}
+
+/// A sentence with its place in front: `Particle-edge overlap: The linear coefficient is zero.`
+fn placed(names: &[&str], sentence: &str) -> String {
+    let names = names.join(", ");
+    let mut letters = names.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    format!("{first}{}: {sentence}.", letters.as_str())
 }
 
 /// The first few different ones, in their order.

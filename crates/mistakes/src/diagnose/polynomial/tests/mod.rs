@@ -265,7 +265,7 @@ fn mistakes_in_two_coefficients_are_both_named_whatever_the_scale() {
         };
         let one = only(PairKind::ParticleEdge, "coefficients", "t^3: f h has weight 2, expected -2", student);
         assert!(one.details.iter().any(|line| line.contains("t^2: i R^2 has weight 2, expected 1")), "{one:#?}");
-        assert!(one.what.contains("(cubic, quadratic): particle-edge overlap"), "{one:#?}");
+        assert!(one.what.starts_with("Particle-edge overlap: ") && one.what.contains("(cubic, quadratic)"), "{one:#?}");
     }
 }
 

@@ -1,0 +1,76 @@
+//! Which coefficients of a wrong polynomial a person would call wrong.
+//!
+//! Any positive factor is right, so the factor on which most coefficients agree is taken out first, 1 before all others.
+//! The original rescales by sums of moduli instead (oracle-behaviour.md 6.2), where one wrong coefficient moves all the
+//! others; its own comparison stays with [`Rescaled`](super::finding::Rescaled).
+
+/// Coefficients agree up to this share of themselves.
+const ALIKE: f64 = 1e-9;
+
+/// What cancels is known to this share of the sum of moduli only.
+const FLOOR: f64 = 1e-13;
+
+/// The positive factor of the trace's polynomial on which most coefficients agree; 1 where none is better than that.
+/// Both lists have the highest power first and are aligned at the constant term.
+#[must_use]
+pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
+    let agreeing = |factor: f64| {
+        let holds = |power: &usize| of(expected, *power) != 0.0 && agrees(expected, actual, *power, factor);
+        (0..expected.len()).filter(holds).count()
+    };
+    // One coefficient always agrees with its own ratio, which says nothing.
+    let mut best = (agreeing(1.0).max(1), 1.0);
+    for power in (0..expected.len().min(actual.len())).rev() {
+        let ratio = of(actual, power) / of(expected, power);
+        if ratio > 0.0 && ratio.is_finite() {
+            let count = agreeing(ratio);
+            if count > best.0 {
+                best = (count, ratio);
+            }
+        }
+    }
+    best.1
+}
+
+/// The powers of t whose coefficients differ with this factor, the highest first.
+#[must_use]
+pub fn differing(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
+    let powers = (0..expected.len().max(actual.len())).rev();
+    powers.filter(|&power| !agrees(expected, actual, power, factor)).collect()
+}
+
+fn agrees(expected: &[f64], actual: &[f64], power: usize, factor: f64) -> bool {
+    let sum: f64 = expected.iter().map(|coefficient| coefficient.abs()).sum();
+    let right = factor * of(expected, power);
+    (of(actual, power) - right).abs() <= ALIKE * right.abs() + FLOOR * factor * sum
+}
+
+/// The coefficient of a power; 0 where the list does not reach it.
+fn of(coefficients: &[f64], power: usize) -> f64 {
+    coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_differs_after_the_best_factor_is_named() {
+        let expected = [-0.2, 4.0, -3.0, 1.44, 0.5];
+        for (scale, power) in [(1.0, 1), (1.0, 0), (3.0, 4), (0.125, 2)] {
+            let mut actual = expected.map(|value| scale * value);
+            actual[4 - power] *= 3.0;
+            assert_eq!(factor(&expected, &actual), scale);
+            assert_eq!(differing(&expected, &actual, scale), [power]);
+        }
+    }
+
+    #[test]
+    fn where_nothing_agrees_the_factor_is_one() {
+        assert_eq!(factor(&[1.0, 2.0], &[-1.0, -2.0]), 1.0);
+        assert_eq!(factor(&[1.0, 2.0], &[3.0, 5.0]), 1.0);
+        assert_eq!(differing(&[1.0, 2.0], &[3.0, 5.0], 1.0), [1, 0]);
+        assert_eq!(differing(&[1.0, 2.0], &[f64::NAN, 2.0], 1.0), [1]);
+        assert_eq!(differing(&[1.0, 2.0], &[2.0], 1.0), [1]);
+    }
+}
