@@ -10,6 +10,7 @@ mod explain;
 mod fair;
 mod fuzz_replay;
 mod grading;
+mod kills;
 mod known;
 mod layers;
 mod metamorphic;

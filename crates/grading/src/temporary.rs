@@ -4,7 +4,7 @@
 //! folder is: by graders in other containers, too, to whom our process number means nothing or somebody else.
 use fosssim_sandbox::collect;
 use std::{
-    fs::{self, File, Permissions, TryLockError},
+    fs::{self, File, Permissions},
     io,
     os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt},
     path::{Path, PathBuf},
@@ -16,9 +16,6 @@ use std::{
 const PREFIX: &str = "fosssim-grader-";
 /// The file in it that its grader holds locked.
 const LOCK: &str = "lock";
-/// A folder without that file is being made, or was left when its grader was killed just then.
-const ABANDONED: Duration = Duration::from_secs(3600);
-
 /// A temporary folder of this grader's, closed to others. It is removed with all that programs left in it.
 #[derive(Debug)]
 pub(super) struct Temporary {
@@ -125,21 +122,20 @@ pub fn sweep() {
 }
 
 fn sweep_in(place: &Path) {
+    let Ok(own) = fs::metadata("/proc/self") else { return };
     for entry in fs::read_dir(place).into_iter().flatten().flatten() {
         let path = entry.path();
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
-        if !ours || !entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+        // The entry itself and not what a link leads to. Other users' folders are left to them.
+        if !ours || !entry.metadata().is_ok_and(|data| data.is_dir() && data.uid() == own.uid()) {
             continue;
         }
-        let old = || entry.metadata().and_then(|data| data.modified()).ok()?.elapsed().ok();
-        // Somebody else's is closed to us, and left to them.
-        let lock = match collect::open_file(&path.join(LOCK), false) {
-            Ok((lock, _)) => Some(lock),
-            Err(collect::CollectError::Missing { .. }) if old().is_some_and(|age| age > ABANDONED) => None,
-            Err(_) => continue,
-        };
-        if !matches!(lock.as_ref().map(File::try_lock), Some(Err(TryLockError::WouldBlock | TryLockError::Error(_)))) {
-            clear(&path);
+        match collect::open_file(&path.join(LOCK), false) {
+            Ok((lock, _)) if lock.try_lock().is_ok() => clear(&path),
+            // Its grader was killed before it made the lock, or is about to make it and then takes another folder. One
+            // that is not empty stays.
+            Err(collect::CollectError::Missing { .. }) => drop(fs::remove_dir(&path)),
+            _ => {}
         }
     }
 }
@@ -175,12 +171,36 @@ mod tests {
         let Grader { path: _, _lock: ref lock } = killed;
         lock.unlock().unwrap();
         std::mem::forget(killed);
-        fs::create_dir(place.path().join("fosssim-grader-begun")).unwrap();
-        fs::create_dir(place.path().join("other")).unwrap();
+        let at = |name: &str| place.path().join(name);
+        fs::create_dir(at("fosssim-grader-begun")).unwrap();
+        fs::create_dir_all(at("fosssim-grader-strange/kept")).unwrap();
+        fs::create_dir(at("other")).unwrap();
+        std::os::unix::fs::symlink(at("other"), at("fosssim-grader-link")).unwrap();
         sweep_in(place.path());
         assert!(!left.exists(), "removed at any depth");
         assert!(living.path.join("program").exists(), "in use");
-        assert!(place.path().join("fosssim-grader-begun").exists() && place.path().join("other").exists());
+        assert!(!at("fosssim-grader-begun").exists(), "killed before it had a lock");
+        assert!(at("fosssim-grader-strange/kept").exists() && at("other").exists());
+        assert!(at("fosssim-grader-link").is_symlink());
+    }
+
+    #[test]
+    fn who_loses_its_folder_to_a_sweeper_while_it_is_made_takes_another() {
+        const ROUNDS: u32 = 200;
+        let place = tempfile::tempdir().unwrap();
+        let done = std::sync::atomic::AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while !done.load(std::sync::atomic::Ordering::Relaxed) {
+                    sweep_in(place.path());
+                }
+            });
+            for _ in 0..ROUNDS {
+                let grader = Grader::make(place.path()).unwrap();
+                assert!(grader.path.join(LOCK).exists());
+            }
+            done.store(true, std::sync::atomic::Ordering::Relaxed);
+        });
     }
 
     #[test]

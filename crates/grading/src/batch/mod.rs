@@ -253,6 +253,8 @@ impl Batch<'_> {
                 }
             }
         });
+        // Once more: what killed graders had begun may have needed a moment to end.
+        temporary::sweep();
         Graded { grades: grades.into_iter().flatten().collect(), fault }
     }
 

@@ -1,10 +1,8 @@
 //! Tries every wall once, in a child that then ends, and reports what the kernel said.
 
-use std::ffi::CString;
 use std::fs::{File, Permissions};
 use std::io::{self, Write};
 use std::os::fd::{AsFd, AsRawFd, OwnedFd};
-use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::UnixStream;
 use std::path::Path;
@@ -71,23 +69,16 @@ fn try_execution() -> (Option<String>, bool) {
         Some(libc::ENOEXEC) => Ok(()),
         _ => Err(error),
     };
-    let in_folder = || -> io::Result<()> {
-        let file =
-            tempfile::Builder::new().prefix(".fosssim-probe-").permissions(Permissions::from_mode(0o755)).tempfile()?;
-        let path = CString::new(file.path().as_os_str().as_bytes()).map_err(io::Error::other)?;
+    // Neither file has a name, so that nothing is left of a prober that is killed.
+    let try_file = |file: File| -> io::Result<()> {
+        file.set_permissions(Permissions::from_mode(0o555))?;
         // A file that is open for writing is busy.
-        let path_only = file.into_temp_path();
-        let result = executable(sys::execute(&path, &[], &[]));
-        drop(path_only);
-        result
-    };
-    let in_memory = || -> io::Result<()> {
-        let copy = File::from(sys::memory_file()?);
-        copy.set_permissions(Permissions::from_mode(0o555))?;
-        let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;
-        drop(copy);
+        let again = File::open(format!("/proc/self/fd/{}", file.as_raw_fd()))?;
+        drop(file);
         executable(sys::execute_open(again.as_fd(), &[], &[]))
     };
+    let in_folder = || tempfile::tempfile().and_then(try_file);
+    let in_memory = || sys::memory_file().map(File::from).and_then(try_file);
     let folder = std::env::temp_dir();
     match in_folder() {
         Ok(()) => (None, false),
