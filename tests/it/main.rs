@@ -8,6 +8,7 @@ mod detect;
 mod drop_in;
 mod explain;
 mod fair;
+mod folder_in_memory;
 mod fuzz_replay;
 mod grading;
 mod kills;

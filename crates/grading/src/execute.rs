@@ -189,6 +189,7 @@ impl Runner<'_> {
             .arguments(self.arguments(program))
             .trace_pipe(TRACE_FILE)
             .policy(Policy::Submission)
+            .folder_in_memory()
             .sanitisers(self.limits.sanitizers)
             .staged(identity)
             .limits(self.sandbox_limits());

@@ -21,6 +21,8 @@ use std::{
 /// A submission's folder may hold so many bytes and files, nested so deep; more is no homework.
 const LARGEST_FOLDER: u64 = 1 << 30;
 const MOST_FILES: u64 = 20_000;
+/// What a build may have in its folder, sources included.
+const LARGEST_BUILD: u64 = 2 << 30;
 const DEEPEST: u32 = 64;
 /// What a report keeps of the compiler's output.
 const KEPT_OUTPUT: usize = 64 << 10;
@@ -218,16 +220,20 @@ pub fn build(
         wall: step.wall,
         memory: step.memory,
         output_bytes: 4 << 20,
-        folder_bytes: 4 << 30,
+        folder_bytes: LARGEST_BUILD,
         folder_files: 100_000,
         processes: 128,
         open_files: 1024,
         ..Limits::default()
     };
-    let job = Job::new(tool, &copy).arguments(arguments.iter().cloned()).policy(Policy::Tools).limits(limits);
+    let job = Job::new(tool, &copy)
+        .arguments(arguments.iter().cloned())
+        .policy(Policy::Tools)
+        .limits(limits)
+        .folder_in_memory();
     let running = backend.start(&job)?;
     let _registered = cancellation.register(running.canceller());
-    let outcome = running.wait()?;
+    let (outcome, made) = running.wait_with_folder()?;
     let mut output = outcome.stdout.bytes.clone();
     output.extend_from_slice(&outcome.stderr.bytes);
     let cut = output.len() > KEPT_OUTPUT || outcome.stdout.truncated || outcome.stderr.truncated;
@@ -240,7 +246,8 @@ pub fn build(
         return Ok(failed(format!("the build {}", outcome.ended), output));
     }
     // The build could have left a link to anything where the program should be.
-    match collect::open_regular_file(&copy, &step.program, LARGEST_FOLDER) {
+    let made = made.map_or_else(|| Folder::open(&copy), Ok).map_err(at(&copy))?;
+    match made.regular_file(&step.program, LARGEST_FOLDER) {
         Ok((file, _)) => {
             let build = Some(Build { succeeded: true, end: "the build succeeded".to_owned(), output });
             Ok(Staged { build, ..copied(file, &copy.join(&step.program))? })

@@ -3,9 +3,10 @@
 use std::ffi::{CString, OsString};
 use std::fs::File;
 use std::io::{self, Read};
-use std::os::fd::AsFd;
+use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::FileTypeExt;
+use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
@@ -17,7 +18,8 @@ use super::job::{Identity, Job, Policy};
 use super::layers::{self, Layer, LayerReport};
 use super::outcome::StartProblem;
 use super::program;
-use super::running::Running;
+use super::room;
+use super::running::{Running, Supervised};
 use super::supervisor::{MODE_PROBE, MODE_RUN};
 use super::sys;
 use super::wire::{self, Event, Order, Probe, SUPERVISOR_ARGUMENT, Walls};
@@ -146,12 +148,16 @@ impl Supervisor {
     }
 
     /// Starts it for a run, with what the run's walls ask for.
-    fn spawn_for(&self, order: &Order) -> Result<Child, SandboxError> {
-        if !order.walls.bubblewrap {
-            return self.spawn(MODE_RUN);
-        }
-        let child = self.wrapped(MODE_RUN, Some(&wire::path(&order.folder))).and_then(|mut command| command.spawn());
-        child.map_err(|source| SandboxError::Supervisor { program: "in bubblewrap".into(), source })
+    fn spawn_for(&self, order: &Order) -> Result<(Child, UnixStream), SandboxError> {
+        let (name, command) = match order.walls.bubblewrap {
+            true => ("in bubblewrap".into(), self.wrapped(MODE_RUN, Some(&wire::path(&order.folder)))),
+            false => (self.program.display().to_string(), Ok(self.command(MODE_RUN))),
+        };
+        let begin = || -> io::Result<_> {
+            let (control, theirs) = UnixStream::pair()?;
+            Ok((command?.stdin(OwnedFd::from(theirs)).spawn()?, control))
+        };
+        begin().map_err(|source| SandboxError::Supervisor { program: name, source })
     }
 
     fn spawn(&self, mode: &str) -> Result<Child, SandboxError> {
@@ -329,12 +335,15 @@ impl Backend {
         }
         let order = order(job, walls, examined)?;
         let pipe = match &job.trace_pipe {
+            Some(name) if order.volatile => {
+                plain_name(name)?;
+                None
+            }
             Some(name) => Some(TracePipe::make(&wire::path(&order.folder), name)?),
             None => None,
         };
-        let mut child = supervisor.spawn_for(&order)?;
-        let sent = child.stdin.as_mut().map_or(Ok(()), |stdin| wire::send(stdin, &order));
-        let first = match (sent, child.stdout.as_mut()) {
+        let (mut child, control) = supervisor.spawn_for(&order)?;
+        let first = match (wire::send(&control, &order), child.stdout.as_mut()) {
             (Ok(()), Some(stdout)) => wire::receive(stdout),
             (Err(error), _) => Err(error),
             (Ok(()), None) => Err(io::ErrorKind::BrokenPipe.into()),
@@ -342,8 +351,20 @@ impl Backend {
         match first {
             Ok(Event::Ready { session, user }) => {
                 // From here on the supervisor holds the pipe open; when it lets go, the reader sees the end.
-                let reader = pipe.map(|pipe| pipe.reader);
-                Ok(Running::new(child, session, user, order, reader, job.limits.trace_bytes, self.layers.clone()))
+                let mut reader = pipe.map(|pipe| pipe.reader);
+                let mut folder = None;
+                if order.volatile {
+                    match handed_over(&control, order.pipe.is_some()) {
+                        Ok((inside, pipe)) => (folder, reader) = (Some(inside.into()), pipe.map(File::from)),
+                        Err(_) => {
+                            drop(control);
+                            return Err(lost(child));
+                        }
+                    }
+                }
+                let (trace_limit, layers) = (job.limits.trace_bytes, self.layers.clone());
+                let supervised = Supervised { child, session, user, order, trace_limit, layers };
+                Ok(Running::new(supervised, control, reader, folder))
             }
             Ok(Event::Failed(failure)) => {
                 let _ = child.wait();
@@ -351,6 +372,7 @@ impl Backend {
             }
             Ok(Event::Done(_)) | Err(_) => {
                 let _ = child.kill();
+                drop(control);
                 Err(lost(child))
             }
         }
@@ -366,10 +388,22 @@ pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
     SandboxError::SetUp { stage: failure.stage, source }
 }
 
-/// What is known about a supervisor that ended without a word.
+/// The working folder in memory, and the reading end of its trace pipe.
+fn handed_over(control: &UnixStream, with_pipe: bool) -> io::Result<(OwnedFd, Option<OwnedFd>)> {
+    let next = |word: u8| -> io::Result<OwnedFd> {
+        let mut byte = [0];
+        match sys::receive_descriptor(control, &mut byte)? {
+            (1, Some(fd)) if byte[0] == word => Ok(fd),
+            _ => Err(io::ErrorKind::InvalidData.into()),
+        }
+    };
+    let folder = next(wire::FOLDER)?;
+    Ok((folder, with_pipe.then(|| next(wire::TRACE)).transpose()?))
+}
+
+/// What is known about a supervisor that ended without a word. The way to it is closed by now, which ends one that is merely
+/// confused.
 pub(super) fn lost(mut child: Child) -> SandboxError {
-    // Closing its input ends a supervisor that is merely confused.
-    drop(child.stdin.take());
     let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
     let mut text = String::new();
     if let Some(stderr) = child.stderr.take() {
@@ -409,6 +443,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program) -> Result<Order, S
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
         pipe: job.trace_pipe.as_ref().map(|name| name.as_bytes().to_vec()),
+        volatile: job.in_memory && walls.namespaces && room::is_enough_for(job.limits.folder_bytes),
         tools: job.policy == Policy::Tools,
         interpreter: examined.script.as_ref().map(|script| wire::raw(&script.interpreter)),
         words: examined.script.iter().flat_map(|script| &script.words).map(|word| word.as_bytes().to_vec()).collect(),
@@ -429,6 +464,15 @@ fn micros(time: Duration) -> u64 {
     u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
 }
 
+/// The name of a trace pipe, which leads to no other folder.
+fn plain_name(name: &str) -> Result<CString, SandboxError> {
+    let plain = !name.is_empty() && !name.contains('/') && name != "." && name != "..";
+    CString::new(name).ok().filter(|_| plain).ok_or_else(|| SandboxError::Pipe {
+        name: name.escape_debug().to_string(),
+        source: io::ErrorKind::InvalidInput.into(),
+    })
+}
+
 /// The two ends of the trace pipe while a run starts.
 struct TracePipe {
     reader: File,
@@ -437,15 +481,10 @@ struct TracePipe {
 }
 
 impl TracePipe {
-    /// A larger pipe means fewer switches between the program and the grader.
-    const BYTES: i32 = 1 << 20;
-
     /// Makes the pipe in the folder; a pipe that an earlier run left there is replaced.
     fn make(folder: &Path, name: &str) -> Result<Self, SandboxError> {
         let failed = |source: io::Error| SandboxError::Pipe { name: name.escape_debug().to_string(), source };
-        let plain = !name.is_empty() && !name.contains('/') && name != "." && name != "..";
-        let c_name = CString::new(name).ok().filter(|_| plain);
-        let c_name = c_name.ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
+        let c_name = plain_name(name)?;
         let path = folder.join(name);
         if path.symlink_metadata().is_ok_and(|metadata| metadata.file_type().is_fifo()) {
             std::fs::remove_file(&path).map_err(failed)?;
@@ -456,7 +495,7 @@ impl TracePipe {
         let reader = open(libc::O_RDONLY).map_err(failed)?;
         let writer = open(libc::O_WRONLY).map_err(failed)?;
         sys::set_blocking(reader.as_fd(), true).map_err(failed)?;
-        sys::enlarge_pipe(reader.as_fd(), Self::BYTES);
+        sys::enlarge_pipe(reader.as_fd(), wire::PIPE_BYTES);
         Ok(Self { reader, _writer: writer })
     }
 }

@@ -8,7 +8,7 @@
 use std::ffi::{CString, OsStr, OsString};
 use std::fs::{File, Metadata};
 use std::io::{self, Read};
-use std::os::fd::{AsFd, AsRawFd};
+use std::os::fd::{AsFd, AsRawFd, OwnedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
@@ -92,6 +92,12 @@ pub enum Entry {
     Other,
 }
 
+impl From<OwnedFd> for Folder {
+    fn from(folder: OwnedFd) -> Self {
+        Self(folder.into())
+    }
+}
+
 impl Folder {
     /// Opens the folder at the path.
     ///
@@ -131,6 +137,29 @@ impl Folder {
             () if kind.is_dir() => Entry::Folder(Self(file)),
             () => Entry::Other,
         })
+    }
+
+    /// The regular file `name` (which may contain `/`, but leads out of nowhere), open, with its length in bytes.
+    ///
+    /// # Errors
+    ///
+    /// When it is missing, not a regular file, reached through a link, has a second name, or is longer than `max_bytes`.
+    pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), CollectError> {
+        let shown = || name.escape_debug().to_string();
+        let system = |source: io::Error| CollectError::System { name: shown(), source };
+        let c_name = CString::new(name).map_err(|error| system(error.into()))?;
+        let file = match sys::open_beneath(self.0.as_fd(), &c_name, libc::O_RDONLY | libc::O_NONBLOCK) {
+            Ok(fd) => File::from(fd),
+            Err(error) => return Err(not_opened(shown(), error)),
+        };
+        let metadata = regular(&file, shown)?;
+        if metadata.nlink() != 1 {
+            return Err(CollectError::Linked { name: shown(), links: metadata.nlink() });
+        }
+        if metadata.len() > max_bytes {
+            return Err(CollectError::TooLong { name: shown(), length: metadata.len(), limit: max_bytes });
+        }
+        Ok((file, metadata.len()))
     }
 
     /// A path that leads to this very folder as long as it is open, wherever it lies by now.
@@ -177,22 +206,9 @@ pub fn regular_file(folder: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>
 ///
 /// As [`regular_file`].
 pub fn open_regular_file(folder: &Path, name: &str, max_bytes: u64) -> Result<(File, u64), CollectError> {
-    let shown = || name.escape_debug().to_string();
-    let system = |source: io::Error| CollectError::System { name: shown(), source };
-    let c_name = CString::new(Path::new(name).as_os_str().as_bytes()).map_err(|error| system(error.into()))?;
-    let folder = File::open(folder).map_err(system)?;
-    let file = match sys::open_beneath(folder.as_fd(), &c_name, libc::O_RDONLY | libc::O_NONBLOCK) {
-        Ok(fd) => File::from(fd),
-        Err(error) => return Err(not_opened(shown(), error)),
-    };
-    let metadata = regular(&file, shown)?;
-    if metadata.nlink() != 1 {
-        return Err(CollectError::Linked { name: shown(), links: metadata.nlink() });
-    }
-    if metadata.len() > max_bytes {
-        return Err(CollectError::TooLong { name: shown(), length: metadata.len(), limit: max_bytes });
-    }
-    Ok((file, metadata.len()))
+    let folder = Folder::open(folder)
+        .map_err(|source| CollectError::System { name: name.escape_debug().to_string(), source })?;
+    folder.regular_file(name, max_bytes)
 }
 
 /// Why a file could not be opened.

@@ -24,7 +24,8 @@ pub struct Limits {
     /// Time on the clock, from the start to the end. While the trace pipe is full the clock stands still, because the
     /// program then waits for its reader; that may last [`Limits::PATIENCE`] times as long as the limit at most.
     pub wall: Duration,
-    /// Resident memory in bytes, of all processes together. The stack of the main thread ends at 8 MiB in any case.
+    /// Resident memory in bytes, of all processes together. Files of the working folder are not part of it, even where the
+    /// folder lies in memory, but while they are mapped. The stack of the main thread ends at 8 MiB in any case.
     pub memory: u64,
     /// Bytes of standard output, and separately of standard error.
     pub output_bytes: u64,
@@ -91,6 +92,7 @@ pub struct Job {
     pub(crate) environment: Vec<(OsString, OsString)>,
     pub(crate) sanitisers: bool,
     pub(crate) staged: Option<Identity>,
+    pub(crate) in_memory: bool,
     pub(crate) limits: Limits,
 }
 
@@ -110,6 +112,7 @@ impl Job {
             environment: Vec::new(),
             sanitisers: false,
             staged: None,
+            in_memory: false,
             limits: Limits::default(),
         }
     }
@@ -136,6 +139,15 @@ impl Job {
     #[must_use]
     pub fn trace_pipe(mut self, name: impl Into<String>) -> Self {
         self.trace_pipe = Some(name.into());
+        self
+    }
+
+    /// Has the program work in a copy of the working folder that lies in memory, where there are namespaces and the machine
+    /// has room: the kernel then limits its bytes and files. The folder itself stays as it is; what the program left is in
+    /// [`Running::wait_with_folder`](crate::Running::wait_with_folder).
+    #[must_use]
+    pub fn folder_in_memory(mut self) -> Self {
+        self.in_memory = true;
         self
     }
 

@@ -219,12 +219,13 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
         report(
             Layer::ControlGroup,
             probe.group.clone(),
-            &match &probe.group_controls[..] {
-                [] => "a run ends as a whole; no controller for memory or processes is to be had".to_string(),
-                controls => format!("a run ends as a whole; the kernel limits {}", controls.join(", ")),
+            &match (&probe.group_controls[..], probe.group_ends) {
+                ([], _) => "a run ends as a whole; no controller for memory or processes is to be had".to_string(),
+                (controls, true) => format!("a run ends as a whole; the kernel limits {}", controls.join(", ")),
+                (controls, false) => format!("the kernel limits {}", controls.join(", ")),
             },
             false,
-            "use Linux 5.14 or newer with version 2, and start the grader in a group of its own, for example by \
+            "use Linux 5.14 or newer with version 2 (or version 1, for the limits), and start the grader in a group of its own, for example by \
              systemd-run --user --scope -p Delegate=yes",
         ),
         match (&probe.namespaces, &probe.bubblewrap) {

@@ -28,6 +28,7 @@ mod mounts;
 mod outcome;
 mod own;
 mod program;
+mod room;
 mod running;
 pub mod selftest;
 mod supervisor;

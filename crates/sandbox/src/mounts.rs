@@ -55,6 +55,15 @@ pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr) -> io::Result<()
     check(i64::from(answer)).map(drop)
 }
 
+/// The same for files of a run, which may be executed where the order says so.
+pub(super) fn mount_folder(target: &CStr, options: &CStr, executable: bool) -> io::Result<()> {
+    let flags = libc::MS_NOSUID | libc::MS_NODEV | if executable { 0 } else { libc::MS_NOEXEC };
+    // SAFETY: all texts outlive the call.
+    let answer =
+        unsafe { libc::mount(c"tmpfs".as_ptr(), target.as_ptr(), c"tmpfs".as_ptr(), flags, options.as_ptr().cast()) };
+    check(i64::from(answer)).map(drop)
+}
+
 /// A copy of the mounts at and beneath the path, which lies nowhere yet. A link at its end is not followed.
 pub(super) fn copy_of(path: &CStr) -> io::Result<OwnedFd> {
     let flags = OPEN_TREE_CLONE | AT_RECURSIVE | (libc::O_CLOEXEC | libc::AT_SYMLINK_NOFOLLOW).cast_unsigned();

@@ -2,12 +2,14 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::process::{Child, ChildStdin};
+use std::os::unix::net::UnixStream;
+use std::process::Child;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use super::backend::{SandboxError, lost, set_up_failed};
+use super::collect::Folder;
 use super::decide;
 use super::layers::LayerReport;
 use super::outcome::{Captured, Outcome};
@@ -15,13 +17,13 @@ use super::supervisor::processes;
 use super::wire::{self, COMMAND_CANCEL, COMMAND_TRACE_LIMIT, Event, Order};
 
 /// The way to the supervisor; gone when the run is over.
-type Control = Arc<Mutex<Option<ChildStdin>>>;
+type Control = Arc<Mutex<Option<UnixStream>>>;
 
 fn command(control: &Control, command: u8) {
     let mut control = control.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(stdin) = control.as_mut() {
+    if let Some(control) = control.as_mut() {
         // A supervisor that has ended needs no command.
-        let _ = stdin.write_all(&[command]);
+        let _ = control.write_all(&[command]);
     }
 }
 
@@ -30,6 +32,7 @@ fn command(control: &Control, command: u8) {
 pub struct Running {
     state: State,
     trace: Option<TraceReader>,
+    folder: Option<Folder>,
     traced: Arc<AtomicU64>,
     canceller: Canceller,
 }
@@ -45,27 +48,25 @@ enum State {
 }
 
 #[derive(Debug)]
-struct Supervised {
-    child: Child,
-    session: Option<i32>,
-    user: Option<u32>,
-    order: Order,
-    trace_limit: u64,
-    layers: Arc<[LayerReport]>,
+pub(super) struct Supervised {
+    pub(super) child: Child,
+    pub(super) session: Option<i32>,
+    pub(super) user: Option<u32>,
+    pub(super) order: Order,
+    pub(super) trace_limit: u64,
+    pub(super) layers: Arc<[LayerReport]>,
 }
 
 impl Running {
     /// A run whose supervisor has said that it is ready.
     pub(super) fn new(
-        mut child: Child,
-        session: Option<i32>,
-        user: Option<u32>,
-        order: Order,
+        supervised: Supervised,
+        control: UnixStream,
         trace: Option<File>,
-        trace_bytes: u64,
-        layers: Arc<[LayerReport]>,
+        folder: Option<Folder>,
     ) -> Self {
-        let control = Arc::new(Mutex::new(child.stdin.take()));
+        let trace_bytes = supervised.trace_limit;
+        let control = Arc::new(Mutex::new(Some(control)));
         let traced = Arc::new(AtomicU64::new(0));
         let trace = trace.map(|file| TraceReader {
             source: Source::Pipe(file),
@@ -73,8 +74,8 @@ impl Running {
             traced: traced.clone(),
             control: control.clone(),
         });
-        let supervised = Supervised { child, session, user, order, trace_limit: trace_bytes, layers };
-        Self { state: State::Supervised(Box::new(supervised)), trace, traced, canceller: Canceller { control } }
+        let state = State::Supervised(Box::new(supervised));
+        Self { state, trace, folder, traced, canceller: Canceller { control } }
     }
 
     /// A run whose outcome is known already.
@@ -87,7 +88,8 @@ impl Running {
             traced: traced.clone(),
             control: control.clone(),
         });
-        Self { state: State::Known(Box::new(outcome), trace_bytes), trace, traced, canceller: Canceller { control } }
+        let state = State::Known(Box::new(outcome), trace_bytes);
+        Self { state, trace, folder: None, traced, canceller: Canceller { control } }
     }
 
     /// The bytes that the program writes into its trace pipe; `None` without one, and from the second call on.
@@ -110,19 +112,30 @@ impl Running {
     /// # Errors
     ///
     /// Faults of ours or of the host.
-    pub fn wait(mut self) -> Result<Outcome, SandboxError> {
+    pub fn wait(self) -> Result<Outcome, SandboxError> {
+        self.wait_with_folder().map(|(outcome, _)| outcome)
+    }
+
+    /// As [`Running::wait`], with what the program left in its working folder, where that lay in memory
+    /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise it lies where the job says.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Running::wait`].
+    pub fn wait_with_folder(mut self) -> Result<(Outcome, Option<Folder>), SandboxError> {
         if let Some(mut trace) = self.trace.take() {
             // Its only error is the one that ends the program as well.
             let _ = io::copy(&mut trace, &mut io::sink());
         }
-        match std::mem::replace(&mut self.state, State::Taken) {
-            State::Supervised(supervised) => self.conclude(*supervised),
+        let outcome = match std::mem::replace(&mut self.state, State::Taken) {
+            State::Supervised(supervised) => self.conclude(*supervised)?,
             State::Known(outcome, limit) => {
                 let traced = self.traced.load(Ordering::Relaxed);
-                Ok(Outcome { ended: decide::beyond_trace(outcome.ended, traced > limit), ..*outcome })
+                Outcome { ended: decide::beyond_trace(outcome.ended, traced > limit), ..*outcome }
             }
             State::Taken => unreachable!("`wait` takes the run by value"),
-        }
+        };
+        Ok((outcome, self.folder.take()))
     }
 
     fn conclude(&self, mut supervised: Supervised) -> Result<Outcome, SandboxError> {

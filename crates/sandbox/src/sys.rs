@@ -156,6 +156,18 @@ pub(super) fn forbids_execution(fd: BorrowedFd<'_>) -> bool {
     }
 }
 
+/// Bytes and files of the file system that the descriptor lies on.
+pub(super) fn file_system_usage(fd: BorrowedFd<'_>) -> io::Result<(u64, u64)> {
+    // SAFETY: an all-zero structure is valid and outlives the call, which fills it.
+    let about = unsafe {
+        let mut about: libc::statvfs = std::mem::zeroed();
+        check(i64::from(libc::fstatvfs(fd.as_raw_fd(), &raw mut about)))?;
+        about
+    };
+    let bytes = about.f_blocks.saturating_sub(about.f_bfree).saturating_mul(about.f_frsize);
+    Ok((bytes, about.f_files.saturating_sub(about.f_ffree)))
+}
+
 /// Has every descriptor from 3 on closed by the next `execve`.
 pub(super) fn close_on_execute() -> io::Result<()> {
     // SAFETY: integers only.

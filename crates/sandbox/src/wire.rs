@@ -1,7 +1,7 @@
 //! The messages between the grader and its supervisor process.
 //!
-//! The grader writes one length-prefixed [`Order`] to the supervisor's standard input and then, if need be, single
-//! command bytes. The supervisor answers on its standard output with length-prefixed [`Event`]s; the last one is
+//! The grader writes one length-prefixed [`Order`] to the supervisor's standard input, a socket, and then, if need be,
+//! single command bytes. A working folder in memory comes back there, open, and so does its trace pipe. The supervisor answers on its standard output with length-prefixed [`Event`]s; the last one is
 //! followed by the captured bytes. Paths travel as bytes, because they need not be UTF-8.
 
 use std::io::{self, Read, Write};
@@ -17,8 +17,15 @@ pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
 pub(super) const COMMAND_CANCEL: u8 = b'c';
 /// Command byte: stop the program, its trace is too long.
 pub(super) const COMMAND_TRACE_LIMIT: u8 = b't';
+/// What the trace pipe holds: the larger, the fewer switches between the program and the grader.
+pub(super) const PIPE_BYTES: i32 = 1 << 20;
 /// No message is longer than this; a longer one means that the streams are out of step.
 const LONGEST_MESSAGE: u64 = 64 << 20;
+
+/// Comes with the working folder, where that lies in memory.
+pub(super) const FOLDER: u8 = b'f';
+/// Comes with the reading end of the trace pipe.
+pub(super) const TRACE: u8 = b't';
 
 /// Bytes of a path or an argument.
 pub(super) type Raw = Vec<u8>;
@@ -60,6 +67,8 @@ pub(super) struct Order {
     /// Their names as the program and the kernel use them, which may be links.
     pub(super) named: Vec<Raw>,
     pub(super) pipe: Option<Raw>,
+    /// Whether the working folder lies in memory. The supervisor then makes the pipe, and hands both to the grader.
+    pub(super) volatile: bool,
     pub(super) tools: bool,
     /// The interpreter of a script, which is executed in its place.
     pub(super) interpreter: Option<Raw>,
@@ -166,6 +175,8 @@ pub(super) struct Probe {
     pub(super) bubblewrap: Option<String>,
     /// What the kernel limits for a group here.
     pub(super) group_controls: Vec<String>,
+    /// Whether a group here ends as a whole.
+    pub(super) group_ends: bool,
 }
 
 /// Writes one message.

@@ -185,6 +185,7 @@ impl Place<'_> {
             .arguments(decoy.arguments())
             .readable([&decoy.scene])
             .policy(attack.policy)
+            .folder_in_memory()
             .environment(environment())
             .limits(limits(attack));
         let job = if attack.pipe.is_some() { job.trace_pipe("trace.bin") } else { job };
@@ -195,7 +196,8 @@ impl Place<'_> {
             let _ = std::io::Read::read_to_end(&mut trace, &mut bytes);
             bytes.len()
         });
-        let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
+        let (outcome, folder) = running.wait_with_folder().map_err(|error| broken(error.to_string()))?;
+        let folder = folder.map_or_else(|| collect::Folder::open(&decoy.work), Ok).map_err(|e| fault(&e))?;
 
         if let Some(left) = survivor(&program) {
             return Err(broken(format!("process {left} outlived the run")));
@@ -220,7 +222,7 @@ impl Place<'_> {
         {
             return Err(broken(format!("{traced} bytes came through the trace pipe instead of {expected}")));
         }
-        left_as_expected(attack, &decoy.work).map_err(broken)?;
+        left_as_expected(attack, &folder).map_err(broken)?;
         decoy.clear().map_err(|error| broken(format!("its folder cannot be removed: {error}")))?;
         Ok(Verdict::Held)
     }
@@ -327,8 +329,12 @@ fn words(outcome: &Outcome) -> String {
 }
 
 /// Whether the folder holds the trace that it should hold.
-fn left_as_expected(attack: &Attack, work: &Path) -> Result<(), String> {
-    let collected = collect::regular_file(work, "trace.bin", LONGEST_TRACE);
+fn left_as_expected(attack: &Attack, work: &collect::Folder) -> Result<(), String> {
+    let collected = work.regular_file("trace.bin", LONGEST_TRACE).and_then(|(mut file, _)| {
+        let mut bytes = Vec::new();
+        let read = std::io::Read::read_to_end(&mut file, &mut bytes);
+        read.map(|_| bytes).map_err(|source| CollectError::System { name: "trace.bin".into(), source })
+    });
     match (attack.leaves.as_deref(), collected) {
         (None, _)
         | (Some("nothing"), Err(CollectError::Missing { .. }))

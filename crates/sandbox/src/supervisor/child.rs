@@ -33,8 +33,8 @@ pub(super) struct Plan {
     /// What is executed, open under a number beyond the limit of descriptors, where execution is not announced.
     pub(super) entrance: Option<OwnedFd>,
     pub(super) rules: Option<RulesetCreated>,
-    /// The way into the run's control group.
-    pub(super) group: Option<File>,
+    /// The ways into the run's control group.
+    pub(super) groups: Vec<File>,
     pub(super) user: Option<u32>,
     pub(super) input: OwnedFd,
     pub(super) output: OwnedFd,
@@ -64,7 +64,7 @@ type Strings = Vec<CString>;
 fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     sys::new_session().map_err(stage("start a session"))?;
-    if let Some(group) = &mut plan.group {
+    for group in &mut plan.groups {
         group.write_all(b"0").map_err(stage("enter the control group"))?;
     }
     for (number, fd) in [(0, &plan.input), (1, &plan.output), (2, &plan.error)] {

@@ -29,6 +29,21 @@ pub(super) struct Contents {
     pub(super) over: bool,
 }
 
+impl Contents {
+    /// The larger numbers of both.
+    pub(super) fn at_least(self, other: Self) -> Self {
+        Self { bytes: self.bytes.max(other.bytes), files: self.files.max(other.files), over: self.over || other.over }
+    }
+}
+
+/// What the file system whose root is `folder` holds by the kernel's own count: removed files that are in use as well.
+pub(super) fn in_use(folder: BorrowedFd<'_>) -> Contents {
+    // The root itself, and the trace pipe, if there is one.
+    const OWN_FILES: u64 = 2;
+    let (bytes, files) = sys::file_system_usage(folder).unwrap_or_default();
+    Contents { bytes, files: files.saturating_sub(OWN_FILES), over: false }
+}
+
 /// Counts the folder's contents and stops as soon as a limit is passed. Pipes are not counted.
 pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> Contents {
     let mut contents = Contents::default();

@@ -1,9 +1,11 @@
-//! A control group (version 2) of its own for one run, where the grader may make one.
+//! A control group of its own for one run, where the grader may make one.
 //!
 //! The kernel then counts memory and threads without gaps between two looks, ends a run that takes too much, and ends
 //! everybody in it at one word. Only what is ours already is used: a group beneath the one that this process is in, or
 //! beneath one of that group's parents; no controller is switched on and nobody else is moved. What the supervisor
 //! counts by itself stays the rule, so that a verdict does not depend on the groups of a host.
+//!
+//! Version 2 comes first. Controllers that it lacks are looked for in hierarchies of version 1, which limit and cannot end.
 
 use std::ffi::CStr;
 use std::fs::File;
@@ -20,11 +22,26 @@ const PREFIX: &str = "fosssim-oracle-";
 /// Pipe buffers, page tables and the kernel's other books count as well.
 const SPARE_MEMORY: u64 = 64 << 20;
 const SPARE_PROCESSES: u32 = 16;
-/// No run lasts so long: an empty group of that age was left by a supervisor that was killed.
-const ABANDONED: Duration = Duration::from_secs(24 * 3600);
+
+/// What a hierarchy of groups is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// The one of version 2.
+    Unified,
+    /// Version 1, memory.
+    Memory,
+    /// Version 1, threads and processes.
+    Processes,
+}
 
 /// A group. It is removed when this is dropped in sight of the host's files, once nobody is in it.
 pub(super) struct Group {
+    parts: Vec<Part>,
+}
+
+/// The group in one hierarchy. Its folder is held locked as long as it is in use.
+struct Part {
+    kind: Kind,
     path: PathBuf,
     folder: File,
 }
@@ -34,82 +51,202 @@ impl Group {
     ///
     /// # Errors
     ///
-    /// No version 2 hierarchy, no permission for any place in it, or a kernel before 5.14, which cannot end a group.
+    /// No hierarchy with a place for which we have permission, or only one of version 2 on a kernel before 5.14, which
+    /// cannot end a group.
     pub(super) fn make(order: &Order) -> io::Result<Self> {
-        let mut problem = io::Error::other("no control groups of version 2 are mounted");
-        let mut weaker = None;
-        for place in places()? {
-            sweep(&place);
-            match Self::make_in(&place) {
-                Ok(group) if group.controls().len() == CONTROLS.len() => {
-                    group.set_limits(order)?;
-                    return Ok(group);
-                }
-                Ok(group) if weaker.is_none() => weaker = Some(group),
-                Ok(_) => {}
+        let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
+        let groups = std::fs::read_to_string("/proc/self/cgroup")?;
+        let mut problem = io::Error::other("no control groups are mounted");
+        let mut parts: Vec<Part> = Vec::new();
+        for kind in [Kind::Unified, Kind::Memory, Kind::Processes] {
+            if parts.iter().any(|part| part.limits().any(|limit| kind.limits().contains(&limit))) {
+                continue;
+            }
+            match Part::make(kind, &places_in(&mounts, &groups, kind)) {
+                Ok(Some(part)) => parts.push(part),
+                Ok(None) => {}
                 Err(error) => problem = error,
             }
         }
-        let group = weaker.ok_or(problem)?;
+        let group = Self { parts };
+        if group.parts.is_empty() {
+            return Err(problem);
+        }
         group.set_limits(order)?;
-        Ok(group)
-    }
-
-    fn make_in(place: &Path) -> io::Result<Self> {
-        // In process namespaces, others may have our number.
-        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
-        let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
-        std::fs::create_dir(&path)?;
-        let group = File::open(&path).map(|folder| Self { path, folder })?;
-        // Only a group that can be ended and entered is of use.
-        group.open(c"cgroup.kill", libc::O_WRONLY)?;
-        group.entrance()?;
         Ok(group)
     }
 
     /// What is limited by the kernel.
     pub(super) fn controls(&self) -> Vec<&'static str> {
-        CONTROLS.into_iter().filter(|(file, _)| self.open(file, libc::O_WRONLY).is_ok()).map(|(_, name)| name).collect()
+        [Limit::Memory, Limit::Processes]
+            .into_iter()
+            .filter(|limit| self.parts.iter().any(|part| part.limits().any(|held| held == *limit)))
+            .map(Limit::name)
+            .collect()
     }
 
-    /// Through this file a process enters the group, by writing a zero.
-    pub(super) fn entrance(&self) -> io::Result<File> {
-        self.open(c"cgroup.procs", libc::O_WRONLY)
+    /// Through these files a process enters the group, by writing a zero to each.
+    pub(super) fn entrances(&self) -> io::Result<Vec<File>> {
+        self.parts.iter().map(Part::entrance).collect()
     }
 
-    /// Ends everybody in the group.
+    /// Whether everybody in it can be ended at one word.
+    pub(super) fn can_kill(&self) -> bool {
+        self.unified().is_some()
+    }
+
+    /// Ends everybody in the group, where that can be.
     pub(super) fn kill(&self) -> io::Result<()> {
-        self.open(c"cgroup.kill", libc::O_WRONLY)?.write_all(b"1")
+        self.unified().map_or(Ok(()), |part| part.open(c"cgroup.kill", libc::O_WRONLY)?.write_all(b"1"))
     }
 
     /// Whether the kernel ended somebody because the group had no memory left.
     pub(super) fn was_out_of_memory(&self) -> bool {
-        self.number(c"memory.events", "oom_kill").is_some_and(|count| count > 0)
+        self.parts.iter().any(|part| {
+            let file = if part.kind == Kind::Memory { c"memory.oom_control" } else { c"memory.events" };
+            part.number(file, "oom_kill").is_some_and(|count| count > 0)
+        })
     }
 
     /// Processor time of everybody who is or was in the group.
     pub(super) fn cpu(&self) -> Duration {
-        Duration::from_micros(self.number(c"cpu.stat", "usage_usec").unwrap_or(0))
+        Duration::from_micros(self.unified().and_then(|part| part.number(c"cpu.stat", "usage_usec")).unwrap_or(0))
+    }
+
+    fn unified(&self) -> Option<&Part> {
+        self.parts.iter().find(|part| part.kind == Kind::Unified)
     }
 
     fn set_limits(&self, order: &Order) -> io::Result<()> {
-        // Files in memory and the buffers of others count here, but not for the program's own limit.
+        // Files count here, the working folder's above all, and so do buffers of others, but not for the program's own limit.
         let memory = order.memory.saturating_add(order.folder_bytes).saturating_add(SPARE_MEMORY);
         let processes = order.processes.saturating_add(SPARE_PROCESSES);
-        for (file, value) in [
-            (c"memory.max", memory.to_string()),
-            (c"memory.swap.max", "0".into()),
-            (c"memory.oom.group", "1".into()),
-            (c"pids.max", processes.to_string()),
-        ] {
-            match self.open(file, libc::O_WRONLY) {
-                Ok(mut file) => file.write_all(value.as_bytes())?,
-                // The controller is not there; `controls` says so.
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-                Err(error) => return Err(error),
+        for part in &self.parts {
+            let values: &[(&CStr, String)] = match part.kind {
+                Kind::Unified => &[
+                    (c"memory.max", memory.to_string()),
+                    (c"memory.swap.max", "0".into()),
+                    (c"memory.oom.group", "1".into()),
+                    (c"pids.max", processes.to_string()),
+                ],
+                Kind::Memory => &[
+                    (c"memory.limit_in_bytes", memory.to_string()),
+                    (c"memory.memsw.limit_in_bytes", memory.to_string()),
+                ],
+                Kind::Processes => &[(c"pids.max", processes.to_string())],
+            };
+            for (file, value) in values {
+                match part.open(file, libc::O_WRONLY) {
+                    Ok(mut file) => file.write_all(value.as_bytes())?,
+                    // The controller is not there; `controls` says so.
+                    Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                    Err(error) => return Err(error),
+                }
             }
         }
         Ok(())
+    }
+}
+
+/// What the kernel can limit for a group.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Limit {
+    Memory,
+    Processes,
+}
+
+impl Limit {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Memory => "memory",
+            Self::Processes => "threads and processes",
+        }
+    }
+}
+
+impl Kind {
+    /// What such a group limits, if its controller is there.
+    fn limits(self) -> &'static [Limit] {
+        match self {
+            Self::Unified => &[Limit::Memory, Limit::Processes],
+            Self::Memory => &[Limit::Memory],
+            Self::Processes => &[Limit::Processes],
+        }
+    }
+
+    /// The file without which the limit is not set.
+    fn file(self, limit: Limit) -> &'static CStr {
+        match (self, limit) {
+            (Self::Memory, _) => c"memory.limit_in_bytes",
+            (_, Limit::Memory) => c"memory.max",
+            (_, Limit::Processes) => c"pids.max",
+        }
+    }
+
+    /// The controller's name in version 1.
+    fn controller(self) -> Option<&'static str> {
+        match self {
+            Self::Unified => None,
+            Self::Memory => Some("memory"),
+            Self::Processes => Some("pids"),
+        }
+    }
+}
+
+impl Part {
+    /// Makes a group in the first place that has all limits, or else in the first that can be had.
+    fn make(kind: Kind, places: &[PathBuf]) -> io::Result<Option<Self>> {
+        let (mut weaker, mut problem) = (None, None);
+        for place in places {
+            sweep(place);
+            match Self::make_in(kind, place) {
+                Ok(part) if part.limits().count() == kind.limits().len() => return Ok(Some(part)),
+                // In version 1 there is nothing to be had without the limit.
+                Ok(part) if weaker.is_none() && kind == Kind::Unified => weaker = Some(part),
+                Ok(_) => {}
+                Err(error) => problem = Some(error),
+            }
+        }
+        match (weaker, problem) {
+            (None, Some(problem)) => Err(problem),
+            (weaker, _) => Ok(weaker),
+        }
+    }
+
+    fn make_in(kind: Kind, place: &Path) -> io::Result<Self> {
+        const TRIES: u32 = 10;
+        let mut tries = 0;
+        loop {
+            match Self::try_in(kind, place) {
+                // Somebody who cleans up may have taken it before it was locked.
+                Err(error) if error.kind() == io::ErrorKind::NotFound && tries < TRIES && place.is_dir() => tries += 1,
+                done => return done,
+            }
+        }
+    }
+
+    fn try_in(kind: Kind, place: &Path) -> io::Result<Self> {
+        // In process namespaces, others may have our number.
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+        let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
+        std::fs::create_dir(&path)?;
+        let part = File::open(&path).map(|folder| Self { kind, path, folder })?;
+        part.folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
+        // Only a group that can be entered and, in version 2, ended is of use.
+        if kind == Kind::Unified {
+            part.open(c"cgroup.kill", libc::O_WRONLY)?;
+        }
+        part.entrance()?;
+        Ok(part)
+    }
+
+    fn limits(&self) -> impl Iterator<Item = Limit> {
+        let held = |limit: &&Limit| self.open(self.kind.file(**limit), libc::O_WRONLY).is_ok();
+        self.kind.limits().iter().filter(held).copied()
+    }
+
+    fn entrance(&self) -> io::Result<File> {
+        self.open(c"cgroup.procs", libc::O_WRONLY)
     }
 
     fn open(&self, name: &CStr, flags: i32) -> io::Result<File> {
@@ -123,14 +260,11 @@ impl Group {
     }
 }
 
-/// The files without which a limit is not set, and what they limit.
-const CONTROLS: [(&CStr, &str); 2] = [(c"memory.max", "memory"), (c"pids.max", "threads and processes")];
-
-impl Drop for Group {
+impl Drop for Part {
     fn drop(&mut self) {
         const ROUNDS: u32 = 200;
         for _ in 0..ROUNDS {
-            // Processes leave it a moment after they were reaped. A group that stays is swept away another day.
+            // Processes leave it a moment after they were reaped. A group that stays is swept away by the next run.
             match std::fs::remove_dir(&self.path) {
                 Err(error) if error.raw_os_error() == Some(libc::EBUSY) => {
                     std::thread::sleep(Duration::from_millis(1));
@@ -146,31 +280,40 @@ fn value_of(text: &str, key: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' ')?.trim().parse().ok())
 }
 
-/// Removes empty groups that were left long ago.
+/// Removes empty groups of supervisors that were killed: those that can be locked.
 fn sweep(place: &Path) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
-        let made = || entry.metadata().and_then(|metadata| metadata.modified()).ok()?.elapsed().ok();
-        if ours && made().is_some_and(|age| age > ABANDONED) {
+        if ours && File::open(entry.path()).is_ok_and(|folder| folder.try_lock().is_ok()) {
             // One with somebody in it stays.
             let _ = std::fs::remove_dir(entry.path());
         }
     }
 }
 
-/// Where a group might be made: in our own group, then in its parents up to the root of what is mounted here.
-fn places() -> io::Result<Vec<PathBuf>> {
-    let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
-    let groups = std::fs::read_to_string("/proc/self/cgroup")?;
-    Ok(places_in(&mounts, &groups))
+/// The groups that limit this process's memory, its own first.
+pub(crate) fn memory_groups() -> Vec<PathBuf> {
+    let read = |path| std::fs::read_to_string(path).unwrap_or_default();
+    let (mounts, groups) = (read("/proc/self/mountinfo"), read("/proc/self/cgroup"));
+    [Kind::Unified, Kind::Memory].into_iter().flat_map(|kind| places_in(&mounts, &groups, kind)).collect()
 }
 
-fn places_in(mounts: &str, groups: &str) -> Vec<PathBuf> {
-    let Some(own) = groups.lines().find_map(|line| line.strip_prefix("0::")) else { return Vec::new() };
+/// Where a group might be made: in our own group, then in its parents up to the root of what is mounted here.
+fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
+    let concerns = |list: &str| kind.controller().is_some_and(|name| list.split(',').any(|word| word == name));
+    let own = groups.lines().find_map(|line| match kind {
+        Kind::Unified => line.strip_prefix("0::"),
+        _ => line.split_once(':')?.1.split_once(':').filter(|(list, _)| concerns(list)).map(|(_, path)| path),
+    });
+    let Some(own) = own else { return Vec::new() };
     let mounted = mounts.lines().find_map(|line| {
         let (before, after) = line.split_once(" - ")?;
         let mut fields = before.split(' ').skip(3);
-        after.starts_with("cgroup2 ").then_some((fields.next()?, fields.next()?))
+        let fits = match kind {
+            Kind::Unified => after.starts_with("cgroup2 "),
+            _ => after.starts_with("cgroup ") && after.rsplit(' ').next().is_some_and(concerns),
+        };
+        fits.then_some((fields.next()?, fields.next()?))
     });
     let Some((root, top)) = mounted else { return Vec::new() };
     let top = Path::new(top);
@@ -188,6 +331,7 @@ mod tests {
         let mounts =
             "24 1 0:22 / /proc rw - proc proc rw\n31 23 0:27 / /sys/fs/cgroup rw,nosuid - cgroup2 cgroup2 rw\n";
         let own = "12:pids:/old\n0::/user.slice/app.scope\n";
+        let places_in = |mounts, groups| places_in(mounts, groups, Kind::Unified);
         let places = places_in(mounts, own);
         let expected = ["/sys/fs/cgroup/user.slice/app.scope", "/sys/fs/cgroup/user.slice", "/sys/fs/cgroup"];
         assert_eq!(places, expected.map(PathBuf::from));
@@ -200,25 +344,64 @@ mod tests {
     }
 
     #[test]
+    fn hierarchies_of_version_1_are_found_by_their_controller() {
+        let mounts = "32 31 0:28 / /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n\
+                      33 31 0:29 / /sys/fs/cgroup/memory rw shared:9 - cgroup cgroup rw,memory\n\
+                      34 31 0:30 / /sys/fs/cgroup/unified rw - cgroup2 cgroup2 rw\n";
+        let groups = "5:memory:/a/b\n4:cpu,cpuacct:/c\n3:pids:/p\n0::/u\n";
+        let memory = ["/sys/fs/cgroup/memory/a/b", "/sys/fs/cgroup/memory/a", "/sys/fs/cgroup/memory"];
+        assert_eq!(places_in(mounts, groups, Kind::Memory), memory.map(PathBuf::from));
+        assert!(places_in(mounts, groups, Kind::Processes).is_empty(), "not mounted");
+        assert_eq!(places_in(mounts, groups, Kind::Unified)[0], Path::new("/sys/fs/cgroup/unified/u"));
+        assert!(places_in(mounts, "0::/u\n", Kind::Memory).is_empty());
+    }
+
+    #[test]
+    fn groups_that_nobody_holds_are_swept_away() {
+        let place = tempfile::tempdir().unwrap();
+        let held = Part::try_in(Kind::Memory, place.path());
+        assert!(held.is_err(), "an ordinary folder is no group");
+        let at = |name: &str| place.path().join(name);
+        for name in ["fosssim-oracle-1-1", "fosssim-oracle-2-2", "other"] {
+            std::fs::create_dir(at(name)).unwrap();
+        }
+        let living = File::open(at("fosssim-oracle-2-2")).unwrap();
+        living.try_lock().unwrap();
+        sweep(place.path());
+        let mut names: Vec<_> = std::fs::read_dir(place.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        assert_eq!(names, ["fosssim-oracle-2-2", "other"]);
+    }
+
+    #[test]
     fn limits_are_set_where_there_are_controllers_and_the_end_is_read_back() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().to_path_buf();
-        let group = Group { folder: File::open(&path).unwrap(), path };
+        let (unified, memory) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let part = |kind, folder: &tempfile::TempDir| {
+            let path = folder.path().to_path_buf();
+            Part { kind, folder: File::open(&path).unwrap(), path }
+        };
+        let group = Group { parts: vec![part(Kind::Unified, &unified), part(Kind::Memory, &memory)] };
         let order = Order { memory: 1 << 20, folder_bytes: 1 << 10, processes: 4, ..Order::default() };
         group.set_limits(&order).unwrap();
         assert!(group.controls().is_empty() && !group.was_out_of_memory() && group.cpu().is_zero());
-        for name in ["memory.max", "pids.max"] {
-            std::fs::write(folder.path().join(name), "").unwrap();
+        std::fs::write(unified.path().join("pids.max"), "").unwrap();
+        for name in ["memory.limit_in_bytes", "memory.memsw.limit_in_bytes"] {
+            std::fs::write(memory.path().join(name), "").unwrap();
         }
         group.set_limits(&order).unwrap();
         assert_eq!(group.controls(), ["memory", "threads and processes"]);
-        let read = |name| std::fs::read_to_string(folder.path().join(name)).unwrap();
-        assert_eq!(read("memory.max"), ((65 << 20) + (1 << 10)).to_string());
-        assert_eq!(read("pids.max"), "20");
-        std::fs::write(folder.path().join("memory.events"), "max 9\noom_kill 1\n").unwrap();
-        std::fs::write(folder.path().join("cpu.stat"), "usage_usec 1500\nuser_usec 1000\n").unwrap();
-        assert!(group.was_out_of_memory());
+        let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
+        let limit = ((65 << 20) + (1 << 10)).to_string();
+        assert_eq!(read(memory.path().join("memory.limit_in_bytes")), limit);
+        assert_eq!(read(memory.path().join("memory.memsw.limit_in_bytes")), limit);
+        assert_eq!(read(unified.path().join("pids.max")), "20");
+        std::fs::write(unified.path().join("memory.max"), "").unwrap();
+        group.set_limits(&order).unwrap();
+        assert_eq!(read(unified.path().join("memory.max")), limit);
+        std::fs::write(unified.path().join("cpu.stat"), "usage_usec 1500\nuser_usec 1000\n").unwrap();
         assert_eq!(group.cpu(), Duration::from_micros(1500));
+        std::fs::write(memory.path().join("memory.oom_control"), "under_oom 0\noom_kill 1\n").unwrap();
+        assert!(group.was_out_of_memory());
     }
 
     #[test]

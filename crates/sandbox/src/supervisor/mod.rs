@@ -18,12 +18,14 @@ mod run;
 mod slot;
 mod streams;
 mod view;
+mod volatile;
 mod walls;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 pub(super) use self::folder::open_up;
+pub(super) use self::group::memory_groups;
 use super::wire::SUPERVISOR_ARGUMENT;
 
 /// Asks for a run.

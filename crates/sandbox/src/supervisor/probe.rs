@@ -22,7 +22,11 @@ const SCOPES_SINCE: i32 = 6;
 pub(super) fn main() -> ExitCode {
     match probe().and_then(|probe| wire::send(io::stdout(), &probe)) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(_) => ExitCode::from(1),
+        Err(error) => {
+            // For the grader's message. Without a reader there is nobody to tell.
+            let _ = writeln!(io::stderr(), "{error}");
+            ExitCode::from(1)
+        }
     }
 }
 
@@ -34,7 +38,10 @@ fn probe() -> io::Result<Probe> {
     (probe.execution, probe.from_memory) = try_execution();
     probe.namespaces = try_namespaces();
     match try_group() {
-        Ok(controls) => probe.group_controls = controls.into_iter().map(str::to_string).collect(),
+        Ok((controls, ends)) => {
+            probe.group_controls = controls.into_iter().map(str::to_string).collect();
+            probe.group_ends = ends;
+        }
         Err(error) => probe.group = Some(error.to_string()),
     }
     let slot = if root { slot::take().map(Some) } else { Ok(None) };
@@ -96,13 +103,14 @@ fn try_execution() -> (Option<String>, bool) {
     }
 }
 
-/// Ends a child by its control group; the answer is what such a group limits.
-fn try_group() -> io::Result<Vec<&'static str>> {
+/// Ends a child by its control group; the answer is what such a group limits, and whether it could end the child.
+fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let group = Group::make(&Order { memory: 1 << 30, processes: 64, ..Order::default() })?;
-    let mut entrance = group.entrance()?;
+    let mut entrances = group.entrances()?;
     let (mut waits, entered) = io::pipe()?;
     let Fork::Parent(child) = sys::fork()? else {
-        let word = entrance.write_all(b"0").map_err(|error| error.to_string());
+        let word = entrances.iter_mut().try_for_each(|entrance| entrance.write_all(b"0"));
+        let word = word.map_err(|error| error.to_string());
         // A prober that is gone needs no answer, and one that never kills is our parent, with whom we die.
         let _ = sys::die_with_parent().and_then(|()| wire::send(entered, &word.err()));
         loop {
@@ -116,11 +124,11 @@ fn try_group() -> io::Result<Vec<&'static str>> {
         Ok(Some(error)) => Err(io::Error::other(error)),
         Err(error) => Err(error),
     };
-    if killed.is_err() {
+    if killed.is_err() || !group.can_kill() {
         sys::kill(child, libc::SIGKILL)?;
     }
     sys::wait_for(child)?;
-    killed.map(|()| group.controls())
+    killed.map(|()| (group.controls(), group.can_kill()))
 }
 
 /// Moves into namespaces in a child that then ends, with a folder in sight that every Linux has.

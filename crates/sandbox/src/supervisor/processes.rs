@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
+use super::slot;
 use crate::sys;
 
 /// One line of `/proc/PID/stat`, as far as it matters.
@@ -148,6 +149,9 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
 /// process namespace ends all of its processes by itself, and its sessions are not ours to name.
 pub(crate) fn end_orphans(session: Option<i32>, user: Option<u32>) {
     const ROUNDS: u32 = 1000;
+    // With the supervisor its hold on the user is gone, and another run may have it by now.
+    let slot = user.and_then(slot::retake);
+    let user = slot.as_ref().map(|slot| slot.user);
     for _ in 0..ROUNDS {
         let victims = stop_then_kill(|| {
             let mut victims: Vec<i32> = all()

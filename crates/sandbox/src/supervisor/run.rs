@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::os::fd::{AsFd, OwnedFd};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::fs::MetadataExt;
 use std::os::unix::net::UnixStream;
 use std::process::ExitCode;
@@ -114,7 +114,13 @@ impl Run {
         let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
-        let folder_before = folder::measure(folder.as_fd(), u64::MAX, u64::MAX);
+        let folder_before = contents(&order, folder.as_fd());
+        let volatile_pipe = match &order.pipe {
+            Some(name) if order.volatile => {
+                Some(make_pipe(folder.as_fd(), name).map_err(stage("make the trace pipe"))?)
+            }
+            _ => None,
+        };
         let slot = if let Some(slot) = slot {
             let owner = File::from(folder.try_clone().map_err(stage("open the working folder"))?)
                 .metadata()
@@ -133,6 +139,9 @@ impl Run {
             }
             None => None,
         };
+        if order.volatile {
+            hand_over(&control, folder.as_fd(), volatile_pipe).map_err(stage("hand the working folder over"))?;
+        }
         let (stdout, output) = io::pipe().map_err(stage("make a pipe"))?;
         let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
         let (status, child_status) = UnixStream::pair().map_err(stage("make a socket"))?;
@@ -156,7 +165,7 @@ impl Run {
             opened: Some(opened),
             entrance,
             rules,
-            group: group.as_ref().map(Group::entrance).transpose().map_err(stage("open the control group"))?,
+            groups: group.as_ref().map_or(Ok(Vec::new()), Group::entrances).map_err(stage("open the control group"))?,
             user: slot.as_ref().map(|(slot, _)| slot.user),
             input: File::open("/dev/null").map_err(stage("open /dev/null"))?.into(),
             output: output.into(),
@@ -223,7 +232,7 @@ impl Run {
         self.stderr.take_rest();
         self.hear();
         let shallow = folder::open_up(self.folder.as_fd());
-        let after = folder::measure(self.folder.as_fd(), u64::MAX, u64::MAX);
+        let after = contents(&self.order, self.folder.as_fd());
         if let Some((_, (owner, group))) = &self.slot {
             folder::give(self.folder.as_fd(), *owner, *group)
                 .map_err(|error| Failure::new("take the working folder back", &error))?;
@@ -433,14 +442,30 @@ impl Run {
     /// Looks at the working folder, at removed files that are still in use, and at memory that is resident for nobody.
     fn look_at_folder(&mut self) {
         let mut contents = folder::measure(self.folder.as_fd(), self.order.folder_bytes, self.order.folder_files);
+        if self.order.volatile {
+            contents = contents.at_least(folder::in_use(self.folder.as_fd()));
+        }
+        let over = self.over(&contents);
+        self.blame_if(over, Cause::Folder);
+        if self.order.volatile && !self.can_hide_memory() {
+            return;
+        }
         let user = self.slot.as_ref().map(|(slot, _)| slot.user);
         let members = processes::members(self.child, self.has_children());
         let root = wire::path(&self.order.folder);
         let page_tables = self.order.sanitised;
         let held = sys::with_files_of(user, || holdings::of(&members, &root, self.order.tools, page_tables));
-        contents.bytes += held.nameless;
+        if !self.order.volatile {
+            contents.bytes += held.nameless;
+        }
         self.unseen_memory = held.memory;
-        self.blame_if(self.over(&contents), Cause::Folder);
+        let over = self.over(&contents);
+        self.blame_if(over, Cause::Folder);
+    }
+
+    /// Whether there may be memory that is resident for nobody: files that are neither in the folder nor refused by rules.
+    fn can_hide_memory(&self) -> bool {
+        self.order.tools || self.order.sanitised || !self.order.walls.landlock || !self.order.walls.seccomp
     }
 
     /// Whether there may be other processes than the main one. Without the filter anybody can start some.
@@ -451,6 +476,32 @@ impl Run {
     fn over(&self, contents: &Contents) -> bool {
         contents.over || contents.bytes > self.order.folder_bytes || contents.files > self.order.folder_files
     }
+}
+
+/// What the order's folder holds, to its end.
+fn contents(order: &Order, folder: BorrowedFd<'_>) -> Contents {
+    let contents = folder::measure(folder, u64::MAX, u64::MAX);
+    if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
+}
+
+/// Makes the trace pipe in the folder; the answer is its reading end.
+fn make_pipe(folder: BorrowedFd<'_>, name: &[u8]) -> io::Result<OwnedFd> {
+    let name = std::ffi::CString::new(name).map_err(io::Error::other)?;
+    sys::make_fifo(folder, &name)?;
+    let reader = sys::open_beneath(folder, &name, libc::O_RDONLY | libc::O_NONBLOCK)?;
+    sys::enlarge_pipe(reader.as_fd(), wire::PIPE_BYTES);
+    Ok(reader)
+}
+
+/// Gives the grader the folder and the reading end of the pipe. Only now, with a writer, may a read wait.
+fn hand_over(control: &File, folder: BorrowedFd<'_>, pipe: Option<OwnedFd>) -> io::Result<()> {
+    let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
+    sys::send_descriptor(&socket, wire::FOLDER, folder)?;
+    if let Some(pipe) = pipe {
+        sys::set_blocking(pipe.as_fd(), true)?;
+        sys::send_descriptor(&socket, wire::TRACE, pipe.as_fd())?;
+    }
+    Ok(())
 }
 
 /// How long the trace pipe was full.

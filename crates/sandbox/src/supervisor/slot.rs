@@ -34,6 +34,16 @@ pub(super) fn take() -> io::Result<Slot> {
     take_of(&folder()?, FIRST..FIRST + COUNT, PATIENCE)
 }
 
+/// The id of a run that has lost its supervisor. `None` when another run has it by now, which found nobody left under it.
+pub(super) fn retake(user: u32) -> Option<Slot> {
+    retake_in(&folder().ok()?, user)
+}
+
+fn retake_in(folder: &Path, user: u32) -> Option<Slot> {
+    let lock = OpenOptions::new().write(true).open(folder.join(user.to_string())).ok()?;
+    lock.try_lock().is_ok().then_some(Slot { user, _lock: lock })
+}
+
 /// The same for any folder and ids.
 fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<Slot> {
     const PAUSE: Duration = Duration::from_millis(20);
@@ -83,6 +93,17 @@ fn folder_in(base: &Path) -> io::Result<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_id_of_a_lost_run_is_not_taken_from_whoever_has_it_by_now() {
+        let folder = tempfile::tempdir().unwrap();
+        const NOBODY: u32 = 4_000_000_000;
+        assert!(retake_in(folder.path(), NOBODY).is_none());
+        let next = take_of(folder.path(), NOBODY..NOBODY + 1, Duration::ZERO).unwrap();
+        assert!(retake_in(folder.path(), NOBODY).is_none());
+        drop(next);
+        assert_eq!(retake_in(folder.path(), NOBODY).unwrap().user, NOBODY);
+    }
 
     #[test]
     fn with_every_id_taken_a_run_waits_for_one() {

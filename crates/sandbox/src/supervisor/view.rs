@@ -13,7 +13,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::symlink;
 use std::path::{Component, Path, PathBuf};
 
-use super::walls;
+use super::{volatile, walls};
 use crate::mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY};
 use crate::own;
 use crate::sys;
@@ -55,14 +55,18 @@ pub(super) fn build(order: &Order) -> Result<(), Failure> {
     let mut view = View { placed: Vec::new() };
     let mut readable = walls::readable(order);
     readable.sort_by_key(|path| path.as_os_str().len());
+    let folder = wire::path(&order.folder);
     for (path, access) in readable
         .into_iter()
         .map(|path| (path, Access::Read))
         .chain(walls::DEVICES.map(|path| (path.into(), Access::Device)))
-        .chain([(wire::path(&order.folder), Access::Write)])
+        .chain((!order.volatile).then(|| (folder.clone(), Access::Write)))
     {
         view.place(&path, access)
             .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
+    }
+    if order.volatile {
+        view.lay_out(&folder, order).map_err(stage("lay the working folder out in memory"))?;
     }
     for raw in &order.named {
         let path = wire::path(raw);
@@ -133,6 +137,15 @@ impl View {
         mounts::attach(tree.as_fd(), &c_string(&real)?)?;
         self.placed.push((real, access));
         Ok(())
+    }
+
+    /// Puts a file system in memory in the place of the working folder, with a copy of what lies there.
+    fn lay_out(&self, folder: &Path, order: &Order) -> io::Result<()> {
+        let real = self.resolve(folder)?.ok_or(io::ErrorKind::NotFound)?;
+        std::fs::create_dir_all(&real)?;
+        let options = CString::new(volatile::options(order)).map_err(io::Error::other)?;
+        mounts::mount_folder(&c_string(&real)?, &options, order.tools)?;
+        volatile::copy(&on_host(&real), &real)
     }
 
     /// Lays nothing over a file that is in sight.

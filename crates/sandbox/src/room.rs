@@ -1,0 +1,76 @@
+//! How much memory the machine can spare for working folders.
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// Whether a folder of so many bytes may lie in memory: as many as there can be runs at one time, and as much again for the
+/// programs, must leave the machine and our own control groups room.
+pub(super) fn is_enough_for(bytes: u64) -> bool {
+    static RUNS: OnceLock<u64> = OnceLock::new();
+    let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
+    let left = std::iter::once(available()).chain(groups().iter().map(Limited::left)).flatten().min();
+    left.is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
+}
+
+/// What the kernel could give to programs.
+fn available() -> Option<u64> {
+    available_in(&std::fs::read_to_string("/proc/meminfo").ok()?)
+}
+
+fn available_in(meminfo: &str) -> Option<u64> {
+    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:")?.strip_suffix(" kB"))?;
+    line.trim().parse::<u64>().ok().map(|kib| kib << 10)
+}
+
+/// A control group that this process is in and that may have a limit.
+#[derive(Debug, PartialEq, Eq)]
+struct Limited {
+    limit: PathBuf,
+    usage: PathBuf,
+}
+
+impl Limited {
+    /// `None` without a limit.
+    fn left(&self) -> Option<u64> {
+        let number = |path: &Path| std::fs::read_to_string(path).ok()?.trim().parse::<u64>().ok();
+        Some(number(&self.limit)?.saturating_sub(number(&self.usage)?))
+    }
+}
+
+/// The groups around this process, in either version's files.
+fn groups() -> &'static [Limited] {
+    static GROUPS: OnceLock<Vec<Limited>> = OnceLock::new();
+    GROUPS.get_or_init(|| {
+        let places = crate::supervisor::memory_groups();
+        let limited = |place: &PathBuf| {
+            let names = [("memory.max", "memory.current"), ("memory.limit_in_bytes", "memory.usage_in_bytes")];
+            let (limit, usage) = names.into_iter().find(|(limit, _)| place.join(limit).exists())?;
+            Some(Limited { limit: place.join(limit), usage: place.join(usage) })
+        };
+        places.iter().filter_map(limited).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_folder_fits_and_one_larger_than_the_machine_does_not() {
+        assert!(is_enough_for(1 << 20));
+        assert!(!is_enough_for(1 << 60));
+        assert_eq!(available_in("MemTotal: 9 kB\nMemAvailable:    1024 kB\n"), Some(1 << 20));
+    }
+
+    #[test]
+    fn what_a_group_may_still_have_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        let group = Limited { limit: folder.path().join("memory.max"), usage: folder.path().join("memory.current") };
+        assert_eq!(group.left(), None);
+        std::fs::write(&group.usage, "300\n").unwrap();
+        std::fs::write(&group.limit, "max\n").unwrap();
+        assert_eq!(group.left(), None, "it has no limit");
+        std::fs::write(&group.limit, "1000\n").unwrap();
+        assert_eq!(group.left(), Some(700));
+    }
+}

@@ -1,0 +1,86 @@
+//! A working folder in memory: a file system of its own whose size and number of files the kernel limits.
+//!
+//! What lies there is gone with the run, unless the grader holds it open. Its pages belong to no process, so that they are
+//! not part of a program's resident memory but where it maps them; a control group's limit has room for all of them.
+
+use std::fs::{File, Permissions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::path::Path;
+
+use crate::wire::Order;
+
+/// A little more than the limit, so that a program that passes it is seen to.
+const SPARE_BYTES: u64 = 1 << 20;
+const SPARE_FILES: u64 = 64;
+/// Bytes that are copied at one go.
+const AT_ONE_GO: usize = 1 << 16;
+
+/// The options of the file system for this order's folder.
+pub(super) fn options(order: &Order) -> String {
+    let (bytes, files) =
+        (order.folder_bytes.saturating_add(SPARE_BYTES), order.folder_files.saturating_add(SPARE_FILES));
+    format!("mode=700,size={bytes},nr_inodes={files}")
+}
+
+/// Copies files and folders with their permission bits. Holes stay holes; links and special files stay behind.
+pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
+    for entry in std::fs::read_dir(from)? {
+        let entry = entry?;
+        let (metadata, target) = (entry.metadata()?, to.join(entry.file_name()));
+        if metadata.is_dir() {
+            std::fs::create_dir(&target)?;
+            copy(&entry.path(), &target)?;
+        } else if metadata.is_file() {
+            copy_file(&mut File::open(entry.path())?, &target)?;
+        } else {
+            continue;
+        }
+        std::fs::set_permissions(&target, Permissions::from_mode(metadata.mode() & 0o777))?;
+    }
+    Ok(())
+}
+
+fn copy_file(from: &mut File, to: &Path) -> io::Result<()> {
+    let mut target = File::create_new(to)?;
+    let mut buffer = vec![0; AT_ONE_GO];
+    let mut length = 0;
+    loop {
+        let read = match from.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(read) => &buffer[..read],
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error),
+        };
+        length += read.len() as u64;
+        if read.iter().all(|byte| *byte == 0) {
+            target.seek(SeekFrom::Start(length))?;
+        } else {
+            target.write_all(read)?;
+        }
+    }
+    target.set_len(length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_and_folders_are_copied_with_their_bits_and_holes() {
+        let folder = tempfile::tempdir().unwrap();
+        let (from, to) = (folder.path().join("from"), folder.path().join("to"));
+        std::fs::create_dir_all(from.join("inner")).unwrap();
+        std::fs::create_dir(&to).unwrap();
+        std::fs::write(from.join("inner/run.sh"), "text").unwrap();
+        std::fs::set_permissions(from.join("inner/run.sh"), Permissions::from_mode(0o755)).unwrap();
+        File::create(from.join("sparse")).unwrap().set_len(50 << 20).unwrap();
+        std::os::unix::fs::symlink("/etc/passwd", from.join("link")).unwrap();
+        copy(&from, &to).unwrap();
+        assert_eq!(std::fs::read(to.join("inner/run.sh")).unwrap(), b"text");
+        assert_eq!(to.join("inner/run.sh").metadata().unwrap().mode() & 0o777, 0o755);
+        let sparse = to.join("sparse").metadata().unwrap();
+        assert!(sparse.len() == 50 << 20 && sparse.blocks() < 100);
+        assert!(to.join("link").symlink_metadata().is_err());
+    }
+}

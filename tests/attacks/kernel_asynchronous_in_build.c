@@ -1,0 +1,9 @@
+// promise: The asynchronous calls are closed in a build step, too.
+// expect: violation io_uring_setup
+// policy: tools
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    char parameters[256] = {0};
+    forbidden(syscall(SYS_io_uring_setup, 4, parameters), "io_uring_setup");
+}

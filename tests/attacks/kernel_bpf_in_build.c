@@ -1,0 +1,9 @@
+// promise: A build step cannot load programs into the kernel.
+// expect: violation bpf
+// policy: tools
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    char attributes[128] = {0};
+    forbidden(syscall(SYS_bpf, 0, attributes, sizeof attributes), "bpf");
+}

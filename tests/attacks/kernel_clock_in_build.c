@@ -1,0 +1,10 @@
+// promise: Nor can a build step set it.
+// expect: violation adjtimex
+// policy: tools
+#include "attack.h"
+#include <sys/timex.h>
+int main(int argc, char **argv) {
+    begin(argc);
+    struct timex change = {0};
+    forbidden(syscall(SYS_adjtimex, &change), "adjtimex");
+}

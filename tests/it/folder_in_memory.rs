@@ -1,0 +1,108 @@
+//! A working folder that lies in memory: what the kernel limits there, and what the grader gets of it.
+use crate::sandbox::{backend, small};
+use fosssim_oracle::sandbox::{Backend, Ended, Job, Layer, Limits, Outcome, Policy, collect::Folder};
+use fosssim_testing::{Need, skip};
+use std::io::Read;
+use std::path::Path;
+
+/// A shell at work in a folder that holds `input`, as a build step.
+fn job(folder: &Path, script: &str) -> Job {
+    std::fs::write(folder.join("input"), "given").unwrap();
+    Job::new("/bin/sh", folder).arguments(["-c", script]).policy(Policy::Tools).limits(small()).folder_in_memory()
+}
+
+/// The sandbox, where it has namespaces.
+fn with_namespaces() -> Option<&'static Backend> {
+    let backend = backend()?;
+    let active = backend.layers().iter().any(|report| report.layer == Layer::Namespaces && report.active);
+    if !active {
+        skip(Need::Walls, "there are no namespaces here");
+    }
+    active.then_some(backend)
+}
+
+fn run(backend: &Backend, job: &Job) -> (Outcome, Option<Folder>) {
+    backend.start(job).unwrap().wait_with_folder().unwrap()
+}
+
+fn text(folder: &Folder, name: &str) -> String {
+    let mut text = String::new();
+    folder.regular_file(name, 1000).unwrap().0.read_to_string(&mut text).unwrap();
+    text
+}
+
+#[test]
+fn what_a_program_leaves_is_handed_over_and_its_folder_stays_as_it_was() {
+    let Some(backend) = with_namespaces() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let job = job(folder.path(), "mkdir out && cat input input > out/made && rm input && ln -s /etc/passwd link");
+    let (outcome, left) = run(backend, &job);
+    assert_eq!(outcome.ended, Ended::Exited(0));
+    let left = left.expect("the folder");
+    assert_eq!(text(&left, "out/made"), "givengiven");
+    assert!(left.regular_file("input", 1000).is_err() && left.regular_file("link", 1000).is_err());
+    assert!(left.regular_file("../input", 1000).is_err(), "it leads nowhere else");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert_eq!(std::fs::read_to_string(folder.path().join("input")).unwrap(), "given");
+}
+
+#[test]
+fn the_kernel_itself_refuses_more_than_the_folder_may_hold() {
+    let Some(backend) = with_namespaces() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    // Each file keeps the limit of file sizes; together they would be 40 MiB, much faster than anybody looks.
+    let script = "for i in 1 2 3 4 5 6 7 8 9 10; do head -c 4000000 /dev/zero | tr '\\0' x > f$i; done; sleep 1000";
+    let limits = Limits { memory: 256 << 20, ..small() };
+    let (outcome, left) = run(backend, &job(folder.path(), script).limits(limits));
+    assert_eq!(outcome.ended, Ended::FolderLimit);
+    let left = left.expect("the folder");
+    let bytes: u64 =
+        left.names().unwrap().iter().filter_map(|name| Some(left.path().join(name).metadata().ok()?.len())).sum();
+    assert!(bytes <= 5 << 20, "{bytes} bytes were written");
+    assert!(bytes >= 4 << 20, "{bytes} bytes were written");
+}
+
+#[test]
+fn files_of_the_folder_are_not_the_programs_memory() {
+    let Some(backend) = with_namespaces() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let limits = Limits { memory: 32 << 20, folder_bytes: 80 << 20, ..small() };
+    let script = "head -c 60000000 /dev/zero | tr '\\0' x > file && wc -c < file";
+    let (outcome, _) = run(backend, &job(folder.path(), script).limits(limits));
+    assert_eq!(outcome.ended, Ended::Exited(0), "{outcome:?}");
+    assert_eq!(String::from_utf8_lossy(&outcome.stdout.bytes).trim(), "60000000");
+    assert!(outcome.peak_memory < 32 << 20, "{}", outcome.peak_memory);
+}
+
+#[test]
+fn a_trace_comes_through_a_pipe_in_memory_too() {
+    let Some(backend) = with_namespaces() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let job = job(folder.path(), "cat input input > trace.bin").trace_pipe("trace.bin");
+    let mut running = backend.start(&job).unwrap();
+    let mut trace = Vec::new();
+    running.trace().unwrap().read_to_end(&mut trace).unwrap();
+    assert_eq!((running.wait().unwrap().ended, trace.as_slice()), (Ended::Exited(0), &b"givengiven"[..]));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no pipe is left");
+    let refused = backend.start(&Job::trace_pipe(job, "../trace.bin"));
+    assert!(refused.unwrap_err().to_string().contains("trace pipe"));
+}
+
+#[test]
+fn without_namespaces_or_room_the_folder_is_used_as_it_lies() {
+    let Some(backend) = backend() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let job = job(folder.path(), "cp input made");
+    let bare = match backend.without(Layer::Namespaces) {
+        Ok(backend) => backend,
+        Err(error) => return skip(Need::Walls, error),
+    };
+    let huge = Limits { folder_bytes: 1 << 50, ..small() };
+    for (backend, job) in [(&bare, job.clone()), (backend, job.limits(huge))] {
+        let (outcome, left) = run(backend, &job);
+        assert_eq!(outcome.ended, Ended::Exited(0));
+        assert!(left.is_none());
+        assert_eq!(std::fs::read_to_string(folder.path().join("made")).unwrap(), "given");
+        std::fs::remove_file(folder.path().join("made")).unwrap();
+    }
+}
