@@ -1,0 +1,306 @@
+//! Goes through a trace once more, beside the reference.
+use crate::{
+    close_up::{CloseUp, Watch},
+    rulings::Ruling,
+    track::{Track, Window},
+};
+use fosssim_judge::{Detail, Finding};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{Detection, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, State},
+    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
+};
+use std::io::Read;
+
+/// So many steps are looked at closely.
+const CLOSE_UPS: usize = 12;
+
+/// A motion counts as another one than the reference's where a coordinate is further off than this, in scene units.
+const APART: f64 = 1e-10;
+
+/// What a step is, for the strip over all steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Class {
+    /// Right, and where the reference is.
+    Right,
+    /// Wrong by itself.
+    Wrong,
+    /// Right by itself, from a state that an earlier wrong step has led to.
+    Inherited,
+    /// Not judged, or nobody is to blame for its numbers.
+    Unknown,
+}
+
+impl Class {
+    /// The letter in a strip.
+    #[must_use]
+    pub const fn letter(self) -> char {
+        match self {
+            Self::Right => 'r',
+            Self::Wrong => 'w',
+            Self::Inherited => 'i',
+            Self::Unknown => 'u',
+        }
+    }
+}
+
+/// One step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// What it is.
+    pub class: Class,
+    /// Largest distance of a position coordinate from where the reference ends from the trace's own state; NaN where
+    /// one of them is no number.
+    pub position: f64,
+    /// The same of velocities.
+    pub velocity: f64,
+    /// Detection passes of the reference.
+    pub expected_passes: u32,
+    /// Detection passes that the trace's number of polynomials makes; `None` where it is no whole number of passes.
+    pub actual_passes: Option<u32>,
+}
+
+/// What to look at closely: a step, and there a pair in a pass, or wherever it collides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Focus {
+    /// The step, from 1.
+    pub step: u32,
+    /// The pass.
+    pub pass: Option<Pass>,
+    /// The pair.
+    pub pair: Option<Pair>,
+}
+
+impl From<&Finding> for Focus {
+    fn from(finding: &Finding) -> Self {
+        let (pass, pair) = match &finding.detail {
+            Detail::PassPositions { place }
+            | Detail::TrimmedDecision { place, .. }
+            | Detail::MixedForms { place }
+            | Detail::PolynomialDegree { place, .. }
+            | Detail::VanishingPolynomial { place, .. }
+            | Detail::Coefficient { place, .. } => (Some(place.pass), Some(place.pair)),
+            Detail::MissedCollision { expected }
+            | Detail::WrongNormal { expected, .. }
+            | Detail::ContactTime { expected, .. } => (None, Some(expected.pair)),
+            Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => (None, pair_of(actual)),
+            _ => (None, None),
+        };
+        Self { step: finding.step, pass, pair }
+    }
+}
+
+fn pair_of(logged: &LoggedImpulse) -> Option<Pair> {
+    let kinds = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
+    let kind = kinds.into_iter().find(|kind| kind.code() == logged.kind)?;
+    Some(Pair { kind, first: u32::try_from(logged.first).ok()?, second: u32::try_from(logged.second).ok()? })
+}
+
+/// Everything that a viewer shows of one trace.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evidence {
+    /// The trace's shape.
+    pub layout: Layout,
+    /// Which records the motions hold.
+    pub window: Window,
+    /// The reference's own motion from the scene's start.
+    pub reference: Track,
+    /// The trace's motion.
+    pub submission: Track,
+    /// All steps, as far as trace and reference go.
+    pub steps: Vec<Step>,
+    /// The steps looked at closely, in their order.
+    pub close_ups: Vec<CloseUp>,
+}
+
+/// Goes through a trace: `rulings` are the judge's in the order of the steps, `fair` says which book decides, and `focus` is
+/// what findings are about, the most important first.
+///
+/// A trace that can't be read to its end gives evidence as far as it goes.
+pub fn gather<R: Read>(
+    scene: &Scene,
+    trace: R,
+    rulings: &[Ruling],
+    fair: bool,
+    focus: &[Focus],
+    budget: usize,
+) -> Evidence {
+    let layout = Layout::of(scene);
+    let wrong = |ruling: &Ruling| if fair { ruling.wrong_by_fair } else { ruling.wrong_by_parity };
+    let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
+    let centre = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
+    let window = Window::around(centre, layout, budget);
+    let close = close_steps(focus, first_wrong, layout.steps);
+    let mut reader = Lenient::new(trace, layout).with_limit(record_memory(scene));
+    let mut free = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut own = Simulation::new(scene, RootSearch::WhereNeeded);
+    let (mut mid, mut end) = (LenientFrame::default(), LenientFrame::default());
+    let mut evidence = Evidence {
+        layout,
+        window,
+        reference: Track::default(),
+        submission: Track::default(),
+        steps: Vec::new(),
+        close_ups: Vec::new(),
+    };
+    if reader.next(&mut end).is_err() {
+        return evidence;
+    }
+    if window.holds(0, false) {
+        evidence.reference.push(free.state());
+        evidence.submission.push(&end.state);
+    }
+    let mut before = end.state.clone();
+    let (mut free_goes_on, mut seen_wrong) = (true, false);
+    for step in 1..=layout.steps {
+        if free_goes_on {
+            let mut midway = Midway::default();
+            free_goes_on = free.step(&mut midway).is_ok();
+            if free_goes_on {
+                if let (Some(state), true) = (&midway.state, layout.polynomials && window.holds(step, true)) {
+                    evidence.reference.push(state);
+                }
+                if window.holds(step, false) {
+                    evidence.reference.push(free.state());
+                }
+            }
+        }
+        if layout.polynomials && reader.next(&mut mid).is_err() || reader.next(&mut end).is_err() {
+            break;
+        }
+        if layout.polynomials && window.holds(step, true) {
+            evidence.submission.push(&mid.state);
+        }
+        if window.holds(step, false) {
+            evidence.submission.push(&end.state);
+        }
+        own.state_mut().clone_from(&before);
+        own.set_steps_done(step - 1);
+        let wanted: Vec<(Option<Pass>, Pair)> = focus
+            .iter()
+            .filter(|focus| focus.step == step)
+            .filter_map(|focus| Some((focus.pass, focus.pair?)))
+            .collect();
+        // Of `continuous-time` the mid record holds what the end record does: the step's own end is what it is held to.
+        let mid_state = matches!(scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
+        let is_close = close.contains(&step);
+        let mut count = Count::new(mid_state);
+        let done = if is_close {
+            let mut watch = Watch::new(scene, step, mid_state, &end, &wanted);
+            let done = own.step(&mut (&mut watch, &mut count)).is_ok();
+            if watch.close_up.actual_contacts.is_empty() {
+                watch.close_up.actual_contacts.clone_from(&mid.impulses);
+            }
+            evidence.close_ups.push(watch.close_up);
+            done
+        } else {
+            own.step(&mut count).is_ok()
+        };
+        if !done {
+            break;
+        }
+        let ruling = rulings.get(step as usize - 1);
+        let is_wrong = ruling.is_some_and(wrong);
+        seen_wrong |= is_wrong;
+        let apart = free_goes_on && largest(&free.state().positions, &end.state.positions) > APART;
+        let class = match ruling {
+            None => Class::Unknown,
+            Some(ruling) if ruling.damaged => Class::Unknown,
+            Some(_) if is_wrong => Class::Wrong,
+            Some(_) if seen_wrong && apart => Class::Inherited,
+            Some(_) => Class::Right,
+        };
+        evidence.steps.push(Step {
+            class,
+            position: worse(count.apart[0], largest(&own.state().positions, &end.state.positions)),
+            velocity: worse(count.apart[1], largest(&own.state().velocities, &end.state.velocities)),
+            expected_passes: count.passes,
+            actual_passes: count.passes_of(end.logged),
+        });
+        before.clone_from(&end.state);
+        end.shrink();
+        mid.shrink();
+    }
+    evidence
+}
+
+/// The steps to look at: those of findings, and those around the first wrong one, the most important ones if they are many.
+fn close_steps(focus: &[Focus], first_wrong: Option<u32>, steps: u32) -> Vec<u32> {
+    let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
+    let mut chosen: Vec<u32> = Vec::new();
+    for step in near.chain(focus.iter().map(|focus| focus.step)) {
+        if (1..=steps).contains(&step) && !chosen.contains(&step) && chosen.len() < CLOSE_UPS {
+            chosen.push(step);
+        }
+    }
+    chosen
+}
+
+/// The largest distance of two lists' numbers; NaN where one of them is no number.
+fn largest(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
+}
+
+/// The larger number; NaN is worse than any.
+fn worse(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other <= one { one } else { other }
+}
+
+/// Keeps the state of the synchronisation point.
+#[derive(Default)]
+struct Midway {
+    state: Option<State>,
+}
+
+impl Observer for Midway {
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        self.state = Some(state.clone());
+        Resume::Own
+    }
+}
+
+/// Counts passes and calls, and has the step go on with the trace's mid record.
+struct Count<'a> {
+    mid: Option<&'a State>,
+    passes: u32,
+    polynomials: usize,
+    /// How far the trace's mid record is from what it should hold: positions and velocities.
+    apart: [f64; 2],
+}
+
+impl<'a> Count<'a> {
+    const fn new(mid: Option<&'a State>) -> Self {
+        Self { mid, passes: 0, polynomials: 0, apart: [0.0; 2] }
+    }
+
+    /// As many passes as a number of polynomials makes: every pass of a step logs as many.
+    fn passes_of(&self, logged: usize) -> Option<u32> {
+        let passes = self.passes as usize;
+        if self.polynomials == 0 || passes == 0 {
+            return (logged == 0).then_some(self.passes);
+        }
+        let per_pass = self.polynomials / passes;
+        (logged % per_pass == 0).then(|| u32::try_from(logged / per_pass).unwrap_or(u32::MAX))
+    }
+}
+
+impl Observer for Count<'_> {
+    fn begin_pass(&mut self, _pass: Pass) {
+        self.passes += 1;
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        self.polynomials += detection.polynomials.len();
+    }
+
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        match self.mid {
+            Some(mid) if mid.positions.len() == state.positions.len() => {
+                self.apart = [largest(&state.positions, &mid.positions), largest(&state.velocities, &mid.velocities)];
+                state.clone_from(mid);
+                Resume::Synchronised
+            }
+            _ => Resume::Own,
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Which steps are wrong, as the judge says while it judges.
+use fosssim_judge::{
+    Outcome,
+    parity::{Progress, Remark, WrongStep},
+};
+
+/// What the rule books say of one step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Ruling {
+    /// Whether the original's rules find something wrong in it.
+    pub wrong_by_parity: bool,
+    /// Whether the fair rules do; `false` also if they were not asked.
+    pub wrong_by_fair: bool,
+    /// Whether its records, or some before it, are damaged: then nobody is to blame for its numbers.
+    pub damaged: bool,
+}
+
+/// Keeps the rulings on all steps and passes on what it hears.
+pub struct Rulings<'a> {
+    inner: &'a mut dyn Progress,
+    steps: Vec<Ruling>,
+}
+
+impl<'a> Rulings<'a> {
+    /// Nothing heard yet.
+    pub fn new(inner: &'a mut dyn Progress) -> Self {
+        Self { inner, steps: Vec::new() }
+    }
+
+    /// The rulings in the order of the steps, once the trace has been judged.
+    #[must_use]
+    pub fn into_steps(mut self, outcome: &Outcome) -> Vec<Ruling> {
+        // Damage lasts to the end.
+        let sound = outcome.steps_judged.saturating_sub(outcome.damaged_steps) as usize;
+        self.steps.iter_mut().skip(sound).for_each(|step| step.damaged = true);
+        self.steps
+    }
+}
+
+impl Progress for Rulings<'_> {
+    fn begins(&mut self) {
+        self.inner.begins();
+    }
+
+    fn step_begins(&mut self, step: u32) {
+        self.inner.step_begins(step);
+    }
+
+    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
+        self.steps.push(Ruling::default());
+        self.inner.step_judged(step, remarks);
+    }
+
+    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
+        if let Some(last) = self.steps.last_mut() {
+            last.wrong_by_parity = !wrong.parity.firsts.is_empty();
+            last.wrong_by_fair = !wrong.fair.firsts.is_empty();
+        }
+        self.inner.step_wrong(wrong);
+    }
+}

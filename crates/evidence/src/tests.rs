@@ -1,0 +1,102 @@
+use super::*;
+use fosssim_judge::{Book, Outcome, parity};
+use fosssim_mistakes::student::{self, Student};
+use fosssim_model::{
+    scene::{Scene, original},
+    trace::Layout,
+};
+
+fn asset(name: &str) -> Scene {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").join(name);
+    original::read(&std::fs::read(path).expect("a scene")).expect("a scene").scene
+}
+
+fn judged(scene: &Scene, trace: &[u8]) -> (Outcome, Evidence) {
+    let options = parity::Options { fair: true, ..Default::default() };
+    let mut nobody = ();
+    let mut rulings = Rulings::new(&mut nobody);
+    let outcome = parity::judge(scene, trace, &options, &mut rulings);
+    let focus: Vec<Focus> = outcome.account(Book::Fair).examples.iter().map(Focus::from).collect();
+    let evidence = gather(scene, trace, &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    (outcome, evidence)
+}
+
+fn of_mistake(scene: &Scene, id: &str) -> Vec<u8> {
+    let mistake = student::find(id).expect("a mistake").mistake;
+    student::trace(scene, Student::new(Some(mistake))).unwrap_or_else(|(trace, _)| trace)
+}
+
+#[test]
+fn a_right_trace_moves_as_the_reference_to_the_last_bit() {
+    let scene = asset("HolisticTests/balls-in-a-box.xml");
+    let trace = student::trace(&scene, Student::new(None)).expect("a trace");
+    let (_, evidence) = judged(&scene, &trace);
+    let bits = |track: &Track| track.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&evidence.reference), bits(&evidence.submission));
+    assert_eq!(evidence.reference.records as u64, Layout::of(&scene).records());
+    assert!(evidence.steps.iter().all(|step| step.class == Class::Right && step.position == 0.0), "{evidence:?}");
+    assert!(evidence.steps.iter().all(|step| step.actual_passes == Some(step.expected_passes)));
+    assert!(evidence.close_ups.is_empty());
+}
+
+/// A wrong failsafe is charged where it happens; what follows from it is no error of its own.
+#[test]
+fn own_errors_are_told_from_inherited_ones() {
+    let scene = asset("GeometricTests/pair-becomes-rigid.xml");
+    let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "failsafe-angular-overwritten"));
+    let fair = outcome.fair.expect("asked");
+    let strip: String = evidence.steps.iter().map(|step| step.class.letter()).collect();
+    assert_eq!(strip.matches('w').count() as u64, fair.wrong_steps, "{strip}");
+    let first = fair.first_divergence.expect("wrong").step;
+    assert_eq!(strip.find('w'), Some(first as usize - 1));
+    assert!(!strip[..first as usize].contains('i'), "{strip}");
+    // Before the first wrong step both motions are the same.
+    let before = (evidence.layout.end_record(first - 1) as usize + 1) * 4 * evidence.layout.particles;
+    assert_eq!(evidence.reference.values[..before], evidence.submission.values[..before]);
+    let close = evidence.close_ups.iter().find(|up| up.step == first).expect("looked at");
+    let expected = close.expected_end.as_ref().expect("a result");
+    let end = evidence.layout.end_record(first) as usize * 4 * evidence.layout.particles;
+    let ours = &evidence.submission.values[end..end + expected.positions.len()];
+    assert_ne!(expected.positions, ours);
+    assert!(evidence.steps[first as usize - 1].position > 1e-10);
+}
+
+/// A wrong polynomial has its call with both sides.
+#[test]
+fn a_finding_about_a_polynomial_has_its_call() {
+    let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
+    let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "pe-linear-one-ab"));
+    let first = outcome.account(Book::Fair).first_divergence.expect("wrong");
+    let fosssim_judge::Detail::Coefficient { place, .. } = &first.detail else { panic!("{first}") };
+    let close = evidence.close_ups.iter().find(|up| up.step == first.step).expect("looked at");
+    let call = close.calls.iter().find(|call| call.pair == place.pair && call.pass == place.pass).expect("the call");
+    let study = call.study.as_ref().expect("an answer");
+    let number = study.curves.iter().position(|curve| curve.role == place.role).expect("the role");
+    assert_ne!(study.curves[number].logged.coefficients(), &call.logged[number][..]);
+    assert!(close.passes[0].differing.contains(&place.pair));
+}
+
+/// A long motion is shown around its first wrong step, and every record that is shown is exact.
+#[test]
+fn a_motion_beyond_the_budget_is_cut_around_the_first_wrong_step() {
+    let layout = Layout { particles: 10, impulses: true, polynomials: true, steps: 1000 };
+    let whole = Window::around(500, layout, 80 * 1001);
+    assert!(whole.is_whole(1000) && whole.holds(0, false) && !whole.holds(0, true));
+    let part = Window::around(500, layout, 80 * 90);
+    assert_eq!(part, Window { first: 470, last: 560 });
+    assert!(part.holds(470, false) && !part.holds(470, true) && part.holds(560, true) && !part.holds(561, true));
+    assert_eq!(Window::around(3, layout, 80 * 90), Window { first: 0, last: 90 });
+    assert_eq!(Window::around(999, layout, 80 * 90), Window { first: 910, last: 1000 });
+    assert_eq!(Window::around(7, layout, 1).last - Window::around(7, layout, 1).first, 1);
+}
+
+#[test]
+fn a_cut_trace_shows_what_is_there() {
+    let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
+    let trace = student::trace(&scene, Student::new(None)).expect("a trace");
+    let (_, evidence) = judged(&scene, &trace[..trace.len() / 2]);
+    assert!(evidence.submission.records < evidence.reference.records);
+    assert!(evidence.steps.len() < evidence.layout.steps as usize);
+    let (_, nothing) = judged(&scene, &[]);
+    assert_eq!((nothing.submission.records, nothing.steps.len()), (0, 0));
+}
