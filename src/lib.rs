@@ -23,4 +23,6 @@ pub use fosssim_report as report;
 
 pub use fosssim_render as render;
 
+pub use fosssim_evidence as evidence;
+
 pub mod cli;

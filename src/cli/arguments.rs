@@ -69,6 +69,17 @@ pub(super) enum Format {
     Json,
 }
 
+/// How the report on a trace is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum CheckFormat {
+    /// For people.
+    Text,
+    /// For programs; one JSON object.
+    Json,
+    /// For a browser: one file with pictures and a viewer of both motions.
+    Html,
+}
+
 /// Which rule books are asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Rules {
@@ -115,6 +126,7 @@ pub(super) struct Simulate {
 Example:
   fosssim-oracle check scenes/test00.xml submission.bin
   fosssim-oracle check scenes/test00.xml submission.bin --step 14
+  fosssim-oracle check scenes/test00.xml submission.bin --format html --output report.html
   fosssim-oracle check scenes/test00.xml submission.bin --format json --output report.json
   fosssim-oracle check --self scenes/*.xml")]
 pub(super) struct Check {
@@ -132,8 +144,8 @@ pub(super) struct Check {
     #[arg(long, value_enum, default_value_t = Rules::Both)]
     pub(super) rules: Rules,
     /// How the report is written.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
+    pub(super) format: CheckFormat,
     /// Where to write the report, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,

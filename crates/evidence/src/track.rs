@@ -1,5 +1,9 @@
 //! A motion: positions and velocities of consecutive records, exact to the last bit.
-use fosssim_model::{sim::State, trace::Layout};
+use fosssim_model::{
+    sim::State,
+    trace::{Layout, Lenient, LenientFrame},
+};
+use std::io::Read;
 
 /// So many numbers of one motion are kept. The largest course scene has 70,444 (11 particles, 1,601 records); lowered, long
 /// scenes show a part of their motion only; raised, pages grow.
@@ -50,6 +54,22 @@ pub struct Track {
 }
 
 impl Track {
+    /// The records of a trace in a window, as far as it can be read.
+    #[must_use]
+    pub fn read<R: Read>(trace: R, layout: Layout, window: Window) -> Self {
+        let mut reader = Lenient::new(trace, layout);
+        let (mut frame, mut track) = (LenientFrame::default(), Self::default());
+        for record in 0..layout.records() {
+            if layout.step_of(record) > window.last || reader.next(&mut frame).is_err() {
+                break;
+            }
+            if window.holds(layout.step_of(record), layout.is_mid(record)) {
+                track.push(&frame.state);
+            }
+        }
+        track
+    }
+
     /// Appends a record.
     pub(crate) fn push(&mut self, state: &State) {
         self.values.extend_from_slice(&state.positions);

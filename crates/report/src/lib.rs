@@ -13,6 +13,7 @@ pub mod grade;
 pub mod headroom;
 pub mod number;
 pub mod original;
+pub mod page;
 pub mod problems;
 pub mod scene;
 pub mod simulate;

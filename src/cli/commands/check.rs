@@ -2,11 +2,12 @@
 use super::headroom;
 use crate::{
     cli::{
-        arguments::{Check, Format},
+        arguments::{Check, CheckFormat},
         console, exit, input,
         output::Output,
     },
-    diagnose,
+    diagnose::{self, Explanation},
+    evidence::{self, Evidence, Focus, Rulings, Track},
     judge::{
         Outcome, Overall, Rules, Stop, Unreadable, fair,
         parity::{self, Progress, Remark, WrongStep},
@@ -15,9 +16,12 @@ use crate::{
         self,
         check::{Shown, WrongSteps},
         number::counted,
+        page,
         style::Style,
     },
+    scene::Scene,
     sim::{RootSearch, StepError},
+    student,
 };
 use anyhow::{Result, bail};
 use std::{
@@ -63,10 +67,13 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let mut heard = Heard { bar: console::Bar::new(steps), wrong: WrongSteps::new(shown) };
     let lasting = is_lasting(name);
     let explain = !arguments.no_explain && arguments.step.is_empty();
-    let most = if lasting || !explain { 0 } else { KEPT };
+    let is_page = arguments.format == CheckFormat::Html;
+    let most = if lasting || !(explain || is_page) { 0 } else { KEPT };
     let mut reader = Kept { inner: &mut trace.reader, bytes: Vec::new(), most };
-    let outcome = parity::judge(&scene.scene, &mut reader, &options, &mut heard);
+    let mut rulings = Rulings::new(&mut heard);
+    let outcome = parity::judge(&scene.scene, &mut reader, &options, &mut rulings);
     let kept = reader.bytes;
+    let rulings = if is_page { rulings.into_steps(&outcome) } else { Vec::new() };
     let Heard { bar, wrong } = heard;
     drop(bar);
     match &outcome.stop {
@@ -87,12 +94,10 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
             }
         }
     }
-    let explanations = if explain && is_wrong(&outcome) {
-        let bytes = if lasting { again(name) } else { kept };
-        diagnose::explain(&scene.scene, &bytes)
-    } else {
-        Vec::new()
-    };
+    let explains = explain && is_wrong(&outcome);
+    let bytes = if lasting && explains { again(name) } else { kept };
+    let explanations = if explains { diagnose::explain(&scene.scene, &bytes) } else { Vec::new() };
+    let content = &scene.scene;
     let (scene, trace) = (scene.name.as_str(), trace.name.as_str());
     let audit = arguments.audit;
     let check = report::check::Check {
@@ -106,12 +111,25 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     };
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let text = match arguments.format {
-        Format::Text => check.text(style),
-        Format::Json => check.json(),
+        CheckFormat::Text => check.text(style),
+        CheckFormat::Json => check.json(),
+        CheckFormat::Html => {
+            let fair = outcome.fair.is_some();
+            let focus = focus(&outcome);
+            let budget = evidence::BUDGET;
+            let evidence = match if lasting { input::trace(name).ok() } else { None } {
+                Some(whole) => evidence::gather(content, whole.reader, &rulings, fair, &focus, budget),
+                None => evidence::gather(content, &bytes[..], &rulings, fair, &focus, budget),
+            };
+            let what_if = explanations.first().and_then(|first| what_if(content, first, &bytes, &evidence));
+            let case = page::Case { check, scene: content, evidence: Some(&evidence), what_if: what_if.as_ref() };
+            page::Page { title: &format!("{}: {scene}", check.verdict()), cases: vec![case] }.html()
+        }
     };
-    match target {
-        Some(target) => target.finish_with(text.as_bytes())?,
-        None => console::show(&text, arguments.format)?,
+    match (target, arguments.format) {
+        (Some(target), _) => target.finish_with(text.as_bytes())?,
+        (None, CheckFormat::Text) => console::report(&text)?,
+        (None, _) => console::print(text.as_bytes())?,
     }
     let disagreements = outcome.searches.disagreements;
     if disagreements > 0 {
@@ -134,6 +152,24 @@ impl Progress for Heard {
     fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
         self.wrong.step_wrong(wrong);
     }
+}
+
+/// What a viewer is to look at closely: what both books found, the official one's first.
+fn focus(outcome: &Outcome) -> Vec<Focus> {
+    let fair = outcome.fair.iter().flat_map(|fair| fair.first_divergence.iter().chain(&fair.examples));
+    fair.chain(&outcome.first_divergence).chain(&outcome.examples).map(Focus::from).collect()
+}
+
+/// The run of the reference with the mistake that is named, beside the trace.
+fn what_if(scene: &Scene, named: &Explanation, trace: &[u8], evidence: &Evidence) -> Option<page::WhatIf> {
+    // What is not shown as a whole is not made as a whole either.
+    if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
+        return None;
+    }
+    let row = student::find(&named.key)?;
+    let run = student::trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
+    let track = Track::read(&run[..], evidence.layout, evidence.window);
+    Some(page::WhatIf { id: named.key.clone(), sentence: named.what.clone(), track, equal: run == trace })
 }
 
 /// Whether there is something to explain: the fair rules know better what is a mistake.

@@ -1,7 +1,7 @@
 //! `check --self`: how much room the original's rules leave in scenes.
 use crate::{
     cli::{
-        arguments::{Check, Format},
+        arguments::{Check, CheckFormat},
         console, exit, input,
         output::Output,
     },
@@ -9,7 +9,7 @@ use crate::{
     scene::Scene,
     suite::{headroom::headroom, plan},
 };
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +17,9 @@ use std::path::{Path, PathBuf};
 const DEFAULT_SUITE: &str = "t2m2";
 
 pub(super) fn run(scenes: &[PathBuf], arguments: &Check) -> Result<u8> {
+    if arguments.format == CheckFormat::Html {
+        bail!("there is no HTML report of check --self, which has no trace to show; use --format text or json");
+    }
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
     let scenes = if scenes.is_empty() { built_in()? } else { files(scenes)? };
     let measured = scenes
@@ -25,12 +28,13 @@ pub(super) fn run(scenes: &[PathBuf], arguments: &Check) -> Result<u8> {
         .collect::<Result<Vec<_>>>()?;
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let text = match arguments.format {
-        Format::Text => report::text(&measured, style),
-        Format::Json => report::json(&measured),
+        CheckFormat::Json => report::json(&measured),
+        _ => report::text(&measured, style),
     };
-    match target {
-        Some(target) => target.finish_with(text.as_bytes())?,
-        None => console::show(&text, arguments.format)?,
+    match (target, arguments.format) {
+        (Some(target), _) => target.finish_with(text.as_bytes())?,
+        (None, CheckFormat::Text) => console::report(&text)?,
+        (None, _) => console::print(text.as_bytes())?,
     }
     let is_fair = measured.iter().all(|(_, headroom)| headroom.is_fair());
     Ok(if is_fair { exit::ACCEPTED } else { exit::NOT_ACCEPTED })

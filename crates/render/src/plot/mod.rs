@@ -9,8 +9,8 @@ mod residuals;
 mod sheet;
 
 pub use curves::{Curve, Curves};
-pub use passes::Passes;
-pub use residuals::{Residuals, Series};
+pub use passes::{PASSES_AXIS, Passes};
+pub use residuals::{RESIDUALS_AXIS, Residuals, Series};
 
 /// Where a plot goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

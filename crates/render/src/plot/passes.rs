@@ -17,6 +17,8 @@ pub struct Passes<'a> {
 
 const LEFT: f64 = 64.0;
 const RIGHT: f64 = WIDTH - 16.0;
+/// Where the first and the last step stand, in the plot's own units.
+pub const PASSES_AXIS: [f64; 2] = [LEFT, RIGHT];
 const TOP: f64 = 44.0;
 const BOTTOM: f64 = 150.0;
 const HEIGHT: f64 = 192.0;

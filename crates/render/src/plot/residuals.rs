@@ -29,6 +29,8 @@ pub struct Residuals<'a> {
 
 const LEFT: f64 = 64.0;
 const RIGHT: f64 = WIDTH - 16.0;
+/// Where the first and the last step stand, in the plot's own units.
+pub const RESIDUALS_AXIS: [f64; 2] = [LEFT, RIGHT];
 const TOP: f64 = 48.0;
 const BOTTOM: f64 = 220.0;
 /// Below the scale is the place of zeros, above it that of what is no number.

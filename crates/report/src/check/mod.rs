@@ -10,6 +10,7 @@ mod steps;
 mod text;
 
 pub use steps::{LISTED, Shown, WrongSteps};
+pub(crate) use text::headline;
 pub use text::stopped;
 
 use super::{
@@ -42,6 +43,11 @@ pub struct Check<'a> {
     pub steps: &'a WrongSteps,
     /// Whether certificates were audited, so that the counts of root searches are worth showing.
     pub audit: bool,
+}
+
+/// The block about one finding, without colours.
+pub(crate) fn divergence_text(finding: &fosssim_judge::Finding, steps: u32) -> String {
+    divergence::render(finding, steps, Style::Plain)
 }
 
 impl Check<'_> {

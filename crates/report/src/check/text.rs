@@ -51,12 +51,16 @@ fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
 }
 
 fn head(check: &Check<'_>, style: Style) -> String {
-    let outcome = check.outcome;
     let look = if check.accepted() { Look::Good } else { Look::Bad };
     let verdict = style.paint(look, &check.verdict().to_uppercase());
-    let names = format!("  scene {}\n  trace {}\n", check.scene, check.trace);
+    format!("{verdict}: {}\n  scene {}\n  trace {}\n", headline(check), check.scene, check.trace)
+}
+
+/// What stands behind the verdict, in one line.
+pub(crate) fn headline(check: &Check<'_>) -> String {
+    let outcome = check.outcome;
     if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
-        return format!("{verdict}: {}\n{names}", question.what);
+        return question.what.clone();
     }
     let steps = count(u64::from(outcome.steps));
     let parity = match outcome.overall {
@@ -76,14 +80,13 @@ fn head(check: &Check<'_>, style: Style) -> String {
             format!("judged {judged} of {steps} steps, then the trace could not be followed")
         }
     };
-    let summary = match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {
+    match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {
         (Book::Parity, ..) | (_, None, _) => parity,
         (Book::Fair, Some(fair), Ruling::Accepted) if outcome.steps > 0 => {
             format!("{} by the fair rules", fair::summary(fair, outcome))
         }
         (Book::Fair, Some(fair), _) => fair::summary(fair, outcome),
-    };
-    format!("{verdict}: {summary}\n{names}")
+    }
 }
 
 /// Of a trace that is read to its end, but with damage: where that is, and what its steps before are.

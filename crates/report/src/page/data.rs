@@ -1,0 +1,162 @@
+//! What the motion viewer reads: one JSON block per case, and the motions as packed doubles.
+use super::{Case, markup};
+use fosssim_evidence::{CloseUp, Evidence, PassUp, Track};
+use fosssim_judge::PassWords;
+use fosssim_model::{
+    scene::{self, Collision, Scene},
+    sim::{Impulse, Pair, PairKind, State},
+    trace::LoggedImpulse,
+};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// All data blocks of a case.
+pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, number: usize) -> String {
+    let mut out = String::new();
+    let _ = writeln!(
+        out,
+        r#"<script type="application/json" id="case-{number}">{}</script>"#,
+        markup::data(&of_case(case, evidence))
+    );
+    let what = case.what_if.map(|what| ("what", &what.track));
+    for (name, track) in
+        [("reference", &evidence.reference), ("submission", &evidence.submission)].into_iter().chain(what)
+    {
+        let _ =
+            writeln!(out, r#"<script type="application/octet-stream" id="{name}-{number}">{}</script>"#, packed(track));
+    }
+    out
+}
+
+/// Little-endian doubles, deflated without a header, in base64.
+fn packed(track: &Track) -> String {
+    use base64::Engine;
+    let bytes: Vec<u8> = track.values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    base64::engine::general_purpose::STANDARD.encode(miniz_oxide::deflate::compress_to_vec(&bytes, 8))
+}
+
+fn of_case(case: &Case<'_>, evidence: &Evidence) -> Value {
+    let Scene { particles, edges, half_planes, .. } = case.scene;
+    let (integrator, collision) = tags(case.scene);
+    let strip: String = evidence.steps.iter().map(|step| step.class.letter()).collect();
+    let calls = evidence.close_ups.iter().flat_map(|up| {
+        up.calls.iter().map(|call| {
+            let zeros: Vec<f64> = match &call.study {
+                Ok(study) => study.curves.iter().flat_map(|curve| curve.real_zeros()).collect(),
+                Err(_) => Vec::new(),
+            };
+            json!({"step": up.step, "pair": key(call.pair), "zeros": zeros})
+        })
+    });
+    let first = case.check.outcome.account(case.check.rules.official()).first_divergence.map(|first| first.step);
+    json!({
+        "scene": markup::visible(case.check.scene),
+        "traceName": markup::visible(case.check.trace),
+        "collision": kind(case.scene.collision),
+        "collisionTag": collision,
+        "integrator": integrator,
+        "dt": case.scene.time_step,
+        "steps": evidence.layout.steps,
+        "per": evidence.layout.records_per_step(),
+        "n": particles.len(),
+        "first": evidence.window.first,
+        "last": evidence.window.last,
+        "focus": first,
+        "radii": particles.iter().map(|particle| particle.radius).collect::<Vec<_>>(),
+        "masses": particles.iter().map(|particle| particle.mass).collect::<Vec<_>>(),
+        "fixed": particles.iter().map(|particle| particle.fixed).collect::<Vec<_>>(),
+        "edges": edges.iter().map(|edge| json!([edge.first, edge.second, edge.radius])).collect::<Vec<_>>(),
+        "planes": half_planes.iter()
+            .map(|plane| [plane.point.x, plane.point.y, plane.normal.x, plane.normal.y]).collect::<Vec<_>>(),
+        "strip": strip,
+        "closeUps": evidence.close_ups.iter().map(|up| close_up(up, evidence)).collect::<Vec<_>>(),
+        "calls": calls.collect::<Vec<_>>(),
+        "whatIf": case.what_if.map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),
+    })
+}
+
+/// The elements of integrator and collision handling, as a scene has them.
+fn tags(scene: &Scene) -> (String, String) {
+    let bare = Scene {
+        particles: Vec::new(),
+        edges: Vec::new(),
+        half_planes: Vec::new(),
+        forces: Vec::new(),
+        description: None,
+        display: Default::default(),
+        ..scene.clone()
+    };
+    let text = scene::write(&bare);
+    let line = |name: &str| text.lines().map(str::trim).find(|line| line.starts_with(name)).unwrap_or("").to_owned();
+    (line("<integrator"), line("<collision"))
+}
+
+const fn kind(collision: Collision) -> &'static str {
+    match collision {
+        Collision::None => "none",
+        Collision::Simple { .. } => "simple",
+        Collision::Penalty { .. } => "penalty",
+        Collision::ContinuousTime { .. } => "continuous-time",
+        Collision::Hybrid { .. } => "hybrid",
+    }
+}
+
+fn close_up(up: &CloseUp, evidence: &Evidence) -> Value {
+    let step = (up.step as usize).checked_sub(1).and_then(|place| evidence.steps.get(place));
+    json!({
+        "step": up.step,
+        "mid": up.expected_mid.as_ref().map(state),
+        "end": up.expected_end.as_ref().map(state),
+        "passes": up.passes.iter().map(pass).collect::<Vec<_>>(),
+        "expected": up.expected_contacts.iter().map(contact).collect::<Vec<_>>(),
+        "actual": up.actual_contacts.iter().filter_map(logged).take(200).collect::<Vec<_>>(),
+        "zones": up.zones.iter().map(|zones| json!({
+            "round": zones.round,
+            "zones": zones.zones.iter()
+                .map(|(particles, plane)| json!({"particles": particles, "halfPlane": plane})).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+        "polynomials": [up.expected_polynomials, up.actual_polynomials],
+        "expectedPasses": up.expected_passes,
+        "actualPasses": step.and_then(|step| step.actual_passes),
+    })
+}
+
+fn state(state: &State) -> Vec<f64> {
+    state.positions.iter().chain(&state.velocities).copied().collect()
+}
+
+fn pass(up: &PassUp) -> Value {
+    json!({
+        "name": PassWords(up.pass).to_string(),
+        "q": up.q_end,
+        "calls": up.calls,
+        "hits": up.hits.iter().map(contact).collect::<Vec<_>>(),
+        "differing": up.differing.iter().map(|pair| key(*pair)).collect::<Vec<_>>(),
+        "logged": up.is_logged,
+    })
+}
+
+fn contact(impulse: &Impulse) -> Value {
+    json!([key(impulse.pair), impulse.time, impulse.normal.x, impulse.normal.y])
+}
+
+fn logged(impulse: &LoggedImpulse) -> Option<Value> {
+    let letters = match impulse.kind {
+        0 => "pp",
+        1 => "pe",
+        2 => "ph",
+        _ => return None,
+    };
+    let pair = format!("{letters}:{},{}", impulse.first, impulse.second);
+    Some(json!([pair, impulse.time, impulse.normal.x, impulse.normal.y]))
+}
+
+/// A pair as `detect --pair` takes it.
+pub(super) fn key(pair: Pair) -> String {
+    let letters = match pair.kind {
+        PairKind::ParticleParticle => "pp",
+        PairKind::ParticleEdge => "pe",
+        PairKind::ParticleHalfPlane => "ph",
+    };
+    format!("{letters}:{},{}", pair.first, pair.second)
+}

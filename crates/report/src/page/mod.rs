@@ -1,0 +1,87 @@
+//! Reports as one HTML file: the essentials as text and SVG, the motion viewer on top.
+//!
+//! The file asks for nothing else: no network, no second file. Its policy allows the one script and the one style sheet by
+//! their digests, and nothing that is evaluated; whatever a submission, a scene or a path says is text ([`markup`]). Without
+//! script everything but the viewer is there, and prints.
+
+mod call;
+mod case;
+mod data;
+mod markup;
+#[cfg(test)]
+mod tests;
+
+use super::check::Check;
+use fosssim_evidence::{Evidence, Track};
+use fosssim_model::scene::Scene;
+use sha2::{Digest, Sha256};
+
+const SCRIPT: &str = include_str!("viewer.js");
+const STYLE: &str = include_str!("style.css");
+
+/// The reference's run with a named mistake switched on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WhatIf {
+    /// The mistake's key in the catalogue.
+    pub id: String,
+    /// The mistake in a sentence.
+    pub sentence: String,
+    /// The motion, in the window of the evidence.
+    pub track: Track,
+    /// Whether it writes the same bytes as the submission.
+    pub equal: bool,
+}
+
+/// One judged trace.
+#[derive(Debug, Clone, Copy)]
+pub struct Case<'a> {
+    /// Verdict, findings, explanations.
+    pub check: Check<'a>,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What the viewer shows; `None` leaves viewer and plots out.
+    pub evidence: Option<&'a Evidence>,
+    /// The proof of the first explanation.
+    pub what_if: Option<&'a WhatIf>,
+}
+
+/// A page about some traces.
+#[derive(Debug, Clone)]
+pub struct Page<'a> {
+    /// What stands in the window's title.
+    pub title: &'a str,
+    /// The traces, in the order of the page.
+    pub cases: Vec<Case<'a>>,
+}
+
+impl Page<'_> {
+    /// The file.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let style = format!("{}{STYLE}", fosssim_render::plot::STYLE);
+        let policy = format!(
+            "default-src 'none'; script-src '{}'; style-src '{}'; img-src blob: data:; media-src blob:; base-uri 'none'; \
+             form-action 'none'",
+            digest(SCRIPT),
+            digest(&style)
+        );
+        let title = markup::text(self.title);
+        let body: String = self.cases.iter().enumerate().map(|(number, case)| case.html(number)).collect();
+        format!(
+            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"robots\" content=\"noindex\">\n<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n\
+             <a class=\"skip\" href=\"#content\">To the content</a>\n<main id=\"content\">\n{body}</main>\n\
+             <footer><p>Written by fosssim-oracle {}. Lengths, times and velocities are in the scene's units.</p></footer>\n\
+             <script>{SCRIPT}</script>\n</body>\n</html>\n",
+            env!("CARGO_PKG_VERSION"),
+        )
+    }
+}
+
+/// The digest by which a policy allows a script or a style sheet.
+fn digest(text: &str) -> String {
+    use base64::Engine;
+    format!("sha256-{}", base64::engine::general_purpose::STANDARD.encode(Sha256::digest(text)))
+}
