@@ -39,7 +39,11 @@ impl Case<'_> {
         let first = account.first_divergence.or(other);
         if let (Some(first), false) = (first, is_other_scene) {
             let _ = writeln!(out, "<h2>Where it goes wrong first</h2>");
-            let _ = writeln!(out, "<pre>{}</pre>", text(&divergence_text(first, outcome.steps)));
+            let _ = writeln!(
+                out,
+                "<pre tabindex=\"0\" role=\"region\" aria-label=\"First divergence\">{}</pre>",
+                text(&divergence_text(first, outcome.steps))
+            );
         }
         if let Some(evidence) = self.evidence {
             let _ = writeln!(
@@ -88,7 +92,11 @@ impl Case<'_> {
             let (first, rest) = lines.split_first().map_or(("", &[][..]), |(first, rest)| (first.as_str(), rest));
             let _ = write!(out, "<div class=\"mistake\"><p>{}</p>", text(first));
             if !rest.is_empty() {
-                let _ = write!(out, "<pre>{}</pre>", text(&rest.join("\n")));
+                let _ = write!(
+                    out,
+                    "<pre tabindex=\"0\" role=\"region\" aria-label=\"Details\">{}</pre>",
+                    text(&rest.join("\n"))
+                );
             }
             if let (0, Some(what)) = (place, self.what_if) {
                 let words = if what.equal {

@@ -110,7 +110,7 @@
     build() {
       const { data } = this;
       const button = (text, label, act, key) =>
-        el("button", { type: "button", onclick: act, title: key ? `${label} (${key})` : label, "aria-label": label }, text);
+        el("button", { type: "button", onclick: act, title: key ? `${label} (${key})` : label, "aria-label": /[a-z]/i.test(text) ? `${text}: ${label}` : label }, text);
       const check = (name, text, mark) => {
         const box = el("input", { type: "checkbox", onchange: (event) => { this.show[name] = event.target.checked; this.look(); } });
         box.checked = this.show[name];

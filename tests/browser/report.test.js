@@ -1,0 +1,162 @@
+// Real reports in a real browser: Debian's Chromium, driven by playwright-core.
+// FOSSSIM_BIN names the folder with fosssim-oracle and fosssim-sample; CHROMIUM the browser.
+import { strict as assert } from "node:assert";
+import { execFileSync, spawnSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
+const programs = process.env.FOSSSIM_BIN ?? join(root, "target/debug");
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+let browser, folder;
+
+const CASES = {
+  accepted: ["ContinuousTimeTests/head-on-equal-masses", null],
+  polynomial: ["ContinuousTimeTests/spinning-edge-sweeps-balls", "pe-linear-one-ab"],
+  contact: ["ContinuousTimeTests/head-on-equal-masses", "pp-contact-reversed"],
+  failsafe: ["GeometricTests/pair-becomes-rigid", "failsafe-angular-overwritten"],
+};
+
+function report(name, { traceName = `${name}.bin`, cut = null } = {}) {
+  const [scene, mistake] = CASES[name];
+  const trace = join(folder, traceName);
+  const html = join(folder, `${name}.html`);
+  execFileSync(join(programs, "fosssim-sample"), [...(mistake ? ["--mistake", mistake] : []), "-s", join(root, "assets", `${scene}.xml`), "-d", "0", "-o", trace]);
+  if (cut) execFileSync("truncate", ["-s", String(cut), trace]);
+  const run = spawnSync(join(programs, "fosssim-oracle"), ["check", join(root, "assets", `${scene}.xml`), trace, "--format", "html", "--output", html], { encoding: "utf8" });
+  assert.ok(run.status === 0 || run.status === 1, run.stderr);
+  return html;
+}
+
+async function open(html, { scheme = "light", script = true, hash = "" } = {}) {
+  const context = await browser.newContext({ colorScheme: scheme, javaScriptEnabled: script, viewport: { width: 1200, height: 1000 }, bypassCSP: false });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("request", (request) => /^(file|blob|data):/.test(request.url()) || complaints.push(`request ${request.url()}`));
+  await page.goto(pathToFileURL(html).href + hash);
+  if (script && (await page.locator("details.motion").count())) await page.waitForSelector("html[data-ready]");
+  return { page, complaints, close: () => context.close() };
+}
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "fosssim-browser-"));
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+for (const name of Object.keys(CASES)) {
+  test(`${name}: no complaint, no request, accessible in light and dark`, async () => {
+    const html = report(name);
+    assert.ok(statSync(html).size < 700_000);
+    for (const scheme of ["light", "dark"]) {
+      const { page, complaints, close } = await open(html, { scheme });
+      await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = true)));
+      // The page's policy allows no foreign script: the checker runs as the debugger's own.
+      await page.evaluate(axe + ";0");
+      const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+      const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+      assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).slice(0, 3).join(" ")}`), []);
+      assert.deepEqual(complaints, []);
+      await close();
+    }
+  });
+}
+
+test("without script the essentials are there", async () => {
+  const { page, close } = await open(report("polynomial"), { script: false });
+  const text = await page.locator("main").innerText();
+  for (const words of [/WRONG ANSWER/, /likely mistake/, /Where it goes wrong first/, /differs/, /needs JavaScript/]) assert.match(text, words);
+  assert.ok((await page.locator("figure svg").count()) >= 4);
+  await close();
+});
+
+test("a wrong failsafe is found by keyboard", async () => {
+  const { page, complaints, close } = await open(report("failsafe"));
+  const step = () => page.locator(".stepbox").inputValue().then(Number);
+  const said = () => page.locator(".say").innerText();
+  const first = await step();
+  assert.match(await said(), /is wrong by itself/);
+  assert.match(await said(), /with the named mistake is here to the last bit/);
+  await page.locator(".viewer canvas:not(.strip)").focus();
+  await page.keyboard.press("n");
+  assert.ok((await step()) > first || /no later wrong step/.test(await said()));
+  await page.keyboard.press("Home");
+  assert.equal(await step(), 0);
+  await page.keyboard.press("n");
+  assert.equal(await step(), first);
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await step(), first + 1);
+  await page.keyboard.press("Shift+ArrowLeft");
+  assert.equal(await step(), Math.max(0, first - 9));
+  await page.keyboard.press("p");
+  await page.locator(".stepbox").fill(String(first));
+  await page.locator(".stepbox").press("Enter");
+  assert.equal(await step(), first);
+  assert.match(await page.locator(".facts").innerText(), /momentum after the step/);
+  // The difference is too small or large to be judged by eye: the factor is said.
+  assert.match(await page.locator(".viewer").innerText(), /magnified .*times \(largest difference/s);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("the picture, its table and the plots show the same moment", async () => {
+  const { page, close } = await open(report("contact"));
+  const before = await page.locator(".viewer canvas:not(.strip)").evaluate((canvas) => canvas.toDataURL());
+  await page.keyboard.press("Home");
+  const atStart = await page.locator(".viewer canvas:not(.strip)").evaluate((canvas) => canvas.toDataURL());
+  assert.notEqual(atStart, before);
+  await page.locator("summary", { hasText: "The picture as a table" }).click();
+  await page.locator(".viewer canvas:not(.strip)").focus();
+  await page.keyboard.press("n");
+  assert.match(await page.locator("details.table table caption").last().innerText(), /Positions after step \d+/);
+  const step = Number(await page.locator(".stepbox").inputValue());
+  const place = await page.locator("figure[data-plot] svg .cursor").first().getAttribute("x1");
+  const [left, right, steps] = await page.locator("figure[data-plot]").first().evaluate((figure) => [Number(figure.dataset.left), Number(figure.dataset.right), Number(figure.dataset.steps)]);
+  assert.ok(Math.abs(Number(place) - (left + ((step - 1) / (steps - 1)) * (right - left))) < 1e-6);
+  await close();
+});
+
+test("a pair is chosen, its numbers are exact, and a command line reproduces it", async () => {
+  const { page, close } = await open(report("polynomial"));
+  await page.locator("summary", { hasText: "Pairs" }).click();
+  await page.locator("td.differs button").first().click();
+  const numbers = await page.locator(".numbers").innerText();
+  assert.match(numbers, /0x[0-9a-f]{16}/);
+  const command = await page.locator(".numbers code").innerText();
+  const run = spawnSync("sh", ["-c", command.replace(/^fosssim-oracle/, `'${join(programs, "fosssim-oracle")}'`)], { encoding: "utf8" });
+  assert.equal(run.status, 0, run.stderr);
+  assert.match(run.stdout, /overlap/);
+  await close();
+});
+
+test("a link leads to a moment", async () => {
+  const html = report("failsafe");
+  const scene = join(root, "assets", `${CASES.failsafe[0]}.xml`);
+  const { page, close } = await open(html, { hash: `#${new URLSearchParams({ scene, step: 3, t: 0.25 })}` });
+  assert.equal(await page.locator(".stepbox").inputValue(), "3");
+  assert.equal(await page.locator("output").first().innerText(), "0.250");
+  await close();
+});
+
+test("hostile names are text, and a damaged trace has its page", async () => {
+  const { page, complaints, close } = await open(report("contact", { traceName: "<img src=x onerror=alert(1)>'\"\u202e.bin", cut: 1501 }));
+  page.on("dialog", () => assert.fail("a dialog"));
+  assert.equal(await page.locator("img").count(), 0);
+  assert.match(await page.locator(".names").innerText(), /<img src=x onerror=alert\(1\)>/);
+  assert.match(await page.locator(".names").innerText(), /\\u\{202e\}/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
