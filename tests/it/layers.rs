@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The crates of the house and those that each may use, lowest first.
-const CRATES: [(&str, &[&str]); 13] = [
+const CRATES: [(&str, &[&str]); 14] = [
     ("num", &[]),
     ("textdiff", &[]),
     ("sandbox", &[]),
@@ -12,9 +12,16 @@ const CRATES: [(&str, &[&str]); 13] = [
     ("judge", &["num", "model"]),
     ("mistakes", &["num", "model", "judge"]),
     ("render", &["num", "model", "judge"]),
+    ("evidence", &["model", "judge", "mistakes"]),
     ("grading", &["num", "textdiff", "sandbox", "model", "judge", "mistakes"]),
-    ("report", &["num", "testing", "model", "judge", "mistakes", "grading"]),
-    ("oracle", &["num", "textdiff", "testing", "sandbox", "model", "judge", "mistakes", "render", "grading", "report"]),
+    ("report", &["num", "testing", "model", "judge", "mistakes", "render", "evidence", "grading"]),
+    (
+        "oracle",
+        &[
+            "num", "textdiff", "testing", "sandbox", "model", "judge", "mistakes", "render", "evidence", "grading",
+            "report",
+        ],
+    ),
     ("lab", &["oracle"]),
     ("server", &["testing"]),
 ];
