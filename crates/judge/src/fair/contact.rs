@@ -2,7 +2,7 @@
 use super::{
     formulas::{Expected, Motion},
     probe::Deviation,
-    step::{Context, Records, StepJudgement},
+    step::{Context, Records, StepJudgement, largest},
 };
 use crate::finding::{Detail, Finding};
 use fosssim_model::{
@@ -81,20 +81,22 @@ pub(super) fn hit(
     let (normal, bounds) = match known {
         Some((motion, _)) => {
             let normal = motion.normal(actual.time);
-            ([normal.x.value, normal.y.value], [normal.x.bound, normal.y.bound])
+            (Vec2::new(normal.x.value, normal.y.value), Vec2::new(normal.x.bound, normal.y.bound))
         }
-        None => (own.normal.into(), [context.size(records.before); 2]),
+        None => {
+            let size = context.size(records.before);
+            (own.normal, Vec2::new(size, size))
+        }
     };
-    for ((right, bound), logged) in normal.into_iter().zip(bounds).zip([actual.normal.x, actual.normal.y]) {
-        let (residual, tolerance) = ((logged - right).abs(), FAIR_UNITS * UNIT_ROUNDOFF * bound);
-        if !(residual <= tolerance) {
-            let expected = Impulse { normal: normal.into(), time: actual.time, ..own };
-            let residual = length(actual.normal - expected.normal);
-            return Some(Detail::WrongNormal { expected, actual: *actual, residual });
-        }
-        if residual > 0.0 {
-            judged.shares.normal = judged.shares.normal.max(residual / tolerance);
-        }
+    // Of the whole vector: in axes of another direction the round-off of one component is that of both.
+    let residual = length(actual.normal - normal);
+    let tolerance = FAIR_UNITS * UNIT_ROUNDOFF * length(bounds);
+    if !(residual <= tolerance) {
+        let expected = Impulse { normal, time: actual.time, ..own };
+        return Some(Detail::WrongNormal { expected, actual: *actual, residual });
+    }
+    if residual > 0.0 {
+        judged.shares.normal = judged.shares.normal.max(residual / tolerance);
     }
     None
 }
@@ -111,7 +113,7 @@ pub(super) fn states(
 ) {
     let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
     let size = context.size(own);
-    let speed = own.velocities.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let speed = largest(&own.velocities);
     // Where contacts are answered, velocities come from displacements over the time step.
     let from_positions = match context.scene.collision {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,

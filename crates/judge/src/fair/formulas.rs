@@ -18,17 +18,19 @@ use fosssim_num::{
 /// The way of one point in a step: where it starts, and its displacement.
 #[derive(Debug, Clone, Copy)]
 pub struct Way {
-    /// Position at the start of the step; exact, since it is taken from the trace.
+    /// Position at the start of the step.
     pub start: Bounded2,
-    /// Displacement in the step. The end position is not logged: it may be off by a rounding.
+    /// Displacement in the step.
     pub shift: Bounded2,
 }
 
 impl Way {
-    /// The way of particle `index` between two arrays of positions.
-    pub fn of(q_start: &[f64], q_end: &[f64], index: usize) -> Self {
-        let (start, end) = (at(q_start, index), at(q_end, index));
-        Self { start: Bounded2::exact(start), shift: Bounded2::rounded(end) - Bounded2::exact(start) }
+    /// The way between two points whose coordinates may be off by roundings of `size`: a program may compute in axes of its
+    /// own, turned or shifted. Nothing is off if it rests for certain.
+    fn between([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
+        let start_place = within(start, size);
+        let shift = if rests { Bounded2::default() } else { within(end, size) - start_place };
+        Self { start: start_place, shift }
     }
 
     /// The way as seen from `other`.
@@ -94,18 +96,31 @@ impl Motion {
     /// The pair's motion in a step.
     pub fn of(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
-        let way = |particle| Way::of(q_start, q_end, particle);
+        let places = |particle| [at(q_start, particle), at(q_end, particle)];
+        let size = |particles: &[usize]| {
+            let all = particles.iter().flat_map(|&particle| places(particle));
+            all.fold(0.0_f64, |most, place| most.max(extent(place)))
+        };
+        let way = |particle, size| {
+            let [start, end] = places(particle);
+            Way::between([start, end], size, scene.particles[particle].fixed && start == end)
+        };
         let radius = |particle: usize| Bounded::exact(scene.particles[particle].radius);
         match pair.kind {
-            PairKind::ParticleParticle => Self::Particles([way(first), way(second)], radius(first) + radius(second)),
+            PairKind::ParticleParticle => {
+                let size = size(&[first, second]);
+                Self::Particles([first, second].map(|particle| way(particle, size)), radius(first) + radius(second))
+            }
             PairKind::ParticleEdge => {
                 let edge = &scene.edges[second];
-                let ways = [way(first), way(edge.first), way(edge.second)];
-                Self::Edge(ways, radius(first) + Bounded::exact(edge.radius))
+                let particles = [first, edge.first, edge.second];
+                let size = size(&particles);
+                Self::Edge(particles.map(|particle| way(particle, size)), radius(first) + Bounded::exact(edge.radius))
             }
             PairKind::ParticleHalfPlane => {
                 let half_plane = &scene.half_planes[second];
-                Self::HalfPlane(way(first), radius(first), half_plane.point, half_plane.normal)
+                let size = size(&[first]).max(extent(half_plane.point));
+                Self::HalfPlane(way(first, size), radius(first), half_plane.point, half_plane.normal)
             }
         }
     }
@@ -159,7 +174,7 @@ impl Motion {
             }
             Self::Edge(ways, radii) => edge(&mut expected, ways, radii),
             Self::HalfPlane(way, radius, point, q) => {
-                let (q, w) = (Bounded2::exact(q), Bounded2::exact(point) - way.start);
+                let (q, w) = (turned(q), turned(point) - way.start);
                 let (s, w) = (way.shift.dot(q), w.dot(q));
                 expected.set(0, &[-(s * s), 2.0 * (w * s), radius * radius * q.dot(q) - w * w]);
                 expected.set(1, &[-(s * s), w * s]);
@@ -180,12 +195,28 @@ impl Motion {
                 x2 + (a.dot(b) / b.dot(b)) * b - x1
             }
             Self::HalfPlane(way, _, point, q) => {
-                let q = Bounded2::exact(*q);
-                let w = Bounded2::exact(*point) - place(way);
+                let q = turned(*q);
+                let w = turned(*point) - place(way);
                 (w.dot(q) / q.dot(q)) * q
             }
         }
     }
+}
+
+/// A vector whose components may each be off by a rounding of this size.
+fn within(v: Vec2, size: f64) -> Bounded2 {
+    let component = |value| Bounded { value, bound: size };
+    Bounded2 { x: component(v.x), y: component(v.y) }
+}
+
+/// What the scene says, in axes of any direction.
+fn turned(v: Vec2) -> Bounded2 {
+    within(v, extent(v))
+}
+
+/// The size of a vector's roundings in axes of any direction: between its length and the root of 2 times that.
+pub(super) fn extent(v: Vec2) -> f64 {
+    v.x.abs() + v.y.abs()
 }
 
 /// The four polynomials of a particle and an edge, with the letters of collisions.md 2.

@@ -3,6 +3,7 @@
 use super::{
     contact,
     follow::Follower,
+    formulas::extent,
     judgement::{Borderline, Scales, Shares},
     probe::{Sensitivity, probe},
 };
@@ -15,7 +16,7 @@ use fosssim_model::{
     sim::{Pair, PairKind, Pass, Simulation, State, StepError},
     trace::LenientFrame,
 };
-use fosssim_num::polynomial::MAX_COEFFICIENTS;
+use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::at};
 
 /// So many borderline decisions of a hybrid step are tried the other way, all combinations of them.
 const MOST_FLIPS: usize = 4;
@@ -54,9 +55,9 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The largest coordinate: roundings of positions are of this size.
+    /// The size of the largest position: roundings of positions are of this size.
     pub(super) fn size(&self, state: &State) -> f64 {
-        state.positions.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+        largest(&state.positions)
     }
 }
 
@@ -161,6 +162,12 @@ impl StepJudgement {
             )
         })
     }
+}
+
+/// The size of the largest vector, in whatever directions the axes point.
+pub(super) fn largest(vectors: &[f64]) -> f64 {
+    let all = (0..vectors.len() / 2).map(|index| extent(at(vectors, index)));
+    all.fold(0.0, f64::max)
 }
 
 /// Judges a step. `identical` says that states, impulses and polynomials of both records are the reference's bit for
