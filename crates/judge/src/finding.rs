@@ -134,14 +134,14 @@ impl Finding {
             Detail::PolynomialDegree { .. } => Kind::PolynomialDegree,
             Detail::VanishingPolynomial { .. } => Kind::VanishingPolynomial,
             Detail::Coefficient { .. } => Kind::Coefficient,
-            Detail::Position { .. } => Kind::Position,
+            Detail::Position { .. } | Detail::BeyondReach { .. } => Kind::Position,
             Detail::Velocity { .. } => Kind::Velocity,
             Detail::ContactTime { .. } => Kind::ContactTime,
             Detail::RepeatedCollision { .. } => Kind::RepeatedCollision,
             Detail::PassPositions { .. } => Kind::PassPositions,
             Detail::RecordsDiffer { .. } => Kind::RecordsDiffer,
             Detail::ImpossibleLog => Kind::ImpossibleLog,
-            Detail::TrimmedDecision { .. } => Kind::TrimmedDecision,
+            Detail::TrimmedDecision { .. } | Detail::TrimmedTime { .. } => Kind::TrimmedDecision,
             Detail::MixedForms { .. } => Kind::MixedForms,
         }
     }
@@ -281,6 +281,26 @@ pub enum Detail {
         place: PolynomialPlace,
         /// Whether the pair collides.
         collides: bool,
+    },
+    /// The trace's polynomials are right, but with their factor the course's library dropped coefficients, and this time of
+    /// impact is theirs (fair rules).
+    TrimmedTime {
+        /// The pair's first polynomial.
+        place: PolynomialPlace,
+        /// The time of impact without the loss.
+        expected: f64,
+        /// The time of impact that the trace's polynomials have.
+        actual: f64,
+    },
+    /// A state from which nothing can be right or wrong any more: without numbers, or of another size altogether than
+    /// anything that the scene leads to (fair rules).
+    BeyondReach {
+        /// The particle.
+        particle: usize,
+        /// Its position (x, y).
+        position: [f64; 2],
+        /// Its velocity (x, y).
+        velocity: [f64; 2],
     },
     /// The approach polynomial has the other of its two accepted forms than before (fair rules).
     MixedForms {

@@ -4,7 +4,7 @@
 //! own state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
 //! reported, and in which order, does not depend on the number of threads.
 use super::{
-    fair::{self, Context, Records, StepJudgement},
+    fair::{self, Context, Reach, Records, StepJudgement},
     outcome::{Damage, Outcome, Stop, Unreadable},
     parity::{Options, Progress, StepFindings, WrongStep},
     rules::Book,
@@ -47,6 +47,10 @@ struct Slot {
     damage: Option<Damage>,
     result: StepResult,
     fair: StepJudgement,
+    /// Whether the fair rules have to know the reference's own run.
+    is_extraordinary: bool,
+    /// Whether they have to know it before they look at the step.
+    is_put_off: bool,
     error: Option<StepError>,
     /// Whether more polynomials would have to be compared than were kept.
     beyond_limit: bool,
@@ -172,6 +176,8 @@ struct Replay<'a, R> {
     /// Byte offset of its record.
     state_at: u64,
     steps_read: u32,
+    /// What leads nowhere by the fair rules, if they are asked.
+    reach: Option<Reach<'a>>,
     /// Damage of the record that could not be read at last.
     damage: Option<Damage>,
     /// Whether a record of the steps delivered so far, or the first one, is damaged.
@@ -189,6 +195,7 @@ impl<'a, R: Read> Replay<'a, R> {
             state: State::default(),
             state_at: 0,
             steps_read: 0,
+            reach: fair.then(|| Reach::new(scene)),
             damage: None,
             damaged: false,
             outcome: Outcome {
@@ -318,7 +325,17 @@ impl<'a, R: Read> Replay<'a, R> {
             // What is left of a damaged record counts for the original, but nobody is to blame for its numbers.
             if !self.damaged {
                 slot.result.firsts.iter().for_each(|first| outcome.keep_first(first));
-                if let Some(judgement) = &mut outcome.fair {
+                if let (Some(judgement), Some(context), Some(reach)) =
+                    (&mut outcome.fair, &self.shape.fair, &mut self.reach)
+                {
+                    if slot.is_extraordinary {
+                        let frame = u64::from(slot.step) * u64::from(self.shape.layout.records_per_step());
+                        let mid = self.shape.layout.polynomials.then_some(&slot.mid);
+                        let (step, before, end) = (slot.step, &slot.before, &slot.end);
+                        let records = Records { step, frame, before, mid, end };
+                        let known = (!slot.is_put_off).then(|| std::mem::take(&mut slot.fair));
+                        slot.fair = reach.judge(context, records, slot.result.identical, known);
+                    }
                     judgement.add(&slot.fair);
                 }
             }
@@ -404,7 +421,9 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &Shape<'_>) {
 }
 
 fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
-    let Slot { step, before, mid, end, result, fair: judged, error, beyond_limit, .. } = slot;
+    let Slot {
+        step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, ..
+    } = slot;
     let Worker { simulation, buffers } = worker;
     copy_state(simulation.state_mut(), before);
     simulation.set_steps_done(*step - 1);
@@ -421,13 +440,11 @@ fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
     }
     if let (Some(context), None, false) = (&shape.fair, &error, *beyond_limit) {
         let records = Records { step: *step, frame, before, mid, end };
-        // Parity had a result; so it is what the trace logged that leads nowhere.
-        *judged = fair::judge(context, simulation, records, result.identical).unwrap_or_else(|_| StepJudgement {
-            step: *step,
-            frame,
-            endless: true,
-            ..StepJudgement::default()
-        });
+        *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
+        *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
+        if !*is_put_off {
+            *judged = fair::judge(context, simulation, records, result.identical);
+        }
     }
 }
 

@@ -139,6 +139,18 @@ impl Display for Detail {
                     PassWords(place.pass)
                 )
             }
+            Self::TrimmedTime { place, expected, actual } => {
+                let pair = PairWords(place.pair);
+                write!(
+                    f,
+                    "{pair} ({}) collide at time {expected}; the trace's polynomials are right up to their factor, but the course's library dropped coefficients below 1e-12 of them, and finds {actual}",
+                    PassWords(place.pass)
+                )
+            }
+            Self::BeyondReach { particle, position: [x, y], velocity: [vx, vy] } => write!(
+                f,
+                "the step starts or ends with particle {particle} at ({x}, {y}) with velocity ({vx}, {vy}): no run of the scene leads to such states"
+            ),
             Self::MixedForms { place } => {
                 write!(f, "{place}: the other one of the two accepted forms; a program uses one of them throughout")
             }

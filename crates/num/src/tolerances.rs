@@ -83,6 +83,14 @@ pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 /// that is not the course's may leave.
 pub const FAIR_TIME: f64 = 1.0 / (1_u64 << 40) as f64;
 
+/// Fair: leading coefficients below this many times [`LEADING_COEFFICIENT`] may be lost without a word: factors near 1 move
+/// others across that bound than the course's own formulas do. Larger values let factors change times of impact.
+pub const FAIR_LOSS: f64 = 4.0;
+
+/// Fair: states may be this many times as large, or as close together, as any in the reference's own run; beyond that
+/// nothing is left to be right or wrong.
+pub const FAIR_REACH: f64 = (1_u64 << 20) as f64;
+
 /// Fair: how often a step's own sensitivity to roundings of its inputs a state may be off.
 pub const FAIR_SENSITIVITY: f64 = 8.0;
 

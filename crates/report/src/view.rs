@@ -281,6 +281,14 @@ impl FindingView {
             Detail::PassPositions { place } | Detail::TrimmedDecision { place, .. } | Detail::MixedForms { place } => {
                 self.pair = Some(place.pair.into());
             }
+            Detail::TrimmedTime { place, expected, actual } => {
+                self.pair = Some(place.pair.into());
+                self.compare(Value::Number(Number(*expected)), Value::Number(Number(*actual)));
+            }
+            Detail::BeyondReach { particle, position, .. } => {
+                self.particle = Some(*particle);
+                self.actual = Some(Value::Numbers(numbers(position)));
+            }
             Detail::RecordsDiffer { .. } | Detail::ImpossibleLog => {}
             Detail::PolynomialCount { expected, actual, .. } | Detail::PassCount { expected, actual, .. } => {
                 self.compare(Value::Count(*expected), Value::Count(*actual));

@@ -230,12 +230,14 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
         Detail::MissedCollision { .. }
         | Detail::SuperfluousCollision { .. }
         | Detail::TrimmedDecision { .. }
+        | Detail::TrimmedTime { .. }
         | Detail::PolynomialCount { .. } => Cause::OwnPolynomials,
         Detail::WrongNormal { .. }
         | Detail::PolynomialDegree { .. }
         | Detail::VanishingPolynomial { .. }
         | Detail::Coefficient { .. }
         | Detail::Position { .. }
+        | Detail::BeyondReach { .. }
         | Detail::Velocity { .. }
         | Detail::PassPositions { .. }
         | Detail::MixedForms { .. } => Cause::SmallErrors,

@@ -1,13 +1,16 @@
 //! The fair verdict on one trace.
-use super::step::StepJudgement;
+use super::step::{Pending, StepJudgement};
 use crate::{
-    finding::{Detail, Finding, Kind, PolynomialPlace},
+    finding::{Detail, Finding},
     outcome::Counts,
 };
 use fosssim_model::sim::{Pair, PairKind, Pass};
 
 /// So many examples of borderline decisions are kept.
 const EXAMPLES: usize = 8;
+
+/// So few decisions, though they may be most of a trace's, can be all that a small scene has.
+const FEW: u64 = 64;
 
 /// The verdict of the fair rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,6 +33,8 @@ pub enum Refusal {
     Damaged,
     /// Bytes follow the last record.
     TrailingBytes,
+    /// Most of its decisions are such that round-off may flip them, and differ from the reference's: it shows nothing.
+    Undecided,
 }
 
 /// Which of the two accepted forms of the particle-edge approach polynomial a trace uses.
@@ -95,10 +100,12 @@ pub struct Judgement {
     pub counts: Counts,
     /// Steps with at least one finding; the initial record is not one.
     pub wrong_steps: u64,
-    /// The first finding of each kind that occurred, in the order of [`Kind::ALL`].
+    /// The first finding of each kind that occurred, in the order of [`Kind::ALL`](crate::Kind::ALL).
     pub examples: Vec<Finding>,
     /// The very first finding.
     pub first_divergence: Option<Finding>,
+    /// How many decisions about pairs the trace holds, in all steps and passes.
+    pub decisions: u64,
     /// How many borderline decisions the trace has the other way.
     pub borderline: u64,
     /// The first ones.
@@ -111,19 +118,16 @@ pub struct Judgement {
     pub lost: u64,
     /// Used shares of the tolerances.
     pub shares: Shares,
-    /// For each polynomial of a pair what hangs on its factor.
-    pending: [[Option<Hanging>; 4]; 3],
+    /// What hangs on the factors of polynomials, step by step.
+    pending: Vec<Hanging>,
 }
 
-/// Findings that hang on the factor of a program's polynomials.
+/// Polynomials of one step and kind that hang on the program's factors.
 #[derive(Debug, Clone, Copy)]
 struct Hanging {
-    /// The first one.
-    finding: Finding,
-    /// How many there are.
-    count: u64,
-    /// They are none if the factor lies within these.
-    factors: [f64; 2],
+    polynomials: Pending,
+    /// Whether the step is wrong anyway.
+    is_wrong: bool,
 }
 
 impl Judgement {
@@ -147,7 +151,7 @@ impl Judgement {
             self.charge(*finding);
         }
         self.counts += step.more;
-        self.wrong_steps += u64::from(!step.findings.is_empty());
+        self.decisions += step.decisions;
         self.borderline += step.borderline.len() as u64;
         let room = EXAMPLES.saturating_sub(self.borderline_examples.len());
         self.borderline_examples.extend(step.borderline.iter().take(room));
@@ -158,33 +162,29 @@ impl Judgement {
             };
         }
         self.lost += step.lost;
-        for pending in &step.pending {
-            let (row, number) = pending.place;
-            let first = Hanging { finding: pending.finding, count: 0, factors: [0.0, f64::INFINITY] };
-            let Hanging { count, factors: [low, high], .. } = self.pending[row][number].get_or_insert(first);
-            *count += 1;
-            *low = low.max(pending.factors[0]);
-            *high = high.min(pending.factors[1]);
-        }
         if step.endless {
             self.refusal = Some(Refusal::Stopped);
         }
         self.shares.widen(&step.shares);
+        let mut is_wrong = !step.findings.is_empty() || step.endless;
         for (form, place) in [(Form::Course, step.course_form), (Form::Right, step.right_form)] {
             let Some(place) = place else { continue };
             if self.form == Form::Either {
                 self.form = form;
             } else if self.form != form {
-                self.mixed(step, place);
+                is_wrong = true;
+                self.charge(Finding { step: step.step, frame: step.frame, detail: Detail::MixedForms { place } });
             }
         }
-    }
-
-    fn mixed(&mut self, step: &StepJudgement, place: PolynomialPlace) {
-        if self.counts.get(Kind::MixedForms) == 0 {
-            self.wrong_steps += u64::from(step.findings.is_empty());
-        }
-        self.charge(Finding { step: step.step, frame: step.frame, detail: Detail::MixedForms { place } });
+        self.wrong_steps += u64::from(is_wrong);
+        // A range of factors that fits already will fit at the end.
+        let hangs = |pending: &&Pending| {
+            let (row, number) = pending.place;
+            self.scales[row][number].is_none_or(|range| pending.finding(range).is_some())
+        };
+        let hanging: Vec<Hanging> =
+            step.pending.iter().filter(hangs).map(|&polynomials| Hanging { polynomials, is_wrong }).collect();
+        self.pending.extend(hanging);
     }
 
     /// Adds a finding.
@@ -198,27 +198,36 @@ impl Judgement {
         }
     }
 
-    /// Charges what is no round-off with the factors that the trace uses.
+    /// Charges what is no round-off with the factors that the trace uses for polynomials of the same kind; with 1, if none tells.
     fn settle_pending(&mut self) {
-        let all = self.scales.iter().flatten().flatten().copied();
-        let all = all.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([1.0; 2]);
-        for row in 0..self.pending.len() {
-            for number in 0..self.pending[row].len() {
-                let Some(Hanging { finding, count, factors }) = self.pending[row][number].take() else { continue };
-                let [low, high] = self.scales[row][number].unwrap_or(all);
-                let room = 1e-9;
-                if !(factors[0] <= high * (1.0 + room) && factors[1] >= low * (1.0 - room)) {
-                    self.charge(finding);
-                    self.counts.add(finding.kind(), count - 1);
-                    self.wrong_steps = self.wrong_steps.max(1);
-                }
+        let mut last_wrong = 0;
+        for Hanging { polynomials, is_wrong } in std::mem::take(&mut self.pending) {
+            let (row, number) = polynomials.place;
+            let Some(finding) = polynomials.finding(self.scales[row][number].unwrap_or([1.0; 2])) else { continue };
+            // Steps come in their order, so the polynomials of one stand together.
+            self.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
+            last_wrong = finding.step;
+            if self.first_divergence.is_some_and(|first| first.step > finding.step) {
+                self.first_divergence = None;
             }
+            if let Some(place) = self.examples.iter().position(|known| known.kind() == finding.kind())
+                && self.examples[place].step > finding.step
+            {
+                self.examples.remove(place);
+            }
+            self.charge(finding);
+            self.counts.add(finding.kind(), polynomials.count - 1);
         }
+    }
+
+    /// Whether most decisions are borderline and not the reference's: some are in every correct program, most in none.
+    fn is_undecided(&self) -> bool {
+        self.borderline >= FEW && self.borderline > self.decisions / 2
     }
 
     /// Draws the verdict.
     pub(crate) fn conclude(&mut self, refusal: Option<Refusal>, complete: bool) {
-        self.refusal = self.refusal.or(refusal);
+        self.refusal = self.refusal.or(refusal).or(self.is_undecided().then_some(Refusal::Undecided));
         self.settle_pending();
         self.examples.sort_by_key(Finding::kind);
         self.verdict = if self.refusal.is_some() || self.counts.total() > 0 {

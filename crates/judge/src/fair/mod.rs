@@ -10,9 +10,12 @@
 //!    error bound. A small leading coefficient may be missing, because the course's library drops it. NaN fails.
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; where that is too little, by
 //!    [`FAIR_SENSITIVITY`] times what such roundings of the step's input do to its result.
-//! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged.
+//! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged. Where and when the
+//!    pair collides, if it does, is not free. Coefficients that were lost because of a factor are no round-off: decisions
+//!    and times of impact are compared with those of the whole polynomials.
 //! 5. It looks at everything: the first record, mid records, times of impact, repeated contacts, and what follows the
 //!    last record.
+//! 6. A step from or to a state that leads nowhere is never right.
 //!
 //! A step whose records are the reference's bit for bit needs none of this.
 //!
@@ -24,15 +27,19 @@ mod cause;
 pub mod compare;
 mod contact;
 mod follow;
+#[cfg(test)]
+mod forged_tests;
 pub mod formulas;
 #[cfg(test)]
 mod hostile_tests;
 mod judgement;
 mod probe;
+mod reach;
 mod step;
 
 pub use borderline::borderline;
 pub use cause::{Cause, cause};
 pub use contact::decides;
 pub use judgement::{Borderline, Form, Judgement, Refusal, Shares, Verdict};
+pub(super) use reach::Reach;
 pub(super) use step::{Context, Records, StepJudgement, judge, judge_initial};

@@ -6,6 +6,7 @@ use super::{
     formulas::extent,
     judgement::{Borderline, Scales, Shares},
     probe::{Sensitivity, probe},
+    reach::Ordinary,
 };
 use crate::{
     finding::{Detail, Finding, Kind, PolynomialPlace, RecordPart},
@@ -28,6 +29,10 @@ pub(crate) struct Context<'a> {
     pub scene: &'a Scene,
     /// Polynomials of one detection pass over all pairs (trace-format.md 2).
     pub per_pass: usize,
+    /// Pairs of one detection pass.
+    pub pairs: usize,
+    /// States that need no look at the reference's own run.
+    pub ordinary: Ordinary,
 }
 
 impl<'a> Context<'a> {
@@ -39,7 +44,8 @@ impl<'a> Context<'a> {
         };
         let edges: usize = (0..count).map(|particle| scene.edges.len() - ends(particle)).sum();
         let per_pass = count * count.saturating_sub(1) + 4 * edges + 2 * count * scene.half_planes.len();
-        Self { scene, per_pass }
+        let pairs = count * count.saturating_sub(1) / 2 + edges + count * scene.half_planes.len();
+        Self { scene, per_pass, pairs, ordinary: Ordinary::of(scene) }
     }
 
     /// The particles of a pair: one, two, or three with an edge.
@@ -61,6 +67,20 @@ impl<'a> Context<'a> {
     }
 }
 
+impl Records<'_> {
+    /// Whether it starts from states that are nothing out of the ordinary; the geometric part starts from the mid record.
+    pub fn start_ordinarily(&self, context: &Context<'_>) -> bool {
+        let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
+        let mid = self.mid.filter(|_| is_hybrid);
+        context.ordinary.holds(self.before) && mid.is_none_or(|mid| context.ordinary.holds(&mid.state))
+    }
+
+    /// The states that the step is about.
+    pub fn states(&self) -> impl Iterator<Item = &State> {
+        [self.before, &self.end.state].into_iter().chain(self.mid.map(|mid| &mid.state))
+    }
+}
+
 /// One step of the trace.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Records<'a> {
@@ -76,15 +96,35 @@ pub(crate) struct Records<'a> {
     pub end: &'a LenientFrame,
 }
 
-/// A polynomial that is right if the program's polynomials have a factor within bounds.
+/// Polynomials of a kind that are right if the program's polynomials of that kind have a factor within bounds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
-    /// What is wrong otherwise.
-    pub finding: Finding,
     /// Row and number of the polynomial in [`Scales`].
     pub place: (usize, usize),
-    /// The least and the largest factor.
-    pub factors: [f64; 2],
+    /// How many there are in the step.
+    pub count: u64,
+    /// The greatest of the least factors that they need, and what is wrong otherwise.
+    pub least: (f64, Finding),
+    /// The least of the greatest factors that they allow, and what is wrong otherwise.
+    pub most: (f64, Finding),
+}
+
+impl Pending {
+    /// One polynomial with the least and the greatest factor that it may have.
+    pub fn new(finding: Finding, place: (usize, usize), [least, most]: [f64; 2]) -> Self {
+        Self { place, count: 1, least: (least, finding), most: (most, finding) }
+    }
+
+    /// What is wrong where the program's factors lie between these.
+    pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
+        // Factors are known but for rounding.
+        let room = 1e-9;
+        let (least, most) = (self.least, self.most);
+        if !(least.0 <= high * (1.0 + room)) {
+            return Some(least.1);
+        }
+        (!(most.0 >= low * (1.0 - room))).then_some(most.1)
+    }
 }
 
 /// What judging one step yields.
@@ -98,6 +138,8 @@ pub(crate) struct StepJudgement {
     pub findings: Vec<Finding>,
     /// How many more there are of each kind.
     pub more: Counts,
+    /// Decisions about pairs.
+    pub decisions: u64,
     /// Borderline decisions that were followed.
     pub borderline: Vec<Borderline>,
     /// Factors of polynomials.
@@ -123,6 +165,28 @@ impl StepJudgement {
             self.more.add(finding.kind(), 1);
         } else {
             self.findings.push(finding);
+        }
+    }
+
+    /// The same, with one more finding.
+    pub(super) fn also(mut self, records: Records<'_>, detail: Detail) -> Self {
+        (self.step, self.frame) = (records.step, records.frame);
+        self.charge(Finding { step: self.step, frame: self.frame, detail });
+        self
+    }
+
+    /// Adds a polynomial that hangs on factors.
+    pub(super) fn pend(&mut self, new: Pending) {
+        let Some(known) = self.pending.iter_mut().find(|known| known.place == new.place) else {
+            self.pending.push(new);
+            return;
+        };
+        known.count += new.count;
+        if new.least.0 > known.least.0 {
+            known.least = new.least;
+        }
+        if new.most.0 < known.most.0 {
+            known.most = new.most;
         }
     }
 
@@ -171,23 +235,31 @@ pub(super) fn largest(vectors: &[f64]) -> f64 {
 }
 
 /// Judges a step. `identical` says that states, impulses and polynomials of both records are the reference's bit for
-/// bit; then only what the records say besides is looked at.
-///
-/// # Errors
-/// When a step from the trace's state has no result.
+/// bit; then only what the records say besides is looked at. The reference has a result; if there is none here, it is what
+/// the trace logged that leads to a search without end.
 pub(crate) fn judge(
     context: &Context<'_>,
     simulation: &mut Simulation,
     records: Records<'_>,
     identical: bool,
-) -> Result<StepJudgement, StepError> {
+) -> StepJudgement {
+    let (step, frame) = (records.step, records.frame);
     let mut judged = if identical {
-        StepJudgement { step: records.step, frame: records.frame, ..StepJudgement::default() }
+        let passes = records.end.polynomials.len().checked_div(context.per_pass).unwrap_or(0);
+        let decisions = (passes * context.pairs) as u64;
+        StepJudgement { step, frame, decisions, ..StepJudgement::default() }
     } else {
-        follow(context, simulation, records)?
+        follow(context, simulation, records).unwrap_or_else(|_| StepJudgement {
+            step,
+            frame,
+            endless: true,
+            ..StepJudgement::default()
+        })
     };
-    compare_records(context, records, &mut judged);
-    Ok(judged)
+    if !judged.endless {
+        compare_records(context, records, &mut judged);
+    }
+    judged
 }
 
 /// Compares the first record with the scene.

@@ -79,10 +79,11 @@ fn side_by_side(detail: &Detail, style: Style) -> String {
             table.row(["actual".into(), Cell::looking(Look::Bad, actual.to_string())]);
             table.render(style)
         }
-        Detail::PassPositions { place } | Detail::TrimmedDecision { place, .. } | Detail::MixedForms { place } => {
-            logged_by(place)
-        }
-        Detail::RecordsDiffer { .. } | Detail::ImpossibleLog => String::new(),
+        Detail::PassPositions { place }
+        | Detail::TrimmedDecision { place, .. }
+        | Detail::TrimmedTime { place, .. }
+        | Detail::MixedForms { place } => logged_by(place),
+        Detail::BeyondReach { .. } | Detail::RecordsDiffer { .. } | Detail::ImpossibleLog => String::new(),
     }
 }
 

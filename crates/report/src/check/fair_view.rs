@@ -83,6 +83,7 @@ impl From<&Judgement> for FairView {
                 Refusal::Stopped => "stopped",
                 Refusal::Damaged => "damaged",
                 Refusal::TrailingBytes => "trailing_bytes",
+                Refusal::Undecided => "undecided",
             }),
             wrong_steps: fair.wrong_steps,
             first_divergence: fair.first_divergence.as_ref().map(FindingView::fair),

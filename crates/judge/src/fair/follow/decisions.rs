@@ -1,0 +1,166 @@
+//! What a step's decisions and contacts are charged for.
+use super::Follower;
+use crate::{fair::contact, finding::Detail};
+use fosssim_model::{
+    sim::{Decision, Impulse, Pair, Stage, Time},
+    trace::LoggedImpulse,
+};
+use fosssim_num::vector::Vec2;
+
+/// What the reference's own polynomials say about a pair whose logged ones are right, and others.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Own {
+    /// Their time of impact.
+    pub time: f64,
+    /// Whether the logged ones have lost other leading coefficients.
+    pub lost: bool,
+}
+
+impl Follower<'_> {
+    /// The decision that the step goes on with: the submission's, as far as the trace tells.
+    pub(super) fn settle(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
+        let call = self.decisions.len();
+        let findings = self.judged.total();
+        let own = self.own.take();
+        if let Some(own) = own {
+            self.review_losses(pair, by_polynomials, own);
+        }
+        let decision = match self.pass.stage {
+            Stage::Simple | Stage::ContinuousTime => self.follow(pair, by_polynomials),
+            Stage::Impulses { .. } | Stage::Geometric { .. } if self.flips.contains(&call) => {
+                self.turned_round(by_polynomials)
+            }
+            Stage::Impulses { .. } | Stage::Geometric { .. } => by_polynomials,
+        };
+        let is_expected = match own {
+            Some(own) if (own.time <= 1.0) != (time(by_polynomials) <= 1.0) => own.time <= 1.0,
+            _ => collides(by_polynomials),
+        };
+        // What is charged is not excused as well.
+        if collides(decision) != is_expected && self.judged.total() == findings {
+            self.judged.borderline(self.pass, pair, collides(decision));
+        }
+        if self.sensitivity.is_some() && self.is_hybrid() && self.is_borderline(call) {
+            self.borderline.push(call);
+        }
+        decision
+    }
+
+    /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault.
+    fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: Own) {
+        let Some((motion, expected)) = self.expected.as_ref().filter(|_| own.lost) else { return };
+        let (actual, hits) = (time(by_polynomials), own.time <= 1.0);
+        if (actual <= 1.0) != hits {
+            if contact::decides(motion, expected) == Some(hits) {
+                let place = self.place(pair);
+                self.charge(Detail::TrimmedDecision { place, collides: hits });
+            }
+        } else if hits && !contact::is_time_without_losses(expected, own.time, actual) {
+            let (place, expected) = (self.place(pair), contact::possible_time(expected));
+            self.charge(Detail::TrimmedTime { place, expected, actual });
+        }
+    }
+
+    /// The other of two decisions that round-off may flip.
+    fn turned_round(&self, decision: Decision) -> Decision {
+        match decision {
+            Decision::Hit { time, .. } => Decision::Miss { time: Time::Found(time) },
+            Decision::Miss { .. } => self.expected.as_ref().map_or(decision, |(motion, expected)| {
+                let time = contact::possible_time(expected);
+                let normal = motion.normal(time);
+                Decision::Hit { time, normal: Vec2::new(normal.x.value, normal.y.value) }
+            }),
+        }
+    }
+
+    /// Whether round-off may flip the decision of this call.
+    fn is_borderline(&self, call: usize) -> bool {
+        match &self.expected {
+            Some((motion, expected)) => contact::is_borderline(motion, expected),
+            None => self.sensitivity.is_some_and(|known| known.flipped.contains(&call)),
+        }
+    }
+
+    /// The logged impulse that this decision is about.
+    fn logged(&mut self, pair: Pair) -> Option<LoggedImpulse> {
+        let same = |logged: &LoggedImpulse| {
+            logged.kind == pair.kind.code()
+                && i64::from(logged.first) == i64::from(pair.first)
+                && i64::from(logged.second) == i64::from(pair.second)
+        };
+        let all = self.records.end.impulses.iter().enumerate();
+        let (index, logged) = all.clone().find(|(index, logged)| !self.used[*index] && same(logged))?;
+        self.used[index] = true;
+        Some(*logged)
+    }
+
+    /// Follows a logged decision.
+    fn follow(&mut self, pair: Pair, own: Decision) -> Decision {
+        let call = self.decisions.len();
+        let logged = self.logged(pair);
+        match (own, logged) {
+            (Decision::Miss { .. }, None) => own,
+            (Decision::Hit { time, normal }, Some(actual)) => {
+                let own = Impulse { pair, normal, time };
+                let known = self.expected.as_ref().map(|(motion, expected)| (motion, expected));
+                let finding = contact::hit(self.context, &self.records, known, own, &actual, &mut self.judged);
+                if let Some(detail) = finding {
+                    self.charge(detail);
+                }
+                contact::followed(actual).unwrap_or(Decision::Hit { time, normal })
+            }
+            (Decision::Hit { time, normal }, None) => {
+                if !self.is_borderline(call) {
+                    self.charge(Detail::MissedCollision { expected: Impulse { pair, normal, time } });
+                }
+                Decision::Miss { time: Time::Found(time) }
+            }
+            (Decision::Miss { .. }, Some(actual)) => {
+                if self.is_borderline(call) {
+                    // Whether they collide may go either way; where and when, if they do, may not.
+                    let known = self.expected.as_ref().map(|(motion, expected)| (motion, expected));
+                    let finding =
+                        contact::possible_hit(self.context, &self.records, known, pair, &actual, &mut self.judged);
+                    if let Some(detail) = finding {
+                        self.charge(detail);
+                    }
+                } else {
+                    self.charge(Detail::SuperfluousCollision { actual });
+                }
+                contact::followed(actual).unwrap_or(own)
+            }
+        }
+    }
+
+    /// Charges impulses that belong to no decision.
+    pub(super) fn settle_impulses(&mut self) {
+        for index in 0..self.used.len() {
+            if self.used[index] {
+                continue;
+            }
+            let actual = self.records.end.impulses[index];
+            let earlier = self.records.end.impulses[..index].iter();
+            let repeats = |other: &LoggedImpulse| {
+                (other.kind, other.first, other.second) == (actual.kind, actual.first, actual.second)
+            };
+            let detail = if earlier.clone().any(repeats) && !self.is_hybrid() {
+                Detail::RepeatedCollision { actual }
+            } else {
+                Detail::SuperfluousCollision { actual }
+            };
+            self.charge(detail);
+        }
+    }
+}
+
+fn collides(decision: Decision) -> bool {
+    matches!(decision, Decision::Hit { .. })
+}
+
+/// The time that was found; infinite where there is none, or none was looked for.
+fn time(decision: Decision) -> f64 {
+    match decision {
+        Decision::Hit { time, .. } | Decision::Miss { time: Time::Found(time) } => time,
+        Decision::Miss { .. } => f64::INFINITY,
+    }
+}

@@ -1,0 +1,219 @@
+//! The observer that follows a submission through one step, and charges what can't be followed.
+//!
+//! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows what was decided.
+mod decisions;
+mod passes;
+mod polynomials;
+
+use super::{
+    contact,
+    formulas::{Expected, Motion},
+    probe::Sensitivity,
+    step::{Context, Records, StepJudgement},
+};
+use crate::finding::{Detail, Finding, Part, PolynomialPlace};
+use decisions::Own;
+use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Stage, State, Zone};
+use fosssim_num::polynomial::Polynomial;
+
+/// A decision as it was followed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Followed {
+    pub pair: Pair,
+    pub pass: Pass,
+    pub decision: Decision,
+}
+
+/// A polynomial that does not tell its factor.
+struct Deferred {
+    place: PolynomialPlace,
+    number: usize,
+    expected: Expected,
+}
+
+/// Follows one step; filled in by the simulation, read by [`super::step`].
+pub(super) struct Follower<'a> {
+    context: &'a Context<'a>,
+    records: Records<'a>,
+    /// What is known of the step's sensitivity to round-off, on a second look.
+    sensitivity: Option<&'a Sensitivity>,
+    /// Decisions (by number of the call) that are turned round: borderline ones, in hybrid scenes.
+    flips: &'a [usize],
+    /// What was found.
+    pub judged: StepJudgement,
+    /// All decisions of the step.
+    pub decisions: Vec<Followed>,
+    /// Calls of hybrid scenes whose decisions round-off may flip, in order (on a second look).
+    pub borderline: Vec<usize>,
+    pass: Pass,
+    /// Passes so far: before the mid record, and after it.
+    passes: [usize; 2],
+    /// Passes in the trace; `None` where its polynomials don't come in whole passes.
+    logged_passes: Option<[usize; 2]>,
+    /// The number in the end record's list of the pass's next polynomial; `None` when it is not logged.
+    next: Option<usize>,
+    /// Particles that a response or the failsafe has moved since positions were last known.
+    moved: Vec<bool>,
+    /// Whether the part before the mid record, or the geometric part, has an error that its result may follow from.
+    spoilt: [bool; 2],
+    /// Polynomials that were wrong of known positions in this step.
+    wrong_formulas: [[bool; 4]; 3],
+    /// Factors of polynomials so far: for each kind of pair and number of the polynomial the last one.
+    factors: [[Option<f64>; 4]; 3],
+    /// Polynomials that do not tell their factor, to be judged when others of their kind do.
+    deferred: Vec<Deferred>,
+    /// Logged impulses that a decision has used.
+    used: Vec<bool>,
+    /// What the reference's own polynomials say about the call, where the logged ones are right, and others.
+    own: Option<Own>,
+    /// What the call's polynomials should be.
+    expected: Option<(Motion, Expected)>,
+}
+
+impl<'a> Follower<'a> {
+    /// Follows the step that `records` hold.
+    pub fn new(
+        context: &'a Context<'a>,
+        records: Records<'a>,
+        sensitivity: Option<&'a Sensitivity>,
+        flips: &'a [usize],
+    ) -> Self {
+        let judged = StepJudgement { step: records.step, frame: records.frame, ..StepJudgement::default() };
+        let mut follower = Self {
+            context,
+            records,
+            sensitivity,
+            flips,
+            judged,
+            decisions: Vec::new(),
+            borderline: Vec::new(),
+            pass: Pass { stage: Stage::Simple, index: 0 },
+            passes: [0; 2],
+            logged_passes: None,
+            next: None,
+            moved: vec![false; context.scene.particles.len()],
+            spoilt: [false; 2],
+            wrong_formulas: [[false; 4]; 3],
+            factors: [[None; 4]; 3],
+            deferred: Vec::new(),
+            used: vec![false; records.end.impulses.len()],
+            own: None,
+            expected: None,
+        };
+        follower.count_passes();
+        follower
+    }
+
+    /// Ends the step, which left the reference in `state`.
+    pub fn finish(&mut self, state: &State) {
+        self.judged.decisions = self.decisions.len() as u64;
+        self.settle_passes();
+        self.settle_deferred();
+        self.settle_impulses();
+        if !self.spoilt[1] {
+            let frame = self.records.frame;
+            let bounds = self.sensitivity.map(|known| &known.end);
+            contact::states(self.context, &mut self.judged, frame, state, &self.records.end.state, bounds);
+        }
+    }
+
+    fn charge(&mut self, detail: Detail) {
+        let (step, frame) = (self.records.step, self.records.frame);
+        self.judged.charge(Finding { step, frame, detail });
+    }
+}
+
+impl Observer for Follower<'_> {
+    fn begin_pass(&mut self, pass: Pass) {
+        self.pass = pass;
+        if matches!(pass.stage, Stage::Geometric { round: 0 }) {
+            // The geometric part starts from the mid record, which is known.
+            self.moved.fill(false);
+        }
+        let part = self.part();
+        let number = self.passes[part];
+        self.passes[part] += 1;
+        self.next = self.logged_passes.filter(|logged| number < logged[part]).map(|logged| {
+            let passes = if part == 0 { number } else { logged[0] + number };
+            passes * self.context.per_pass
+        });
+    }
+
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+        self.own = None;
+        self.expected = None;
+        let Some(index) = self.next else { return };
+        self.next = Some(index + polynomials.len());
+        let records = self.records;
+        let logged = |number: usize| records.end.polynomials.get(index + number);
+        let same = polynomials.iter().enumerate().all(|(number, own)| {
+            let (own, logged) = (own.coefficients(), logged(number));
+            own.len() == logged.len() && own.iter().zip(logged).all(|(own, logged)| own.to_bits() == logged.to_bits())
+        });
+        if same {
+            if self.sensitivity.is_some() || !self.is_hybrid() {
+                // Should the decision be disputed, it must be known how far round-off may reach.
+                let motion = Motion::of(self.context.scene, pair, q_start, q_end);
+                self.expected = Some((motion, motion.polynomials()));
+            }
+            self.note_course_form(pair, q_start, q_end, index);
+            return;
+        }
+        let findings = self.judged.total();
+        self.review(pair, q_start, q_end, index, polynomials.len());
+        if self.judged.total() == findings {
+            let differs = |(number, own): (usize, &Polynomial)| own.coefficients().len() != logged(number).len();
+            let lost = polynomials.iter().enumerate().any(differs);
+            self.judged.lost += u64::from(lost);
+            self.own = contact::time_of(polynomials).map(|time| Own { time, lost });
+        }
+        // What the submission solved is what decides, even if it is wrong: a wrong polynomial is charged once.
+        if (0..polynomials.len()).all(|number| contact::is_searchable(logged(number))) {
+            for (number, own) in polynomials.iter_mut().enumerate() {
+                *own = Polynomial::untrimmed(logged(number));
+            }
+        }
+    }
+
+    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        let decision = self.settle(pair, decision);
+        self.decisions.push(Followed { pair, pass: self.pass, decision });
+        decision
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let collides = matches!(detection.decision, Decision::Hit { .. });
+        if collides && matches!(self.pass.stage, Stage::ContinuousTime | Stage::Impulses { .. }) {
+            for particle in self.context.particles(detection.pair).into_iter().flatten() {
+                self.moved[particle] = true;
+            }
+        }
+    }
+
+    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
+        for &particle in zone.particles {
+            self.moved[particle as usize] = true;
+        }
+    }
+
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        let Some(mid) = self.records.mid else { return Resume::Own };
+        if let Some(logged) = self.logged_passes
+            && logged[0] != self.passes[0]
+            && !self.spoilt[0]
+        {
+            self.charge(Detail::PassCount { part: Part::Impulses, expected: self.passes[0], actual: logged[0] });
+            self.spoilt[0] = true;
+        }
+        if !self.spoilt[0] {
+            let bounds = self.sensitivity.map(|known| &known.mid);
+            contact::states(self.context, &mut self.judged, self.records.frame - 1, state, &mid.state, bounds);
+        }
+        let is_finite = mid.state.positions.iter().chain(&mid.state.velocities).all(|value| value.is_finite());
+        if is_finite {
+            state.positions.copy_from_slice(&mid.state.positions);
+            state.velocities.copy_from_slice(&mid.state.velocities);
+        }
+        Resume::Synchronised
+    }
+}

@@ -1,0 +1,71 @@
+//! How many detection passes a step has logged, and which positions they certainly saw.
+use super::Follower;
+use crate::finding::{Detail, Part};
+use fosssim_model::{
+    scene::Collision,
+    sim::{Pair, Stage},
+};
+
+impl<'a> Follower<'a> {
+    /// How many passes are logged before the mid record and after it.
+    pub(super) fn count_passes(&mut self) {
+        let (Some(mid), per_pass) = (self.records.mid, self.context.per_pass) else { return };
+        let (before, all) = (mid.polynomials.len(), self.records.end.polynomials.len());
+        if per_pass == 0 {
+            return;
+        }
+        let before = if self.is_hybrid() { before } else { all };
+        let whole = before.is_multiple_of(per_pass) && all.is_multiple_of(per_pass) && before <= all;
+        self.logged_passes = whole.then(|| [before / per_pass, (all - before) / per_pass]);
+    }
+
+    /// Compares the numbers of passes.
+    pub(super) fn settle_passes(&mut self) {
+        let Some(_) = self.records.mid else { return };
+        if self.context.per_pass == 0 && self.records.end.polynomials.is_empty() {
+            return;
+        }
+        let Some(logged) = self.logged_passes else {
+            let (expected, actual) =
+                ((self.passes[0] + self.passes[1]) * self.context.per_pass, self.records.end.polynomials.len());
+            self.charge(Detail::PolynomialCount { expected, actual, per_pass: self.context.per_pass });
+            self.spoilt[1] = true;
+            return;
+        };
+        for (index, part) in [Part::Impulses, Part::Geometric].into_iter().enumerate() {
+            // Whether the geometric part runs follows from what happened before.
+            let follows = index == 1 && self.spoilt[0];
+            if logged[index] != self.passes[index] {
+                if !self.spoilt[index] && !follows {
+                    self.charge(Detail::PassCount { part, expected: self.passes[index], actual: logged[index] });
+                }
+                self.spoilt[index] = true;
+                self.spoilt[1] = true;
+            }
+        }
+    }
+
+    pub(super) fn is_hybrid(&self) -> bool {
+        matches!(self.context.scene.collision, Collision::Hybrid { .. })
+    }
+
+    pub(super) fn part(&self) -> usize {
+        usize::from(matches!(self.pass.stage, Stage::Geometric { .. }))
+    }
+
+    /// Positions at the end of the step that this pass sees for certain, because the trace holds them.
+    pub(super) fn known_positions(&self) -> Option<&'a [f64]> {
+        let [before, after] = self.logged_passes?;
+        let number = self.passes[self.part()];
+        match self.pass.stage {
+            Stage::Impulses { .. } if number == before && after == 0 => Some(&self.records.mid?.state.positions),
+            Stage::Geometric { .. } if number == after => Some(&self.records.end.state.positions),
+            _ => None,
+        }
+    }
+
+    /// Whether a response or the failsafe has moved an object of the pair.
+    pub(super) fn is_moved(&self, pair: Pair) -> bool {
+        self.context.particles(pair).into_iter().flatten().any(|particle| self.moved[particle])
+    }
+}

@@ -1,0 +1,305 @@
+//! Traces that no program wrote in earnest: each shows what the fair rules must not fall for.
+use super::{Judgement, Refusal, Verdict};
+use crate::{
+    finding::{Detail, Kind},
+    samples::{BOUNCE, ZONES, changed, judged, relog, run, scene, written},
+};
+use fosssim_model::{
+    scene::{Scene, original},
+    sim::{Decision, Observer, Pair, Time},
+    trace::Frame,
+};
+use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+use std::path::Path;
+
+/// Built-in scenes with continuous-time detection, by name.
+#[expect(clippy::disallowed_methods, reason = "the built-in scenes are files")]
+fn assets() -> Vec<(String, Scene)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+    let mut scenes = Vec::new();
+    for group in ["ContinuousTimeTests", "GeometricTests", "HalfPlaneTests", "HolisticTests", "ImpulsesTests"] {
+        for file in std::fs::read_dir(folder.join(group)).expect("a group") {
+            let path = file.expect("a scene").path();
+            let name = format!("{group}/{}", path.file_stem().expect("a name").display());
+            scenes.push((name, original::read(&std::fs::read(&path).expect("readable")).expect("a scene").scene));
+        }
+    }
+    scenes.sort_by(|(one, _), (other, _)| one.cmp(other));
+    scenes
+}
+
+fn fair(scene: &Scene, trace: &[u8]) -> Judgement {
+    *judged(scene, trace).fair.expect("the fair rules were asked")
+}
+
+/// A program whose polynomials are divided by powers of two: the course's library drops what becomes small, and the step
+/// goes on with the rest.
+struct Factors<F>(F, usize);
+
+impl<F: FnMut(usize, usize) -> i32> Observer for Factors<F> {
+    fn solve(&mut self, _: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+        for (number, polynomial) in polynomials.iter_mut().enumerate() {
+            let divisor = (0..(self.0)(number, self.1)).fold(1.0, |power, _| 2.0 * power);
+            self.1 += 1;
+            let divided: Vec<f64> = polynomial.coefficients().iter().map(|c| c / divisor).collect();
+            *polynomial = Polynomial::trimmed(&divided);
+        }
+    }
+}
+
+/// The largest distance of two runs' coordinates, as a share of the largest coordinate.
+fn distance(one: &[Frame], other: &[Frame]) -> f64 {
+    let (mut most, mut size) = (0.0_f64, 0.0_f64);
+    for (one, other) in one.iter().zip(other) {
+        for (a, b) in one.state.positions.iter().zip(&other.state.positions) {
+            (most, size) = (most.max((a - b).abs()), size.max(a.abs()));
+        }
+    }
+    most / size
+}
+
+/// Whatever the factors are: where they change what happens, the trace is refused. So many scenes they change. Factors are
+/// powers of two, so nothing is rounded, and no decision is borderline because of them.
+fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
+    let mut changed = 0;
+    for (name, scene) in assets() {
+        let frames = run(&scene, Factors(exponent, 0));
+        let distance = distance(&run(&scene, ()), &frames);
+        if distance > 1e-7 {
+            changed += 1;
+            let judged = fair(&scene, &written(&scene, &frames));
+            assert_eq!(judged.verdict, Verdict::Rejected, "{name}: states are {distance} off");
+        }
+    }
+    changed
+}
+
+#[test]
+fn a_small_factor_must_not_change_what_happens() {
+    assert!(no_loss_is_accepted(|_, _| 30) > 10);
+    assert!(no_loss_is_accepted(|_, _| 20) > 0);
+}
+
+#[test]
+fn a_factor_of_each_polynomial_must_not_change_what_happens() {
+    // Factors from 2^-10 to 2^-41, in no order.
+    let of_each = |_, count: usize| 10 + i32::try_from((count.wrapping_mul(0x9e37_79b9) >> 7) % 32).expect("small");
+    assert!(no_loss_is_accepted(of_each) > 10);
+    for number in 0..4 {
+        assert!(no_loss_is_accepted(|polynomial, _| if polynomial == number { 33 } else { 0 }) > 0, "{number}");
+    }
+}
+
+/// A factor near 1 changes nothing that matters.
+#[test]
+fn ordinary_factors_are_accepted() {
+    for (name, scene) in assets() {
+        let judged = fair(&scene, &written(&scene, &run(&scene, Factors(|_, _| 1, 0))));
+        assert_eq!(judged.verdict, Verdict::Accepted, "{name}: {:?}", judged.first_divergence);
+    }
+}
+
+/// A ball that moves in the first step, and ends it in touch with a slope but for a rounding.
+const TOUCH: &str = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.5"/>
+    <collision type="continuous-time" COR="1"/>
+    <particle m="1" px="0.6" py="0.8" vx="-1.08" vy="-1.44" fixed="0" radius="0.1"/>
+    <halfplane px="0" py="0" nx="0.3" ny="0.4"/></scene>"#;
+
+/// Answers the first decision that it is asked about as it likes.
+struct Answer(Option<Decision>);
+
+impl Observer for Answer {
+    fn decide(&mut self, _: Pair, decision: Decision) -> Decision {
+        self.0.take().unwrap_or(decision)
+    }
+}
+
+/// Whether the pair collides is borderline; with which normal and when is not.
+#[test]
+fn a_borderline_contact_is_where_and_when_it_has_to_be() {
+    let scene = scene(TOUCH);
+    let with = |time, x, y| {
+        let hit = Decision::Hit { time, normal: Vec2::new(x, y) };
+        fair(&scene, &written(&scene, &run(&scene, Answer(Some(hit)))))
+    };
+    let miss = Decision::Miss { time: Time::None };
+    let without = fair(&scene, &written(&scene, &run(&scene, Answer(Some(miss)))));
+    let right = with(1.0, -0.06, -0.08);
+    assert_eq!((without.verdict, right.verdict), (Verdict::Accepted, Verdict::Accepted), "{without:?} {right:?}");
+    assert_eq!(without.borderline + right.borderline, 1, "one of them is the reference's");
+    for (time, x, y) in [(1.0, 0.5, -0.08), (1.0, 0.06, 0.08), (1.0, f64::NAN, -0.08), (1.0, -0.07, -0.08)] {
+        let judged = with(time, x, y);
+        assert_eq!(judged.counts.get(Kind::WrongNormal), 1, "{x} {y}: {judged:?}");
+    }
+    for time in [0.0, 0.44, 0.999, 1.001, f64::NAN, -1.0] {
+        let judged = with(time, -0.06, -0.08);
+        assert_eq!(judged.counts.get(Kind::ContactTime), 1, "{time}: {judged:?}");
+    }
+}
+
+/// All polynomials of all steps are empty, but for one that has a factor: it says nothing of the others' factors.
+#[test]
+fn one_factor_does_not_vouch_for_empty_logs() {
+    for (name, scene) in assets() {
+        let reference = changed(&scene, |_| {});
+        let forged = changed(&scene, |frames| {
+            for frame in frames {
+                relog(frame, |index, list| {
+                    if index == 0 {
+                        list.iter().map(|c| 1e-11 * c).filter(|c| c.abs() >= 1e-12).collect()
+                    } else {
+                        vec![]
+                    }
+                });
+            }
+        });
+        if forged != reference {
+            assert_eq!(fair(&scene, &forged).verdict, Verdict::Rejected, "{name}");
+        }
+    }
+}
+
+/// Garbage of ordinary size, beside one polynomial with so large a factor that garbage would be its round-off.
+#[test]
+fn a_large_factor_does_not_vouch_for_garbage() {
+    for (name, scene) in assets() {
+        let forged = changed(&scene, |frames| {
+            for frame in frames {
+                relog(frame, |index, list| {
+                    if index == 0 {
+                        list.iter().map(|c| 1e15 * c).collect()
+                    } else {
+                        list.iter().map(|_| 0.125).collect()
+                    }
+                });
+            }
+        });
+        assert_eq!(fair(&scene, &forged).verdict, Verdict::Rejected, "{name}");
+    }
+}
+
+/// Factors that are none.
+#[test]
+fn what_is_no_positive_number_is_no_factor() {
+    let scene = scene(BOUNCE);
+    for factor in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -1e-9, 0.0, 5e-324, 1e-320] {
+        let forged = changed(&scene, |frames| {
+            for frame in frames {
+                relog(frame, |_, list| {
+                    Polynomial::trimmed(&list.iter().map(|c| factor * c).collect::<Vec<_>>()).coefficients().to_vec()
+                });
+            }
+        });
+        assert_eq!(fair(&scene, &forged).verdict, Verdict::Rejected, "{factor}");
+    }
+}
+
+/// A ball that leaves a half-plane, and another one that is far away.
+const LEAVE: &str = r#"<scene><duration time="2"/><integrator type="explicit-euler" dt="0.5"/>
+    <collision type="continuous-time" COR="1"/>
+    <particle m="1" px="0.3" py="0.5" vx="0.1" vy="1" fixed="0" radius="0.25"/>
+    <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#;
+
+/// What hangs on factors is charged in the steps where it stands.
+#[test]
+fn polynomials_that_hang_on_factors_count_in_their_steps() {
+    let scene = scene(LEAVE);
+    let empty = |frames: &mut [Frame]| frames.iter_mut().for_each(|frame| relog(frame, |_, _| vec![]));
+    let judged = fair(&scene, &changed(&scene, |frames| empty(frames)));
+    let first = judged.first_divergence.expect("the first empty polynomial");
+    assert_eq!((judged.wrong_steps, first.step), (4, 1), "{judged:?}");
+    assert!(matches!(first.detail, Detail::Coefficient { .. }), "{first:?}");
+    // The fourth step's end is wrong, too: the empty polynomial of the second still comes first.
+    let judged = fair(
+        &scene,
+        &changed(&scene, |frames| {
+            empty(&mut frames[3..5]);
+            frames[8].state.positions[0] += 0.25;
+        }),
+    );
+    assert_eq!((judged.wrong_steps, judged.first_divergence.map(|first| first.step)), (2, Some(2)), "{judged:?}");
+}
+
+const NOWHERE: [f64; 7] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e100, -1e100, 1e-160, 0.0];
+
+/// A run that is lost in its first step, and does nothing wrong afterwards, because nothing is left to be right.
+#[test]
+fn steps_that_lead_nowhere_are_never_right() {
+    for text in [BOUNCE, ZONES] {
+        let scene = scene(text);
+        for value in NOWHERE {
+            if text == BOUNCE && value.abs() < 1.0 {
+                // One ball alone may be anywhere near.
+                continue;
+            }
+            let forged = changed(&scene, |frames| {
+                for frame in &mut frames[1..] {
+                    frame.state.positions.fill(value);
+                    frame.state.velocities.fill(value);
+                    frame.impulses.clear();
+                    relog(frame, |_, list| vec![f64::NAN; list.len()]);
+                }
+            });
+            let outcome = judged(&scene, &forged);
+            let right = outcome.right_steps(crate::Book::Fair);
+            assert_eq!(right, 0, "{value}: {:?}", outcome.fair);
+        }
+    }
+}
+
+/// A single record that is lost spoils the step to it and the step from it.
+#[test]
+fn a_lost_record_spoils_two_steps() {
+    let scene = scene(
+        r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/><collision type="none"/>
+        <particle m="1" px="0" py="0" vx="1" vy="2" fixed="0" radius="0.1"/></scene>"#,
+    );
+    for value in [f64::NAN, f64::INFINITY, 1e200] {
+        let forged = changed(&scene, |frames| frames[5].state.velocities[1] = value);
+        assert_eq!(fair(&scene, &forged).wrong_steps, 2, "{value}");
+        let forged = changed(&scene, |frames| {
+            for frame in &mut frames[5..] {
+                frame.state.positions.fill(value);
+                frame.state.velocities.fill(value);
+            }
+        });
+        assert_eq!(fair(&scene, &forged).wrong_steps, 6, "{value}");
+    }
+}
+
+/// Where the scene itself leads nowhere, whoever gets there has done what it asks.
+#[test]
+fn the_references_own_way_is_right_wherever_it_leads() {
+    let scene = scene(
+        r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/><collision type="none"/>
+        <particle m="1" px="0" py="0" vx="1e300" vy="2" fixed="0" radius="0.1"/>
+        <particle m="1" px="1" py="0" vx="0" vy="2" fixed="0" radius="0.1"/>
+        <edge i="0" j="1" radius="0.1"/><springforce edge="0" k="1e300" l0="1" b="0"/></scene>"#,
+    );
+    let frames = run(&scene, ());
+    assert!(frames.iter().any(|frame| !frame.state.velocities.iter().all(|v| v.is_finite())));
+    assert_eq!(fair(&scene, &written(&scene, &frames)).verdict, Verdict::Accepted);
+}
+
+/// Balls that rest on each other: every approach is zero but for round-off. A trace in which all of them go the other way
+/// shows nothing.
+#[test]
+fn a_trace_that_is_mostly_borderline_is_not_accepted() {
+    let ball = |x: f64| format!(r#"<particle m="1" px="{x}" py="0.3" vx="0.1" vy="0.3" fixed="0" radius="0.6"/>"#);
+    let balls: String = (0..12).map(|number| ball(0.1 * f64::from(number))).collect();
+    let scene = scene(&format!(
+        r#"<scene><duration time="0.4"/><integrator type="explicit-euler" dt="0.1"/>
+        <collision type="continuous-time" COR="1"/>{balls}</scene>"#
+    ));
+    struct Push;
+    impl Observer for Push {
+        fn solve(&mut self, _: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+            polynomials[1] = Polynomial::trimmed(&[1.0]);
+        }
+    }
+    let plain = fair(&scene, &written(&scene, &run(&scene, ())));
+    assert_eq!(plain.verdict, Verdict::Accepted);
+    let forged = fair(&scene, &written(&scene, &run(&scene, Push)));
+    assert_eq!(forged.refusal, Some(Refusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
+    assert_eq!(forged.counts.total(), 0, "{:?}", forged.first_divergence);
+}
