@@ -1,9 +1,12 @@
 //! What the fuzz targets do with their bytes; the ordinary tests replay the seeds through the same functions.
 use fosssim_oracle::{
-    judge::parity,
+    diagnose,
+    judge::{Book, Ruling, parity},
     scene::{Collision, Scene, original},
     sim::{RootSearch, Simulation},
-    trace::{Digests, Frame, Indexed, Layout, Lenient, LenientFrame, Reader, Recorder, Summary, TraceError, compare},
+    trace::{
+        Digests, Frame, Indexed, Layout, Lenient, LenientFrame, Reader, Recorder, Summary, TraceError, Writer, compare,
+    },
 };
 use std::io::Cursor;
 
@@ -95,6 +98,56 @@ pub fn trace(bytes: &[u8]) {
     let options = parity::Options { threads: 1, ..parity::Options::default() };
     let outcome = parity::judge(&scene, trace, &options, &mut ());
     assert_eq!(outcome.overall == fosssim_oracle::judge::Overall::None, outcome.stop.is_some());
+}
+
+/// The numbers at which arithmetic overflows, underflows, or has left the numbers: seeds of [`judge`].
+pub const EXTREMES: [f64; 10] =
+    [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e100, -1e100, 1e155, f64::MAX, 1e-160, 5e-324, 0.0];
+
+/// The recording of a scene from whose second record on all positions and velocities are one number.
+pub fn extreme(choice: usize, value: f64) -> Vec<u8> {
+    let scene = original::read(SCENES[choice].as_bytes()).expect("our own scene").scene;
+    let (layout, trace, _) = record(&scene, usize::MAX).expect("writing to memory");
+    let (mut reader, mut writer) = (Reader::of_slice(&trace, layout), Writer::new(Vec::new(), layout));
+    let mut frame = Frame::default();
+    while reader.next(&mut frame).expect("our own recording is sound") {
+        if reader.records() > 1 {
+            frame.state.positions.fill(value);
+            frame.state.velocities.fill(value);
+        }
+        writer.frame(&frame);
+    }
+    writer.finish().expect("writing to memory").0
+}
+
+/// Judges a whole trace by both rule books and explains it. The first byte chooses the scene, the rest is the trace; what is
+/// missing at its end comes from the scene's recording, so that a few bytes make a whole trace.
+pub fn judge(bytes: &[u8]) {
+    let Some((&choice, start)) = bytes.split_first() else { return };
+    let xml = SCENES[usize::from(choice) % SCENES.len()];
+    let scene = original::read(xml.as_bytes()).expect("our own scene").scene;
+    let (_, recorded, _) = record(&scene, usize::MAX).expect("writing to memory");
+    let trace = [start, recorded.get(start.len()..).unwrap_or_default()].concat();
+
+    let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
+    let outcome = parity::judge(&scene, &trace[..], &options, &mut ());
+    for book in [Book::Parity, Book::Fair] {
+        let account = outcome.account(book);
+        let is_accepted = outcome.ruling(book) == Ruling::Accepted;
+        assert!(account.wrong_steps <= u64::from(outcome.steps_judged), "a step is wrong once");
+        assert!(!is_accepted || account.wrong_steps == 0, "what is accepted has no wrong step");
+        assert!(is_accepted || outcome.right_steps(book) < outcome.steps, "what is refused is not all right");
+    }
+    let finite = |value: &f64| value.is_finite();
+    if outcome.ruling(Book::Fair) == Ruling::Accepted {
+        let mut reader = Reader::of_slice(&trace, Layout::of(&scene));
+        let mut frame = Frame::default();
+        while reader.next(&mut frame).expect("what is accepted is sound") {
+            assert!(frame.state.positions.iter().chain(&frame.state.velocities).all(finite), "no physics, no points");
+        }
+    }
+    let explanations = diagnose::explain(&scene, &trace);
+    assert!(trace != recorded || explanations.is_empty(), "nothing is wrong with the recording: {explanations:?}");
 }
 
 /// Number of records and of bytes behind them, or what is wrong.

@@ -34,6 +34,26 @@ fn trace_seeds_do_no_harm() {
     }
 }
 
+#[test]
+fn judge_seeds_do_no_harm() {
+    for (path, bytes) in seeds("judge") {
+        eprintln!("{}", path.display());
+        entries::judge(&bytes);
+    }
+}
+
+/// Every collision type with states of every absurd size is among the seeds of the judge.
+#[test]
+fn every_extreme_of_every_collision_type_is_a_seed() {
+    let seeds = seeds("judge");
+    for choice in 0..entries::SCENES.len() {
+        for value in entries::EXTREMES {
+            let seed = [&[u8::try_from(choice).expect("few scenes")], &entries::extreme(choice, value)[..]].concat();
+            assert!(seeds.iter().any(|(_, bytes)| *bytes == seed), "no seed has {value} in scene {choice}");
+        }
+    }
+}
+
 /// The sound seeds are recordings of the target's scenes, so that mutations start from traces that pass.
 #[test]
 fn every_scene_of_the_trace_target_has_its_recording_as_a_seed() {

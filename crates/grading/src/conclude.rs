@@ -140,6 +140,9 @@ fn refusal(judged: &Outcome) -> String {
         Some(Refusal::Damaged) => "the trace is damaged".to_owned(),
         Some(Refusal::TrailingBytes) => "bytes follow the trace's last record".to_owned(),
         Some(Refusal::Stopped) => "the trace's own polynomials lead into a search without end".to_owned(),
+        Some(Refusal::Undecided) => {
+            "most of the trace's decisions are not the reference's, though round-off may flip them".to_owned()
+        }
         None => "the trace was not judged to its end".to_owned(),
     }
 }

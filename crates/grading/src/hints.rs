@@ -78,7 +78,9 @@ fn place(detail: &Detail) -> String {
         | Detail::TrimmedDecision { place, .. }
         | Detail::TrimmedTime { place, .. }
         | Detail::MixedForms { place } => format!(", {place}"),
-        Detail::Position { particle, .. } | Detail::Velocity { particle, .. } | Detail::BeyondReach { particle, .. } => format!(", particle {particle}"),
+        Detail::Position { particle, .. }
+        | Detail::Velocity { particle, .. }
+        | Detail::BeyondReach { particle, .. } => format!(", particle {particle}"),
         Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
             format!(", objects {} and {}", actual.first, actual.second)
         }

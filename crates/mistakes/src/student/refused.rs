@@ -7,12 +7,7 @@ pub const KNOWN_REFUSED: &[(&str, &str)] = &[];
 /// Correct variants that explanations accuse of something in some scene where they are asked all the same; the goal is an
 /// empty list.
 pub const KNOWN_ACCUSED: &[&str] = &[
-    // Polynomials that hold nothing but round-off, and have ordinary numbers.
-    "normalised-largest",
-    "normalised-norm",
-    "normalised-per-pair",
     // More round-off than the explanations allow for, and then any formula will do.
-    "interpolated-all",
     "frame-shifted",
     "frame-comoving",
 ];

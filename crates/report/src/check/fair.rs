@@ -79,7 +79,9 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
         Some(Refusal::Stopped) => Some("the trace can't be followed to its end"),
         Some(Refusal::Damaged) => Some("the trace is damaged"),
         Some(Refusal::TrailingBytes) => Some("bytes follow the last record"),
-        Some(Refusal::Undecided) => Some("most of its decisions are not the reference's, though round-off may flip them"),
+        Some(Refusal::Undecided) => {
+            Some("most of its decisions are not the reference's, though round-off may flip them")
+        }
         None => None,
     };
     let found = fair.first_divergence.as_ref().map(|first| {

@@ -265,9 +265,9 @@ fn advice(finding: &Finding, style: Style) -> String {
             &["what is written after the step: the course's code writes both records itself"]
         }
         Detail::ImpossibleLog => &["the trace was not written by the course's library as it was handed out"],
-        Detail::BeyondReach { .. } => &[
-            "the step that leads to this state: something divides by zero, or grows from step to step",
-        ],
+        Detail::BeyondReach { .. } => {
+            &["the step that leads to this state: something divides by zero, or grows from step to step"]
+        }
         Detail::TrimmedDecision { .. } | Detail::TrimmedTime { .. } => &[
             "the factor of your polynomials: the course's library drops leading coefficients below 1e-12",
             "polynomials in the units of the assignment's formulas are not affected",
