@@ -40,14 +40,22 @@ pub(super) fn style() -> Style {
 /// Narrower than this no line is wrapped: a terminal that says so has not been told its size.
 const NARROWEST: u16 = 20;
 
+/// The columns of the terminal that standard output is, if it is one.
+pub(super) fn width() -> Option<usize> {
+    match terminal_size_of(io::stdout()) {
+        Some((Width(width), _)) if width >= NARROWEST => Some(width.into()),
+        _ => None,
+    }
+}
+
 /// Prints a report for people. On a terminal its lines are broken at words.
 ///
 /// # Errors
 /// As [`print`].
 pub(super) fn report(text: &str) -> Result<()> {
-    match terminal_size_of(io::stdout()) {
-        Some((Width(width), _)) if width >= NARROWEST => print(wrap::wrapped(text, width.into()).as_bytes()),
-        _ => print(text.as_bytes()),
+    match width() {
+        Some(width) => print(wrap::wrapped(text, width).as_bytes()),
+        None => print(text.as_bytes()),
     }
 }
 

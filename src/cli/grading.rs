@@ -1,6 +1,7 @@
 //! Arguments of the commands that run programs, as typed.
 use super::arguments::Rules;
-use clap::{Args, Subcommand};
+use crate::suite::config;
+use clap::{Args, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf};
 
 /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
@@ -10,13 +11,17 @@ Example:
   fosssim-oracle grade ./FOSSSim
   fosssim-oracle grade submissions/ --suite course.toml --output grades
   fosssim-oracle grade ./FOSSSim --format text --format gradescope=results.json
+  fosssim-oracle grade ./FOSSSim --scene 'GeometricTests/*' --hints full
+  fosssim-oracle grade ./FOSSSim --failed
 
-A folder holds one submission per entry: a program, or a folder with a program of the name that --program gives; \
-with --single the folder itself is one submission. When the suite has a [build] table, folders are built first.
+A folder holds one submission per entry: a program, or a folder with a program of the name that --program gives. A \
+folder that holds such a program itself is one submission, and with --single it is one in any case. When the suite has \
+a [build] table, folders are built first. A program is alone when it runs: files beside it are not there.
 
 With --output (for several submissions always; fosssim-grades by default) results are kept as they come: an \
 interrupted grading goes on where it stopped, and nothing is run twice unless the program, the scene or the rules \
-changed. The folder gets grades.csv, grades.jsonl, scenes.csv and a log per run.")]
+changed. The folder gets grades.csv, grades.jsonl, scenes.csv, class.txt and a log per run; of a part of the suite \
+(--scene, --failed) only the logs, because its points are no grade.")]
 pub(super) struct Grade {
     /// Programs, or folders of submissions.
     #[arg(required = true)]
@@ -36,6 +41,24 @@ pub(super) struct Grade {
     /// Runs at one time. One per core by default.
     #[arg(short, long, value_name = "N")]
     pub(super) jobs: Option<NonZeroUsize>,
+    /// Only scenes of these names, such as 'GeometricTests/*' or 'ball-*'; may be given several times.
+    #[arg(long, value_name = "GLOB")]
+    pub(super) scene: Vec<String>,
+    /// Only scenes that were not accepted when the same submissions were graded last.
+    #[arg(long)]
+    pub(super) failed: bool,
+    /// How much reports tell; by default what the suite says. More than `what` may give a formula away.
+    #[arg(long, value_enum, value_name = "LEVEL")]
+    pub(super) hints: Option<Level>,
+    /// Keep the traces of scenes that are not accepted, in the output folder.
+    #[arg(long)]
+    pub(super) keep_traces: bool,
+    /// Show a line per submission only.
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub(super) quiet: bool,
+    /// Show every scene, accepted ones too.
+    #[arg(short, long)]
+    pub(super) verbose: bool,
     /// The program's name in the folder of a submission.
     #[arg(long, value_name = "NAME", default_value = "FOSSSim")]
     pub(super) program: String,
@@ -59,6 +82,30 @@ pub(super) struct Grade {
     /// says what is missing.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
+}
+
+/// How much reports tell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Level {
+    /// The verdict only.
+    None,
+    /// Where the first divergence is.
+    Where,
+    /// Also the likely mistake, in a sentence.
+    What,
+    /// Everything, formulas and values included.
+    Full,
+}
+
+impl From<Level> for config::Hints {
+    fn from(level: Level) -> Self {
+        match level {
+            Level::None => Self::None,
+            Level::Where => Self::Where,
+            Level::What => Self::What,
+            Level::Full => Self::Full,
+        }
+    }
 }
 
 /// Writes and explains suites: what is graded, with what limits and points.

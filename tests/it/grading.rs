@@ -28,13 +28,17 @@ fn workspace() -> Option<Workspace> {
     }
 }
 
-/// Puts sample submissions into `submissions/`; an empty name is the correct one.
-fn submit(workspace: &Workspace, mistakes: &[&str]) {
+/// Puts sample submissions into `submissions/`, and gives their paths; an empty name is the correct one. They are links,
+/// which are graded only by name.
+fn submit(workspace: &Workspace, mistakes: &[&str]) -> Vec<String> {
     std::fs::create_dir_all(workspace.path("submissions")).expect("a folder");
-    for mistake in mistakes {
+    let submit = |mistake: &&str| {
         let name = if mistake.is_empty() { "fosssim-sample".to_owned() } else { format!("fosssim-sample.{mistake}") };
-        symlink(env!("CARGO_BIN_EXE_fosssim-sample"), workspace.path("submissions").join(name)).expect("a link");
-    }
+        let path = format!("submissions/{name}");
+        symlink(env!("CARGO_BIN_EXE_fosssim-sample"), workspace.path(&path)).expect("a link");
+        path
+    };
+    mistakes.iter().map(submit).collect()
 }
 
 /// Submission, verdict and points of every row of a grades.csv.
@@ -145,8 +149,12 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
         ("trailing-bytes", "accepted"),
         ("truncated-trace", "bad trace"),
     ];
-    submit(&workspace, &cast.map(|(mistake, _)| mistake));
-    let whole = workspace.run(["grade", "submissions", "--suite", "suite.toml", "--output", "whole"]);
+    let submissions = submit(&workspace, &cast.map(|(mistake, _)| mistake));
+    let words = |output: &'static str| {
+        let options = ["--suite", "suite.toml", "--output", output].map(str::to_owned);
+        ["grade".to_owned()].into_iter().chain(submissions.clone()).chain(options)
+    };
+    let whole = workspace.run(words("whole"));
     assert_eq!(whole.code, Some(1), "{}", whole.shown());
     let verdicts: Vec<_> =
         rows(&workspace.read("whole/grades.csv")).into_iter().map(|(_, verdict, _)| verdict).collect();
@@ -159,7 +167,7 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
     for kept in [3, 12] {
         let mut child = workspace
             .command()
-            .args(["grade", "submissions", "--suite", "suite.toml", "--output", "parts"])
+            .args(words("parts"))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
@@ -175,8 +183,9 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
         assert!(stopped.success());
         assert_eq!(child.wait().expect("ended").code(), Some(130));
     }
-    let resumed = workspace.run(["grade", "submissions", "--suite", "suite.toml", "--output", "parts"]);
+    let resumed = workspace.run(words("parts"));
     assert_eq!(resumed.code, Some(1), "{}", resumed.shown());
+    assert!(resumed.err().contains(" taken over from parts"), "{}", resumed.shown());
     let mut resumed = rows(&workspace.read("parts/grades.csv"));
     let mut whole = rows(&workspace.read("whole/grades.csv"));
     // How far a program that is killed came with its first scene may differ; verdicts may not, nor whole points.
@@ -217,6 +226,109 @@ fn a_flood_behind_the_trace_gets_one_verdict_however_busy_the_machine_is() {
     }
 }
 
+/// Copies, as a class hands them in; what is a link may lead to another's submission.
+#[test]
+fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() {
+    let Some(workspace) = workspace() else { return };
+    let script = "#!/bin/sh\nexit 3\n";
+    for file in ["one/alice/FOSSSim", "one/alice/src/x.sh", "one/bob/FOSSSim", "one/carol"] {
+        workspace.write(file, script);
+        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+        std::fs::set_permissions(workspace.path(file), mode).expect("a mode");
+    }
+    symlink("bob", workspace.path("one/mallory")).expect("a link");
+    std::fs::hard_link(workspace.path("one/carol"), workspace.path("one/thief")).expect("a link");
+    let alone = workspace.run(["grade", "one/alice", "--suite", "suite.toml", "--quiet"]);
+    assert_eq!((alone.code, alone.out().lines().count()), (Some(1), 1), "{}", alone.shown());
+    assert!(alone.out().starts_with("alice: run-time error"), "{}", alone.shown());
+    let names = |run: &crate::workspace::Run| {
+        assert_eq!(run.code, Some(1), "{}", run.shown());
+        let rows = rows(&workspace.read("one/grades/grades.csv"));
+        rows.into_iter().map(|(name, verdict, _)| format!("{name} {verdict}")).collect::<Vec<_>>()
+    };
+    let (error, unusable) = ("run-time error", "unusable submission");
+    let expected =
+        [format!("alice {error}"), format!("bob {error}"), format!("carol {unusable}"), format!("thief {unusable}")];
+    for _ in 0..2 {
+        // The second time the folder for results lies among the submissions.
+        let class = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "one/grades"]);
+        assert_eq!(names(&class), expected);
+        assert!(class.err().contains("passed over mallory: it is a link"), "{}", class.shown());
+    }
+    let other = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "other"]);
+    assert!(other.err().contains("passed over grades: it holds the results"), "{}", other.shown());
+    let table = String::from_utf8(workspace.read("other/grades.csv")).expect("text");
+    assert!(table.contains("of ") && table.contains("the program exited with code 3"), "the reason: {table}");
+    assert!(String::from_utf8(workspace.read("other/class.txt")).expect("text").starts_with("Class: 4 submissions"));
+}
+
+#[test]
+fn a_part_of_a_suite_is_graded_looked_at_closer_and_the_failed_again() {
+    let Some(workspace) = workspace() else { return };
+    let submission = submit(&workspace, &["pe-square-no-eh"]).remove(0);
+    let grade = |more: &[&str]| {
+        let mut command = workspace.command();
+        command.args(["grade", &submission, "--suite", "suite.toml"]).args(more);
+        finish(command.env("XDG_CACHE_HOME", workspace.path("cache")))
+    };
+    let none = grade(&["--failed"]);
+    assert_eq!(none.code, Some(2), "{}", none.shown());
+    assert!(none.err().contains("no earlier run of this is known"), "{}", none.shown());
+    let whole = grade(&["--format", "csv"]);
+    let failing = |run: &crate::workspace::Run| {
+        let rows = csv::Reader::from_reader(&run.stdout[..]).into_records();
+        rows.map(|row| row.expect("a row"))
+            .filter(|row| &row[3] != "AC")
+            .map(|row| row[2].to_owned())
+            .collect::<Vec<_>>()
+    };
+    let wrong = failing(&whole);
+    assert!(!wrong.is_empty() && wrong.len() < whole.out().lines().count() - 1, "{}", whole.shown());
+    let again = grade(&["--failed", "--format", "csv"]);
+    assert_eq!((failing(&again), again.out().lines().count() - 1), (wrong.clone(), wrong.len()), "{}", again.shown());
+    // The closing words name the scene and the command, and that command works.
+    let text = grade(&["--hints", "what"]);
+    let command = text.out().lines().find_map(|line| line.trim().strip_prefix("$ fosssim-oracle ").map(str::to_owned));
+    let command = command.unwrap_or_else(|| panic!("{}", text.shown()));
+    assert!(command.contains(&format!("--scene {} --hints full", wrong[0])), "{command}");
+    let closer = workspace.run(command.split(' '));
+    assert_eq!(closer.code, Some(1), "{}", closer.shown());
+    assert!(closer.out().contains("1 of ") && closer.out().contains("expected"), "{}", closer.shown());
+    let verdict_only = grade(&["--hints", "none", "--scene", &wrong[0]]);
+    assert!(!verdict_only.out().contains("likely mistake"), "{}", verdict_only.shown());
+    let missing = grade(&["--scene", "no-such-scene"]);
+    assert_eq!(missing.code, Some(2), "{}", missing.shown());
+    // A kept trace is one that `check` takes; tables are of whole suites only.
+    let kept = grade(&["--scene", &wrong[0], "--keep-traces", "--output", "out"]);
+    assert!(!workspace.exists("out/grades.csv") && kept.err().contains("no grade"), "{}", kept.shown());
+    let shown = kept.out();
+    let command = shown.lines().find_map(|line| line.trim().strip_prefix("$ fosssim-oracle check "));
+    let words = command.unwrap_or_else(|| panic!("{}", kept.shown())).split(' ');
+    let checked = workspace.run(["check"].into_iter().chain(words));
+    assert_eq!(checked.code, Some(1), "{}", checked.shown());
+}
+
+#[test]
+fn reports_do_not_overwrite_each_other_nor_the_summary_of_a_step() {
+    let Some(workspace) = workspace() else { return };
+    workspace.write("FOSSSim", "#!/bin/sh\r\nexit 0\r\n");
+    let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    std::fs::set_permissions(workspace.path("FOSSSim"), mode).expect("a mode");
+    let twice = workspace.run(["grade", "FOSSSim", "--format=json=x", "--format=csv=./x"]);
+    assert_eq!(twice.code, Some(2), "{}", twice.shown());
+    assert!(twice.err().contains("two formats go to one file") && !workspace.exists("x"), "{}", twice.shown());
+    workspace.write("summary.md", "what a step wrote before\n");
+    let mut command = workspace.command();
+    command
+        .args(["grade", "FOSSSim", "--suite", "suite.toml"])
+        .arg(format!("--format=markdown={}", workspace.path("summary.md").display()));
+    let run = finish(command.env("GITHUB_STEP_SUMMARY", workspace.path("summary.md")));
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    let summary = String::from_utf8(workspace.read("summary.md")).expect("text");
+    assert!(summary.starts_with("what a step wrote before\n### FOSSSim: unusable submission"), "{summary}");
+    assert!(summary.contains("carriage return"), "{summary}");
+}
+
 #[test]
 fn what_can_not_be_run_is_explained() {
     let Some(workspace) = workspace() else { return };
@@ -235,7 +347,7 @@ fn what_can_not_be_run_is_explained() {
     ] {
         let run = workspace.run(["grade", program, "--suite", "suite.toml"]);
         assert_eq!(run.code, Some(1), "{}", run.shown());
-        assert!(run.out().contains("RTE") && run.out().contains(words), "{program}: {}", run.shown());
+        assert!(run.out().contains("unusable submission") && run.out().contains(words), "{program}: {}", run.shown());
     }
     for (words, arguments) in [
         ("no submission at missing", vec!["grade", "missing"]),
@@ -340,6 +452,7 @@ fn the_gradescope_zip_works_in_its_layout() {
     let (run, results) = run_autograder();
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert_eq!(results["score"], 0.0, "no program was submitted: {results}");
+    assert_eq!(results.to_string().matches("no program called FOSSSim in the upload").count(), 1, "{results}");
     std::fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), layout.join("submission/FOSSSim")).expect("a submission");
     let (run, results) = run_autograder();
     assert_eq!(run.code, Some(0), "{}", run.shown());
@@ -387,9 +500,10 @@ fn links_that_leave_a_submission_are_not_followed() {
     assert_eq!(run.code, Some(1), "{}", run.shown());
     let rows = rows(&workspace.read("out/grades.csv"));
     let told: Vec<_> = rows.iter().map(|(name, verdict, points)| (&name[..], &verdict[..], &points[..])).collect();
-    assert_eq!(told, [("none", "run-time error", "0"), ("thief", "run-time error", "0")], "{}", run.shown());
+    assert_eq!(told, [("none", "unusable submission", "0"), ("thief", "unusable submission", "0")], "{}", run.shown());
     assert!(
-        run.out().contains("the program can't be used: ") && run.out().contains("no such program"),
+        run.out().contains("the program can't be used: ")
+            && run.out().contains("no program called FOSSSim in the upload; it is empty"),
         "{}",
         run.shown()
     );
@@ -410,10 +524,12 @@ fn links_that_leave_a_submission_are_not_followed() {
 #[test]
 fn a_grading_that_is_stopped_by_the_platform_keeps_its_partial_results() {
     let Some(workspace) = workspace() else { return };
-    submit(&workspace, &["", "sleep-forever"]);
+    let submissions = submit(&workspace, &["", "sleep-forever"]);
     let mut child = workspace
         .command()
-        .args(["grade", "submissions", "--suite", "suite.toml", "--output", "out", "--format", "json=grades.json"])
+        .arg("grade")
+        .args(submissions)
+        .args(["--suite", "suite.toml", "--output", "out", "--format", "json=grades.json"])
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()

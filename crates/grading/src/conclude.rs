@@ -2,7 +2,11 @@
 //!
 //! Pure functions: no process, no file. The worst of the two sides wins: a right trace does not excuse a crash, and a
 //! clean exit does not excuse a wrong trace.
-use super::{config::Hints, grade::SceneResult, verdict::Verdict};
+use super::{
+    config::{Hints, RunLimits},
+    grade::SceneResult,
+    verdict::Verdict,
+};
 use fosssim_judge::{
     Account, Kind, Outcome, Rules, Ruling, Stop, Unreadable,
     fair::{self, Refusal},
@@ -12,6 +16,9 @@ use fosssim_sandbox::{self as sandbox, Ended, Stream};
 
 /// What a report keeps of each of the program's streams.
 const KEPT_OUTPUT: usize = 4096;
+
+/// The exit code of shells and loaders that did not find what they were to run.
+const NOT_FOUND: i32 = 127;
 
 /// What is known of one run.
 #[derive(Debug, Clone, Copy)]
@@ -28,13 +35,15 @@ pub struct Run<'a> {
     pub rules: Rules,
     /// How much may be told.
     pub hints: Hints,
+    /// The limits that it had.
+    pub limits: &'a RunLimits,
 }
 
 /// The verdict on one scene. Explanations of what is wrong are for the caller to add.
 #[must_use]
 pub fn conclude(run: &Run<'_>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
-    let (of_program, program_says) = verdict_of_program(&program.ended, judged);
+    let (of_program, program_says) = verdict_of_program(&program.ended, judged, run.limits);
     let (of_trace, trace_says) = verdict_of_trace(judged, rules, run.trace_bytes);
     let account = judged.account(rules.official());
     // A program that was stopped has a trace without end; saying so too would blame it twice.
@@ -49,6 +58,13 @@ pub fn conclude(run: &Run<'_>) -> SceneResult {
     let is_wrong = verdict == Verdict::WrongAnswer;
     let summary = if hints == Hints::None && is_wrong { "the trace is wrong".to_owned() } else { summary };
     let mut details = Vec::new();
+    if program.ended == Ended::Exited(NOT_FOUND) {
+        details.push(
+            "exit code 127 usually means that something was not found: the program is alone when it runs, and files \
+             that lie beside it are not there"
+                .to_owned(),
+        );
+    }
     if hints > Hints::None {
         details.extend(account.first_divergence.and_then(|first| hints.first_divergence(first)));
         details.extend(counts(account));
@@ -78,19 +94,34 @@ pub fn conclude(run: &Run<'_>) -> SceneResult {
 
 /// What the program's end alone says. Bytes behind the last record mean the same however many they are: a program that is
 /// stopped because of them ended when the judge had what it came for.
-fn verdict_of_program(ended: &Ended, judged: &Outcome) -> (Verdict, String) {
+fn verdict_of_program(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> (Verdict, String) {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     let verdict = match ended {
         Ended::Exited(0) => Verdict::Accepted,
         Ended::OutputLimit(Stream::Trace) if had_all => Verdict::Accepted,
         Ended::Cancelled => Verdict::NotRun,
-        Ended::Exited(_) | Ended::Signalled(_) | Ended::CouldNotStart(_) => Verdict::RuntimeError,
+        Ended::Exited(_) | Ended::Signalled(_) => Verdict::RuntimeError,
+        Ended::CouldNotStart(_) => Verdict::Unusable,
         Ended::CpuLimit | Ended::WallLimit => Verdict::TimeLimit,
         Ended::MemoryLimit => Verdict::MemoryLimit,
         Ended::OutputLimit(_) | Ended::FolderLimit => Verdict::OutputLimit,
         Ended::ProcessLimit | Ended::Violation { .. } => Verdict::Violation,
     };
-    (verdict, format!("the program {ended}"))
+    let limit = match ended {
+        Ended::CpuLimit => format!(" ({} s){}", limits.cpu.as_secs_f64(), reached(judged)),
+        Ended::WallLimit => format!(" ({} s){}", limits.wall.as_secs_f64(), reached(judged)),
+        Ended::MemoryLimit => format!(" ({} MiB){}", limits.memory >> 20, reached(judged)),
+        _ => String::new(),
+    };
+    (verdict, format!("the program {ended}{limit}"))
+}
+
+/// How far the trace of a program that was stopped came.
+fn reached(judged: &Outcome) -> String {
+    match judged.steps_judged {
+        done if done == judged.steps => " after its last step".to_owned(),
+        done => format!(" at step {} of {}", done + 1, judged.steps),
+    }
 }
 
 fn number(count: u64) -> String {

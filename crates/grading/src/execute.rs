@@ -19,7 +19,7 @@ use fosssim_model::scene::Scene;
 use fosssim_sandbox::{self as sandbox, Backend, Canceller, Identity, Job, Limits, Policy, Running, SandboxError};
 use std::{
     io::{self, Read},
-    path::Path,
+    path::{Path, PathBuf},
     sync::{
         Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, AtomicU64, Ordering},
@@ -69,6 +69,8 @@ pub struct Runner<'a> {
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader itself failed; made when it is needed.
     pub faults: &'a Path,
+    /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
+    pub traces: Option<&'a (dyn Fn(&SceneTask) -> PathBuf + Sync)>,
     /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of this
     /// scene, and the trace is still at hand.
     pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
@@ -133,6 +135,7 @@ impl Runner<'_> {
             trace_bytes: bytes.load(Ordering::Relaxed),
             rules: self.rules,
             hints: self.hints,
+            limits: self.limits,
         };
         let result = guarded(|| conclude(&run));
         let result = match result {
@@ -147,6 +150,11 @@ impl Runner<'_> {
             Ok(explanations) => SceneResult { explanations, ..result },
             Err(fault) => return Ok(failed(Stage::Explaining, &fault)),
         };
+        if let Some(path) = self.traces.map(|path| path(task))
+            && !result.verdict.is_accepted()
+        {
+            fault::write(&path, &kept).map_err(ExecuteError::Folder)?;
+        }
         match guarded(|| (self.rehearse)(&result)) {
             Ok(()) => Ok(result),
             Err(fault) => Ok(failed(Stage::Reporting, &fault)),

@@ -51,6 +51,37 @@ impl Grade {
         self.count(Verdict::NotRun) > 0
     }
 
+    /// What is wrong with the submission itself, and is said of each of its scenes: no program that can be run is in it, or
+    /// its sources do not build.
+    #[must_use]
+    pub fn unfit(&self) -> Option<&str> {
+        let first = self.scenes().next()?;
+        let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError);
+        let same = |scene: &SceneGrade| scene.verdict == first.verdict && scene.summary == first.summary;
+        let build = self.build.as_ref().filter(|build| !build.succeeded).map(|build| build.end.as_str());
+        (is_unfit && self.scenes().all(same)).then(|| build.unwrap_or(&first.summary))
+    }
+
+    /// In one sentence why not everything is accepted; nothing where it is.
+    #[must_use]
+    pub fn reason(&self) -> Option<String> {
+        if let Some(unfit) = self.unfit() {
+            return Some(unfit.to_owned());
+        }
+        let wrong = |scene: &&SceneGrade| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun);
+        let Some(first) = self.scenes().find(wrong) else {
+            return self.is_incomplete().then(|| format!("{} scenes were not run", self.count(Verdict::NotRun)));
+        };
+        let (all, accepted) = (self.scenes().count(), self.count(Verdict::Accepted));
+        Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, first.summary))
+    }
+
+    /// How many of the results were taken from an earlier run.
+    #[must_use]
+    pub fn taken_over(&self) -> usize {
+        self.scenes().filter(|scene| scene.cached).count()
+    }
+
     /// How many scenes the two rule books judge differently.
     #[must_use]
     pub fn differing(&self) -> usize {
@@ -66,11 +97,40 @@ impl Grade {
         if explained.len() > 1 { common(explained) } else { None }
     }
 
+    /// The likely mistakes, at most three, with the number of wrong scenes that each explains: the one that explains most,
+    /// then of the scenes that are left the one that explains most of these, provided that it explains them completely.
+    #[must_use]
+    pub fn likely_mistakes(&self) -> Vec<(Explanation, usize)> {
+        const MOST: usize = 3;
+        let all = self.scenes().map(|scene| scene.explanations.as_slice()).filter(|list| !list.is_empty());
+        let mut left: Vec<&[Explanation]> = all.collect();
+        let mut mistakes: Vec<(Explanation, usize)> = Vec::new();
+        while mistakes.len() < MOST {
+            let likely = match left[..] {
+                [] => None,
+                // One scene's explanations stand for themselves.
+                [only] if mistakes.is_empty() => only.first().cloned(),
+                _ => common(left.iter().copied()),
+            };
+            let Some(likely) = likely.filter(|likely| likely.reproduced > 0) else { break };
+            if !mistakes.is_empty() && likely.reproduced < likely.samples {
+                break;
+            }
+            let before = left.len();
+            left.retain(|list| !list.iter().any(|one| names(one, &likely.key)));
+            if left.len() == before {
+                break;
+            }
+            let explained = self.explained_by(&likely.key);
+            mistakes.push((likely, explained));
+        }
+        mistakes
+    }
+
     /// How many scenes' explanations name this mistake first.
     #[must_use]
     pub fn explained_by(&self, key: &str) -> usize {
-        let names = |one: &Explanation| one.key == key || one.same_as.iter().any(|other| other == key);
-        self.scenes().filter(|scene| scene.explanations.iter().any(names)).count()
+        self.scenes().filter(|scene| scene.explanations.iter().any(|one| names(one, key))).count()
     }
 
     /// How many scenes have this verdict.
@@ -78,6 +138,11 @@ impl Grade {
     pub fn count(&self, verdict: Verdict) -> usize {
         self.scenes().filter(|scene| scene.verdict == verdict).count()
     }
+}
+
+/// Whether an explanation names this mistake.
+fn names(explanation: &Explanation, key: &str) -> bool {
+    explanation.key == key || explanation.same_as.iter().any(|other| other == key)
 }
 
 /// The build step's end.

@@ -2,7 +2,7 @@
 //!
 //! A line is written and flushed before its result is reported. A line cut short by a crash is dropped on the next
 //! opening. Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene,
-//! rule or version is simply not found. A lock keeps two graders out of one folder.
+//! rule or grader is simply not found. A lock keeps two graders out of one folder.
 use super::{grade::SceneResult, kept::KeptExplanation, verdict::Verdict};
 use fosssim_judge::fair::Cause;
 use serde::{Deserialize, Serialize};
@@ -11,6 +11,7 @@ use std::{
     fs::{File, OpenOptions},
     io::{self, BufRead, BufReader, Seek, Write},
     path::{Path, PathBuf},
+    sync::OnceLock,
     time::Duration,
 };
 
@@ -20,18 +21,33 @@ pub struct Key(String);
 
 impl Key {
     /// The key of a run: digests of program and scene, and words for everything else that matters (rules, limits, the
-    /// command, the way of judging). The version of this program is always part of it.
+    /// command, the way of judging). What judges is always part of it.
     #[must_use]
     pub fn of(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
+        Self::by(judge(), program, scene, words)
+    }
+
+    /// The key of a run that this build judges.
+    fn by(judge: &str, program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         let mut hasher = blake3::Hasher::new();
         hasher.update(program.as_bytes());
         hasher.update(blake3::hash(scene).as_bytes());
-        for word in words.iter().chain(&[env!("CARGO_PKG_VERSION")]) {
+        for word in words.iter().chain(&[judge]) {
             hasher.update(&(word.len() as u64).to_le_bytes());
             hasher.update(word.as_bytes());
         }
         Self(hasher.finalize().to_hex().as_str()[..32].to_owned())
     }
+}
+
+/// The digest of this very program: two builds of one version may judge differently. Its version where that can't be read.
+fn judge() -> &'static str {
+    static JUDGE: OnceLock<String> = OnceLock::new();
+    JUDGE.get_or_init(|| {
+        let mut hasher = blake3::Hasher::new();
+        let digested = File::open("/proc/self/exe").and_then(|file| hasher.update_reader(file).map(|_| ()));
+        digested.map_or_else(|_| env!("CARGO_PKG_VERSION").to_owned(), |()| hasher.finalize().to_hex().to_string())
+    })
 }
 
 /// Why the journal can't be used.
@@ -274,5 +290,9 @@ mod tests {
         assert_ne!(Key::of(&program, b"scene", &["ab", "c"]), Key::of(&program, b"scene", &["a", "bc"]));
         assert_ne!(Key::of(&program, b"scene", &[]), Key::of(&program, b"scen", &[]));
         assert_ne!(Key::of(&blake3::hash(b"x"), b"scene", &[]), Key::of(&program, b"scene", &[]));
+        // Two builds of one version are two judges.
+        assert_ne!(Key::by("one build", &program, b"scene", &[]), Key::by("another", &program, b"scene", &[]));
+        assert_eq!(Key::by(judge(), &program, b"scene", &[]), Key::of(&program, b"scene", &[]));
+        assert_eq!(judge().len(), 64, "a digest, and no version");
     }
 }

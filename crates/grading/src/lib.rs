@@ -21,6 +21,7 @@ pub mod recording;
 pub mod score;
 mod staging;
 mod temporary;
+pub mod upload;
 mod verdict;
 
 pub use conclude::{Run, conclude};

@@ -52,6 +52,27 @@ impl Plan {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
+    /// The part of the plan with the scenes that `takes` takes by name. Each keeps its points; groups without any are left
+    /// out, and the name says that this is a part.
+    #[must_use]
+    pub fn part(mut self, takes: impl Fn(&str) -> bool) -> Self {
+        let all = self.scenes().count();
+        for group in &mut self.groups {
+            let before = group.scenes.len();
+            group.scenes.retain(|task| takes(&task.name));
+            #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
+            if group.scenes.len() < before {
+                group.stakes.points *= group.scenes.len() as f64 / before as f64;
+            }
+        }
+        self.groups.retain(|group| !group.scenes.is_empty());
+        let left = self.scenes().count();
+        if left < all {
+            self.name = format!("{} ({left} of {all} scenes)", self.name);
+        }
+        self
+    }
+
     /// Points that can be reached.
     #[must_use]
     pub fn max_points(&self) -> f64 {
@@ -183,6 +204,21 @@ mod tests {
             assert!(plan.max_points() > 0.0);
         }
         load(config::TEMPLATE, Path::new("nowhere")).expect("the template");
+    }
+
+    #[test]
+    fn a_part_of_a_suite_keeps_each_scenes_worth_and_says_that_it_is_a_part() {
+        let plan = || load(built_in("t2m2").expect("its text"), Path::new("nowhere")).expect("sound");
+        let (whole, name) = (plan(), plan().scenes().nth(3).expect("a scene").name.clone());
+        let part = plan().part(|scene| scene == name);
+        let all = whole.scenes().count();
+        assert_eq!((part.groups.len(), part.scenes().count()), (1, 1));
+        let group = whole.groups.iter().find(|group| group.name == part.groups[0].name).expect("its group");
+        #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
+        let worth = group.stakes.points / group.scenes.len() as f64;
+        assert!((part.max_points() - worth).abs() < 1e-12);
+        assert_eq!(part.name, format!("{} (1 of {all} scenes)", whole.name));
+        assert_eq!(plan().part(|_| true).name, whole.name);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! by the open file: who may write in that folder can exchange a name, not what was opened. What can't be copied for what
 //! it is, or for who may read it, is the submission's own fault and not the grader's.
 //! Sources are built in a copy of their folder, in the sandbox, so that a build changes nothing of the submission.
-use super::{config::BuildStep, execute::Cancellation, grade::Build, temporary::Temporary};
+use super::{config::BuildStep, execute::Cancellation, grade::Build, temporary::Temporary, upload};
 use fosssim_sandbox::{
     Backend, Ended, Identity, Job, Limits, Policy, SandboxError, StartProblem,
     collect::{self, CollectError, Entry, Folder},
@@ -127,9 +127,7 @@ pub fn program_in(folder: &Path, name: &str) -> Result<Staged, StagingError> {
     let path = folder.join(name);
     match collect::open_regular_file(folder, name, LARGEST_FOLDER) {
         Ok((file, _)) => copied(file, &path),
-        Err(CollectError::Missing { .. }) => {
-            Ok(Staged::refused(&path, format!("the program {}", Ended::CouldNotStart(StartProblem::NotFound))))
-        }
+        Err(CollectError::Missing { .. }) => Ok(Staged::refused(&path, upload::without(name, folder))),
         Err(CollectError::System { source, .. })
             if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
         {
@@ -145,6 +143,14 @@ pub fn digest(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
     let mut hasher = blake3::Hasher::new();
     (length <= LARGEST_FOLDER && hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok()).then(|| hasher.finalize())
+}
+
+/// As [`digest`], for what [`program_in`] takes.
+#[must_use]
+pub fn digest_in(folder: &Path, name: &str) -> Option<blake3::Hash> {
+    let (file, _) = collect::open_regular_file(folder, name, LARGEST_FOLDER).ok()?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok().then(|| hasher.finalize())
 }
 
 impl Staged {

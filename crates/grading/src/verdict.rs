@@ -21,6 +21,8 @@ pub enum Verdict {
     TimeLimit,
     /// The program crashed or ended with an error code.
     RuntimeError,
+    /// The submission itself can't be run: no program is in it, or none that this machine can start.
+    Unusable,
     /// The program's sources do not build.
     CompileError,
     /// The program tried what the sandbox forbids.
@@ -31,7 +33,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// All verdicts, best first.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Accepted,
         Self::NotRun,
         Self::WrongAnswer,
@@ -41,6 +43,7 @@ impl Verdict {
         Self::MemoryLimit,
         Self::TimeLimit,
         Self::RuntimeError,
+        Self::Unusable,
         Self::CompileError,
         Self::Violation,
         Self::JudgeError,
@@ -59,6 +62,7 @@ impl Verdict {
             Self::MemoryLimit => "MLE",
             Self::TimeLimit => "TLE",
             Self::RuntimeError => "RTE",
+            Self::Unusable => "US",
             Self::CompileError => "CE",
             Self::Violation => "SV",
             Self::JudgeError => "JE",
@@ -78,6 +82,7 @@ impl Verdict {
             Self::MemoryLimit => "memory limit",
             Self::TimeLimit => "time limit",
             Self::RuntimeError => "run-time error",
+            Self::Unusable => "unusable submission",
             Self::CompileError => "compile error",
             Self::Violation => "sandbox violation",
             Self::JudgeError => "judge error",

@@ -101,13 +101,15 @@ fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, Star
     /// An interpreter may be a script itself; the kernel, too, follows so many.
     const DEEPEST: u32 = 4;
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
-    let hint = if line.ends_with('\r') {
-        " (its lines end in CR LF: convert them with dos2unix)"
-    } else {
-        "; install it, or name another one"
-    };
+    let hint = "; install it, or name another one";
     let missing =
         |name: &str, hint| StartProblem::MissingInterpreter { interpreter: name.escape_default().to_string(), hint };
+    if line.ends_with('\r') {
+        // The kernel takes it for the last character of the name.
+        let hint =
+            ": a carriage return is part of its name, because the lines end in CR LF; convert them with dos2unix";
+        return Err(missing(line.trim_start(), hint));
+    }
     let line = line.trim();
     let (interpreter, rest) =
         line.split_once(char::is_whitespace).map_or((line, ""), |(name, rest)| (name, rest.trim()));
@@ -379,6 +381,10 @@ mod tests {
         assert!(
             matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { interpreter, .. }) if interpreter == "/no/such/shell")
         );
+        // Whether the interpreter exists without the carriage return does not matter.
+        let (_kept, path) = written("a", b"#!/bin/sh\r\nexit 0\r\n", 0o755);
+        let problem = examine(&path, &[]).unwrap_err().to_string();
+        assert!(problem.contains("interpreter /bin/sh\\r is not") && problem.contains("carriage return"), "{problem}");
         let (_kept, path) = written("a", b"#!/no/such/shell\r\n", 0o755);
         assert!(
             matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { hint, .. }) if hint.contains("dos2unix"))

@@ -47,12 +47,16 @@ impl<'a> Display<'a> {
                     bar.set_position(u64::from(step));
                 }
             }
-            Event::SceneDone { submission, scene, .. } => {
+            Event::SceneDone { submission, scene, cached, .. } => {
                 if let Some(bars) = &mut self.bars {
                     if let Some(bar) = bars.running.remove(&(submission, scene)) {
                         bar.finish_and_clear();
                     }
-                    bars.overall.inc(1);
+                    match cached {
+                        // What was taken over says nothing about how long the rest will take.
+                        true => bars.overall.set_length(bars.overall.length().unwrap_or(1).saturating_sub(1)),
+                        false => bars.overall.inc(1),
+                    }
                 }
             }
             Event::Graded { grade, .. } => {

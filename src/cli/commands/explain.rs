@@ -95,6 +95,7 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
         recorded: false,
         cancellation: &cancellation,
         faults: Path::new(""),
+        traces: None,
         rehearse: &|_| {},
     };
     let mut cases = Vec::new();

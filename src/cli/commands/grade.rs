@@ -1,16 +1,17 @@
 //! `grade`: runs programs on a suite in the sandbox, keeps every result, and writes the reports.
-use super::{display::Display, submissions};
+use super::{closer::Closer, display::Display, last_run::LastRun, submissions::Search};
 use crate::{
-    cli::{console, exit, grading::Grade as Arguments, output},
+    cli::{console, exit, grading::Grade as Arguments, output, selection::Selection},
     judge::Rules,
     report::{
         explain,
-        grade::{self, Format},
+        grade::{self, Format, Shown, Text},
         number::counted,
+        style::Style,
     },
     sandbox::{Backend, Supervisor},
     suite::{
-        Cancellation, Grade, Verdict,
+        Cancellation, Grade, SceneTask, Verdict,
         batch::{self, Batch, BatchOptions, Submission},
         config, guarded,
         journal::Journal,
@@ -20,6 +21,7 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use std::{
     fs,
+    io::Write,
     num::NonZeroUsize,
     path::{Path, PathBuf},
     sync::{Arc, OnceLock},
@@ -28,6 +30,9 @@ use std::{
 
 /// Where results go when several submissions are graded and no folder is named.
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
+
+/// So many scenes and mistakes of a class are shown; class.txt has all.
+const HARDEST: usize = 5;
 
 /// Where traces on which the grader itself failed go when there is no folder for results.
 const FAULTS: &str = "fosssim-faults";
@@ -40,8 +45,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     if arguments.recorded && plan.rules == Rules::Fair {
         bail!("the fair rules follow the submission, so they can't judge against recordings: leave --recorded out");
     }
+    if let Some(hints) = arguments.hints {
+        plan.hints = hints.into();
+    }
     let reports = reports(&arguments.format)?;
-    let submissions = submissions::find(arguments, plan.build.is_some())?;
+    let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUTPUT));
+    let mut submissions = Search::new(arguments, plan.build.as_ref(), &output).run()?;
+    let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
+    let selection = Selection::new(&arguments.scene, &names)?;
     if submissions.len() > 1
         && let Some(report) = reports.iter().find(|report| !report.format.takes_several())
     {
@@ -54,15 +65,29 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         drop(output::Output::create(file, &[])?);
     }
     let backend = backend(arguments.unsafe_no_sandbox)?;
-    let folder = match &arguments.output {
-        Some(folder) => Some(folder.clone()),
-        None => (submissions.len() > 1).then(|| PathBuf::from(DEFAULT_OUTPUT)),
+    let keeps = arguments.output.is_some() || arguments.keep_traces || submissions.len() > 1;
+    let folder = keeps.then_some(output);
+    let whole = plan.scenes().count();
+    let mut last_run = LastRun::open(folder.as_deref(), &submissions, &plan.name);
+    let failed = match (arguments.failed, last_run.failed()) {
+        (false, _) => None,
+        (true, Some(failed)) => Some(failed),
+        (true, None) => bail!("no earlier run of this is known: run the same command without --failed first"),
     };
-    let session = Session { arguments, plan: &plan, backend: &backend, cancellation: &cancellation, folder };
-    if arguments.watch {
-        return session.watch(&submissions, &reports);
+    plan = plan.part(|scene| selection.takes(scene) && failed.as_ref().is_none_or(|failed| failed.contains(scene)));
+    if arguments.failed {
+        submissions.retain(|submission| last_run.has_failed(&submission.name));
     }
-    session.grade_and_report(&submissions, &reports)
+    if plan.scenes().next().is_none() {
+        console::complain(b"nothing to run: everything was accepted in the last run\n");
+        return Ok(exit::ACCEPTED);
+    }
+    let is_part = plan.scenes().count() < whole || arguments.failed;
+    let session = Session { arguments, plan: &plan, backend: &backend, cancellation: &cancellation, folder, is_part };
+    if arguments.watch {
+        return session.watch(&submissions, &reports, &mut last_run);
+    }
+    session.grade_and_report(&submissions, &reports, &mut last_run).map(|(_, code)| code)
 }
 
 /// Finds a suite by name or file.
@@ -77,8 +102,7 @@ pub(super) fn load_suite(name: &str) -> Result<Plan> {
     let text = fs::read_to_string(name)
         .with_context(|| format!("no suite {name}: it is neither a file nor one of {}", known.join(", ")))?;
     let folder = Path::new(name).parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let suite = config::read(&text).map_err(|error| in_file(name, &error))?;
-    plan::resolve(&suite, folder).map_err(|error| in_file(name, &error))
+    plan::load(&text, folder).map_err(|error| in_file(name, &error))
 }
 
 fn in_file(name: &str, error: &config::SuiteError) -> anyhow::Error {
@@ -116,8 +140,8 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                     }
                     return;
                 }
-                console::complain(b"stopping; results so far are kept (once more to stop at once)\n");
                 signalled.cancel();
+                console::complain(b"\nstopping (once more to stop at once)\n");
             }));
             cancellation
         })
@@ -149,6 +173,11 @@ fn reports(words: &[String]) -> Result<Vec<Report>> {
     if reports.iter().filter(|report| report.file.is_none()).count() > 1 {
         bail!("only one format can go to standard output; give the others a file: --format NAME=FILE");
     }
+    let place = |file: &PathBuf| file.canonicalize().or_else(|_| std::path::absolute(file)).unwrap_or(file.clone());
+    let files: Vec<PathBuf> = reports.iter().filter_map(|report| report.file.as_ref()).map(place).collect();
+    if let Some((_, twice)) = files.iter().enumerate().find(|(number, file)| files[..*number].contains(file)) {
+        bail!("two formats go to one file, {}: give each its own", twice.display());
+    }
     Ok(reports)
 }
 
@@ -159,16 +188,52 @@ struct Session<'a> {
     backend: &'a Backend,
     cancellation: &'a Cancellation,
     folder: Option<PathBuf>,
+    /// Whether scenes of the suite were left out on purpose.
+    is_part: bool,
 }
 
 impl Session<'_> {
-    fn grade_and_report(&self, submissions: &[Submission], reports: &[Report]) -> Result<u8> {
+    fn grade_and_report(
+        &self,
+        submissions: &[Submission],
+        reports: &[Report],
+        last_run: &mut LastRun,
+    ) -> Result<(Vec<Grade>, u8)> {
         let (grades, fault) = self.grade(submissions, self.arguments.fresh)?;
-        self.report(&grades, reports)?;
+        last_run.remember(&grades);
+        self.report(&grades, submissions, reports)?;
+        self.say_what_was_kept(&grades);
         match fault {
             Some(fault) => Err(fault),
-            None => Ok(self.exit_code(&grades)),
+            None => {
+                let code = self.exit_code(&grades);
+                Ok((grades, code))
+            }
         }
+    }
+
+    /// What was taken over from earlier runs, and how to go on with one that was stopped.
+    fn say_what_was_kept(&self, grades: &[Grade]) {
+        let taken: usize = grades.iter().map(Grade::taken_over).sum();
+        let all = grades.iter().flat_map(Grade::scenes).count();
+        if let Some(folder) = &self.folder {
+            if taken > 0 {
+                let (folder, all) = (folder.display(), counted(all as u64, "result"));
+                let line = format!("{taken} of {all} taken over from {folder} (--fresh grades all anew)\n");
+                console::complain(line.as_bytes());
+            }
+            if self.cancellation.is_cancelled() {
+                let folder = folder.display();
+                let line = format!("stopped; results are kept in {folder}: the same command goes on from there\n");
+                console::complain(line.as_bytes());
+            }
+        }
+    }
+
+    /// Where the trace of a scene goes that is not accepted, when traces are kept.
+    fn trace(&self, submission: &str, scene: &str) -> Option<PathBuf> {
+        let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
+        Some(folder.join("traces").join(file_name(submission)).join(format!("{}.bin", file_name(scene))))
     }
 
     /// The grades, and what kept the rest from being graded or kept.
@@ -187,12 +252,15 @@ impl Session<'_> {
             recorded: self.arguments.recorded,
         };
         let faults = self.folder.as_deref().map_or_else(|| PathBuf::from(FAULTS), |folder| folder.join("faults"));
+        let trace =
+            |submission: &Submission, scene: &SceneTask| self.trace(&submission.name, &scene.name).unwrap_or_default();
         let batch = Batch {
             plan: self.plan,
             backend: self.backend,
             options,
             cancellation: self.cancellation,
             faults: &faults,
+            traces: if self.arguments.keep_traces { Some(&trace) } else { None },
             rehearse: &grade::rehearse,
         };
         let mut display = Display::new(self.plan, submissions);
@@ -212,26 +280,58 @@ impl Session<'_> {
     }
 
     /// Writes the reports and, into the folder, the files that a batch ends with.
-    fn report(&self, grades: &[Grade], reports: &[Report]) -> Result<()> {
+    fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
         // One file that can't be written must not cost the others.
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
-        if let Some(folder) = &self.folder {
+        if self.is_part && self.folder.is_some() {
+            console::complain(
+                b"a part of the suite is no grade: grades.csv and the other tables are left as they are\n",
+            );
+        } else if let Some(folder) = &self.folder {
             let lines = || grades.iter().map(grade::json_line).collect();
             keep(write(&folder.join("grades.csv"), || grade::csv_of_submissions(grades)));
             keep(write(&folder.join("scenes.csv"), || Format::Csv.render(grades)));
             keep(write(&folder.join("grades.jsonl"), lines));
+            if grades.len() > 1 {
+                keep(write(&folder.join("class.txt"), || grade::class(grades, usize::MAX, Style::Plain)));
+            }
         }
         for report in reports {
             let render = || report.format.render(grades);
-            match &report.file {
-                Some(file) => keep(write(file, render)),
-                None => keep(made("the report", render).and_then(|text| console::print(text.as_bytes()))),
+            match (&report.file, report.format) {
+                (None, Format::Text) => {
+                    let text = made("the report", || self.text(grades, submissions));
+                    keep(text.and_then(|text| console::report(&text)));
+                }
+                (None, _) => keep(made("the report", render).and_then(|text| console::print(text.as_bytes()))),
+                (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
+                (Some(file), _) => keep(write(file, render)),
             }
         }
         match wrong {
             Some(error) => Err(error),
             None => Ok(()),
+        }
+    }
+
+    /// The report for people who look at it now: on a terminal a class is a closing summary per submission.
+    fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
+        let is_class = grades.len() > 1;
+        let shown = match console::width() {
+            _ if self.arguments.quiet => Shown::Line,
+            _ if self.arguments.verbose => Shown::All,
+            Some(_) if is_class => Shown::Closing,
+            _ => Shown::Wrong,
+        };
+        let trace = |submission: &str, scene: &str| self.trace(submission, scene);
+        let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
+        let closer = |grade: &Grade, scene: &_| closer.advice(grade, scene);
+        let (style, width) = (console::style(), console::width());
+        let text = Text { style, shown, width, again: None, closer: Some(&closer) }.render(grades);
+        match is_class && shown > Shown::Line {
+            true => text + "\n" + &grade::class(grades, HARDEST, style),
+            false => text,
         }
     }
 
@@ -248,13 +348,22 @@ impl Session<'_> {
     }
 
     /// Grades, waits for a change of any program, grades again; until interrupted.
-    fn watch(&self, submissions: &[Submission], reports: &[Report]) -> Result<u8> {
+    fn watch(&self, submissions: &[Submission], reports: &[Report], last_run: &mut LastRun) -> Result<u8> {
+        let mut before: Option<Vec<Grade>> = None;
         loop {
             let seen = stamps(submissions);
-            let code = self.grade_and_report(submissions, reports)?;
+            let (grades, code) = self.grade_and_report(submissions, reports, last_run)?;
+            if let Some(before) = &before {
+                let printed = reports.iter().any(|report| report.file.is_none() && report.format == Format::Text);
+                match printed {
+                    true => console::report(&grade::changes(before, &grades, console::style()))?,
+                    false => console::complain(grade::changes(before, &grades, Style::Plain).as_bytes()),
+                }
+            }
             if self.cancellation.is_cancelled() {
                 return Ok(code);
             }
+            before = Some(grades);
             console::complain(b"waiting for a change; Ctrl-C ends\n");
             // A file is graded when it has stopped changing: a linker writes in several goes.
             let mut last = seen.clone();
@@ -273,6 +382,19 @@ impl Session<'_> {
     }
 }
 
+/// Whether a file is the one to which the steps of a GitHub job add their summaries.
+fn is_step_summary(file: &Path) -> bool {
+    std::env::var_os("GITHUB_STEP_SUMMARY").is_some_and(|summary| Path::new(&summary) == file)
+}
+
+/// Makes a text and adds it to what a file holds already.
+fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
+    let text = made(&file.display().to_string(), text)?;
+    let opened = fs::OpenOptions::new().create(true).append(true).open(file);
+    let written = opened.and_then(|mut file| file.write_all(text.as_bytes()));
+    written.with_context(|| format!("cannot write {}", file.display()))
+}
+
 /// Makes a text and writes it.
 fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
     let text = made(&file.display().to_string(), text)?;
@@ -286,7 +408,11 @@ fn made(name: &str, text: impl FnOnce() -> String) -> Result<String> {
 
 /// What tells that a submission has changed: the newest change below it, and its size.
 fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
-    submissions.iter().map(|submission| newest(&submission.path, &mut 20_000)).collect()
+    let program = |submission: &Submission| match &submission.program {
+        Some(program) => submission.path.join(program),
+        None => submission.path.clone(),
+    };
+    submissions.iter().map(|submission| newest(&program(submission), &mut 20_000)).collect()
 }
 
 fn newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {

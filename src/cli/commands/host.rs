@@ -85,6 +85,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             options: BatchOptions { jobs, fail_fast: false, recorded: false },
             cancellation: &cancellation,
             faults: Path::new("fosssim-faults"),
+            traces: None,
             rehearse: &rehearse,
         };
         let grades = batch.run(&[submission], None, &mut |_| {}).grades;

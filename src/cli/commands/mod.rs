@@ -1,12 +1,14 @@
 //! The commands: each reads its inputs, lets the rooms below do the work, and prints what a renderer makes of it.
 
 mod check;
+mod closer;
 mod detect;
 mod display;
 mod explain;
 mod grade;
 mod headroom;
 mod host;
+mod last_run;
 mod record;
 mod render;
 mod scene;

@@ -38,8 +38,7 @@ pub struct Submission {
     pub name: String,
     /// The program, or the folder of sources when the plan builds.
     pub path: PathBuf,
-    /// The program's name in the folder `path`, when the submission is a folder that somebody else filled. Links that
-    /// leave the folder are not followed.
+    /// The program's name in the folder `path`, which somebody else filled. Links are not followed, and nothing is built.
     pub program: Option<String>,
 }
 
@@ -67,6 +66,8 @@ pub struct Batch<'a> {
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader itself failed; made when it is needed.
     pub faults: &'a Path,
+    /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
+    pub traces: Option<&'a (dyn Fn(&Submission, &SceneTask) -> PathBuf + Sync)>,
     /// Shows a result in the forms in which it will be reported, for nobody to see ([`Runner::rehearse`]).
     pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
 }
@@ -167,8 +168,11 @@ impl Known {
         Key::of(digest, &scene.xml, &words)
     }
 
-    fn find(&self, key: &Key) -> Option<Done> {
-        self.found.get(key).map(|result| Done { result: result.clone(), cached: true, key: None })
+    /// An earlier result. Where traces are wanted, it is none without its trace.
+    fn find(&self, key: &Key, trace: Option<&Path>) -> Option<Done> {
+        let found = self.found.get(key)?;
+        let lacks = trace.is_some_and(|trace| !found.verdict.is_accepted() && !trace.exists());
+        (!lacks).then(|| Done { result: found.clone(), cached: true, key: None })
     }
 }
 
@@ -274,13 +278,16 @@ impl Batch<'_> {
             return Done::unkept(reason.result(scene));
         }
         let _ = sender.send(Message::Begins(place.0, place.1));
+        let trace = self.traces.map(|path| path(submission, scene));
+        let trace = trace.as_deref();
         let found = work.digest(self, submission);
-        if let Some(done) = found.and_then(|digest| known.find(&known.key(&digest, scene, &submission.called()))) {
+        let found = found.and_then(|digest| known.find(&known.key(&digest, scene, &submission.called()), trace));
+        if let Some(done) = found {
             return done;
         }
         match &*work.staged(self, submission) {
             Err(message) => without_run(Verdict::JudgeError, message),
-            Ok(Staged { refused: Some(why), .. }) => without_run(Verdict::RuntimeError, why),
+            Ok(Staged { refused: Some(why), .. }) => without_run(Verdict::Unusable, why),
             Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.succeeded) => {
                 match self.cancellation.is_cancelled() {
                     true => without_run(Verdict::NotRun, "grading was stopped"),
@@ -289,7 +296,7 @@ impl Batch<'_> {
             }
             Ok(staged) => {
                 let key = known.key(&staged.digest, scene, &called(&staged.program));
-                known.find(&key).unwrap_or_else(|| {
+                known.find(&key, trace).unwrap_or_else(|| {
                     let mut told = Instant::now();
                     let mut on_step = |step| {
                         // A display can't show more, and a channel should not hold more.
@@ -298,7 +305,10 @@ impl Batch<'_> {
                             let _ = sender.send(Message::Step(place.0, place.1, step));
                         }
                     };
-                    let result = self.runner().grade(staged, scene, &mut on_step);
+                    let to = |scene: &SceneTask| self.traces.map(|path| path(submission, scene)).unwrap_or_default();
+                    let traces: Option<&(dyn Fn(&SceneTask) -> PathBuf + Sync)> =
+                        if trace.is_some() { Some(&to) } else { None };
+                    let result = Runner { traces, ..self.runner() }.grade(staged, scene, &mut on_step);
                     Done { result, cached: false, key: Some(key) }
                 })
             }
@@ -315,6 +325,7 @@ impl Batch<'_> {
             recorded: self.options.recorded,
             cancellation: self.cancellation,
             faults: self.faults,
+            traces: None,
             rehearse: self.rehearse,
         }
     }

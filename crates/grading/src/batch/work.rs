@@ -55,9 +55,12 @@ impl Work {
     /// The digest of a program that needs no build and no copy to be known.
     pub(super) fn digest(&self, batch: &Batch<'_>, submission: &Submission) -> Option<blake3::Hash> {
         *self.digest.get_or_init(|| {
-            let builds = batch.plan.build.is_some() && submission.path.is_dir();
-            let own = !builds && submission.program.is_none();
-            own.then(|| staging::digest(&submission.path)).flatten()
+            let builds = batch.plan.build.is_some() && submission.program.is_none() && submission.path.is_dir();
+            match &submission.program {
+                _ if builds => None,
+                Some(program) => staging::digest_in(&submission.path, program),
+                None => staging::digest(&submission.path),
+            }
         })
     }
 
@@ -95,7 +98,7 @@ pub(super) fn called(program: &Path) -> String {
 
 fn stage(batch: &Batch<'_>, submission: &Submission) -> Result<Staged, StagingError> {
     match &batch.plan.build {
-        Some(step) if submission.path.is_dir() => {
+        Some(step) if submission.program.is_none() && submission.path.is_dir() => {
             staging::build(&submission.path, step, batch.backend, batch.cancellation)
         }
         _ => match &submission.program {

@@ -1,5 +1,5 @@
 //! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
-use super::{one_line, points};
+use super::{likely_mistakes, no_points, one_line, points};
 use fosssim_grading::Grade;
 use fosssim_judge::fair::Cause;
 
@@ -31,17 +31,19 @@ pub(super) fn scenes(grades: &[Grade]) -> String {
 }
 
 /// One row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge differently. Points are empty
-/// where the grader failed or was stopped.
+/// where the grader failed or was stopped; `reason` says in one sentence why not everything is accepted.
 #[must_use]
 pub fn submissions(grades: &[Grade]) -> String {
     let mut head: Vec<String> =
-        ["submission", "verdict", "points", "max_points", "accepted_scenes", "scenes", "wall_seconds", "rules_differ"]
+        "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,reason"
+            .split(',')
             .map(str::to_owned)
-            .into();
+            .collect();
     if let Some(first) = grades.first() {
         head.extend(first.groups.iter().map(|group| safe(&group.name)));
     }
     let rows = grades.iter().map(|grade| {
+        let mistakes: Vec<String> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake.what).collect();
         let mut row = vec![
             safe(&grade.submission),
             grade.verdict.words().to_owned(),
@@ -51,6 +53,8 @@ pub fn submissions(grades: &[Grade]) -> String {
             grade.scenes().count().to_string(),
             format!("{:.3}", grade.wall.as_secs_f64()),
             grade.differing().to_string(),
+            safe(&mistakes.join(" ")),
+            safe(&no_points(grade).or_else(|| grade.reason()).unwrap_or_default()),
         ];
         row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
         row

@@ -75,6 +75,28 @@ fn prairielearn_follows_its_schema() {
     insta::assert_snapshot!("grade_prairielearn", Format::Prairielearn.render(&[samples::bad()]));
 }
 
+/// A fact about the upload is said once, at the top, and not of each scene.
+#[test]
+fn what_is_wrong_with_a_submission_itself_is_said_once() {
+    let sentence = "no program called FOSSSim in the upload; it holds main.cpp, fosssim-sample";
+    for format in
+        [Format::Text, Format::Junit, Format::Gradescope, Format::Prairielearn, Format::Github, Format::Markdown]
+    {
+        let document = format.render(&[samples::unfit()]).replace('\\', "");
+        assert_eq!(document.matches(sentence).count(), 1, "{format:?}: {document}");
+        assert!(document.contains("unusable submission") && !document.contains("run-time"), "{format:?}: {document}");
+    }
+    let gradescope: serde_json::Value =
+        serde_json::from_str(&Format::Gradescope.render(&[samples::unfit()])).expect("JSON");
+    assert_eq!((&gradescope["score"], gradescope["tests"].as_array().map(Vec::len)), (&0.0.into(), Some(3)));
+    assert!(gradescope["output"].as_str().is_some_and(|output| output.contains(sentence)), "{gradescope:#}");
+    assert_valid("gradescope.schema.json", &gradescope.to_string());
+    assert_valid("grade.schema.json", &Format::Json.render(&[samples::unfit()]));
+    let csv = csv_of_submissions(&[samples::unfit()]);
+    assert!(csv.contains("dan,unusable submission,0,20,0,3,"), "{csv}");
+    insta::assert_snapshot!("grade_unfit_text", Format::Text.render(&[samples::unfit()]));
+}
+
 #[test]
 fn a_stopped_grading_has_points_in_no_format() {
     let grades = [samples::stopped()];

@@ -1,5 +1,5 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
-use super::{super::explain, difference, no_points, one_line, points, reached};
+use super::{super::explain, difference, head_lines, no_points, one_line, points, reached, wrong_first};
 use fosssim_grading::{Grade, Verdict};
 use std::fmt::Write;
 
@@ -16,7 +16,18 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
             let _ =
                 writeln!(text, "::error title={title}::{}", words.lines().map(data).collect::<Vec<_>>().join("%0A"));
         }
-        for scene in grade.scenes().filter(|scene| !scene.verdict.is_accepted()) {
+        // GitHub shows the first ten: what matters most comes first, and once.
+        let head = head_lines(grade);
+        if !head.is_empty() && grade.build.as_ref().is_none_or(|build| build.succeeded) {
+            let title = property(&format!("{}: {}, {}", grade.submission, grade.verdict, score(grade)));
+            let _ = writeln!(
+                text,
+                "::error title={title}::{}",
+                head.iter().map(|line| data(line)).collect::<Vec<_>>().join("%0A")
+            );
+        }
+        let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted() && grade.unfit().is_none());
+        for scene in wrong {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
             let words: Vec<String> =
@@ -46,21 +57,27 @@ fn property(text: &str) -> String {
 pub(super) fn summary(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
-        let score = grade.points.map(|reached| format!("{} of {}", points(reached), points(grade.max_points)));
-        let score = score.or_else(|| no_points(grade)).unwrap_or_default();
-        let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&score));
+        let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&score(grade)));
+        for line in head_lines(grade) {
+            let _ = writeln!(text, "{}\n", cell(&line));
+        }
         for warning in &grade.warnings {
             let _ = writeln!(text, "**Warning:** {}\n", cell(warning));
         }
         if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
-            let _ = writeln!(text, "{}\n", cell(&build.end));
+            if grade.unfit().is_none() {
+                let _ = writeln!(text, "{}\n", cell(&build.end));
+            }
             for line in build.output.lines().take(40) {
                 let _ = writeln!(text, "    {}", one_line(line));
             }
             text.push('\n');
         }
+        if grade.unfit().is_some() {
+            continue;
+        }
         let _ = writeln!(text, "| scene | verdict | points | what happened |\n|---|---|---:|---|");
-        for scene in grade.scenes() {
+        for scene in wrong_first(grade.groups.iter()) {
             let name = cell(&scene.scene);
             let words: Vec<String> = std::iter::once(&scene.summary)
                 .chain(&explain::sentence(&scene.explanations))
@@ -73,6 +90,12 @@ pub(super) fn summary(grades: &[Grade]) -> String {
         text.push('\n');
     }
     text
+}
+
+/// `12.5 of 20`, or why there are no points.
+fn score(grade: &Grade) -> String {
+    let reached = grade.points.map(|reached| format!("{} of {}", points(reached), points(grade.max_points)));
+    reached.or_else(|| no_points(grade)).unwrap_or_default()
 }
 
 /// Text without Markdown or HTML of its own.

@@ -1,5 +1,5 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::{super::explain, difference, likely_mistake, plain, points};
+use super::{super::explain, difference, head_lines, plain, points};
 use crate::number::counted;
 use fosssim_grading::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
@@ -52,7 +52,10 @@ pub(super) fn render(grade: &Grade) -> String {
                 status: if scene.verdict.is_accepted() { "passed" } else { "failed" },
                 name: format!("{} ({})", plain(&scene.scene), plain(&group.name)),
                 number: format!("{}.{}", g + 1, s + 1),
-                output: output(scene, grade.shows_output),
+                output: match grade.unfit() {
+                    Some(_) => format!("{}: not run, see above", scene.verdict),
+                    None => output(scene, grade.shows_output),
+                },
                 tags: vec![scene.verdict.code().to_owned()],
                 visibility: group.visibility.key(),
             });
@@ -93,8 +96,10 @@ fn overall(grade: &Grade) -> String {
     if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
         lines.push(format!("{}\n{}", plain(&build.end), plain(&build.output)));
     }
-    if all_visible {
-        lines.extend(likely_mistake(grade).map(|line| plain(&line)));
+    // What is wrong with the upload itself tells of no scene.
+    let told = grade.build.as_ref().is_some_and(|build| !build.succeeded);
+    if grade.unfit().is_some() && !told || all_visible && grade.unfit().is_none() {
+        lines.extend(head_lines(grade).iter().map(|line| plain(line)));
     }
     lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", plain(warning))));
     lines.join("\n")

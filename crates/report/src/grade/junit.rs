@@ -1,5 +1,5 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
-use super::{super::explain, difference, plain};
+use super::{super::explain, difference, head_lines, plain, wrong_first};
 use fosssim_grading::{Grade, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -7,12 +7,18 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 pub(super) fn render(grades: &[Grade]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
+        if let Some(unfit) = grade.unfit() {
+            report.add_test_suite(submission(grade, unfit));
+        }
         for group in &grade.groups {
             let mut suite = TestSuite::new(format!("{}: {}", plain(&grade.submission), plain(&group.name)));
             for (number, warning) in grade.warnings.iter().enumerate() {
                 suite.add_property(quick_junit::Property::new(format!("warning.{number}"), plain(warning)));
             }
-            for scene in &group.scenes {
+            for (number, line) in head_lines(grade).iter().enumerate().filter(|_| grade.unfit().is_none()) {
+                suite.add_property(quick_junit::Property::new(format!("likely_mistake.{number}"), plain(line)));
+            }
+            for scene in wrong_first(std::iter::once(group)) {
                 // A case of its own has no place for what is neither its result nor the program's output.
                 if let Some(words) = difference(scene) {
                     let name = format!("rules_differ.{}", plain(&scene.scene));
@@ -26,10 +32,26 @@ pub(super) fn render(grades: &[Grade]) -> String {
     report.to_string().unwrap_or_default()
 }
 
+/// A suite of one case: what is wrong with the submission itself, so that no scene was run.
+fn submission(grade: &Grade, unfit: &str) -> TestSuite {
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+    status.set_type(grade.verdict.words());
+    status.set_message(plain(unfit));
+    if let Some(build) = &grade.build {
+        status.set_description(plain(&build.output));
+    }
+    let mut case = TestCase::new("submission", status);
+    case.set_classname(plain(&grade.submission));
+    let mut suite = TestSuite::new(format!("{}: submission", plain(&grade.submission)));
+    suite.add_test_case(case);
+    suite
+}
+
 fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
     let status = match scene.verdict {
         Verdict::Accepted => TestCaseStatus::success(),
         Verdict::NotRun => TestCaseStatus::skipped(),
+        _ if grade.unfit().is_some() => TestCaseStatus::skipped(),
         verdict => {
             let kind = if verdict == Verdict::JudgeError { NonSuccessKind::Error } else { NonSuccessKind::Failure };
             let mut status = TestCaseStatus::non_success(kind);

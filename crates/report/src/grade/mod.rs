@@ -3,6 +3,7 @@
 //! Names and program output are somebody else's words. [`plain`] takes control characters out of them before any
 //! format sees them; each format then escapes what its own syntax gives a meaning.
 
+mod class;
 mod csv_table;
 mod github;
 mod gradescope;
@@ -13,7 +14,7 @@ mod text;
 
 use crate::number::counted;
 use fosssim_grading::{
-    Grade, SceneGrade, SceneResult, Verdict,
+    Grade, GroupGrade, SceneGrade, SceneResult, Verdict,
     config::{Credit, Visibility},
     score::{self, Stakes},
 };
@@ -82,6 +83,7 @@ impl Format {
     }
 }
 
+pub use class::class;
 pub use csv_table::submissions as csv_of_submissions;
 pub use json::line as json_line;
 pub use text::{Advice, Shown, Text, changes, score, table as text_table};
@@ -105,22 +107,33 @@ pub fn plain(text: &str) -> String {
     plain
 }
 
-/// One line about the mistake that explains most wrong scenes, where there are several.
-#[must_use]
-pub fn likely_mistake(grade: &Grade) -> Option<String> {
-    let likely = grade.likely_mistake()?;
-    let wrong = grade.count(Verdict::WrongAnswer);
-    let explained = grade.explained_by(&likely.key);
-    Some(format!("most likely mistake: {} (explains {explained} of {wrong} wrong scenes)", likely.what))
-}
-
 /// The likely mistakes, the one that explains most wrong scenes first, and how many scenes each explains.
 #[must_use]
 pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
-    // One scene's explanations stand for themselves.
-    let of_one = || grade.scenes().find_map(|scene| scene.explanations.first().cloned());
-    let likely = grade.likely_mistake().or_else(of_one).filter(|likely| likely.reproduced > 0);
-    likely.into_iter().map(|likely| (likely.clone(), grade.explained_by(&likely.key))).collect()
+    grade.likely_mistakes()
+}
+
+/// What stands above all scenes in a report for one reader: what is wrong with the submission itself, or what its likely
+/// mistakes are.
+#[must_use]
+pub fn head_lines(grade: &Grade) -> Vec<String> {
+    if let Some(unfit) = grade.unfit() {
+        return vec![unfit.to_owned()];
+    }
+    let wrong = |scene: &&SceneGrade| matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+    let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
+    let line = |(number, (mistake, explained)): (usize, (Explanation, usize))| {
+        let rank = if number == 0 { "most likely mistake" } else { "also likely" };
+        format!("{rank}: {} (explains {explained} of {wrong})", mistake.what)
+    };
+    likely_mistakes(grade).into_iter().enumerate().map(line).collect()
+}
+
+/// The scenes of some groups, those that are not accepted first.
+fn wrong_first<'a>(groups: impl Iterator<Item = &'a GroupGrade>) -> Vec<&'a SceneGrade> {
+    let mut scenes: Vec<&SceneGrade> = groups.flat_map(|group| &group.scenes).collect();
+    scenes.sort_by_key(|scene| scene.verdict.is_accepted());
+    scenes
 }
 
 /// The sentence about a scene that the two rule books judge differently.

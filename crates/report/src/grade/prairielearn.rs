@@ -1,5 +1,5 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
-use super::{super::explain, difference, one_line, plain};
+use super::{super::explain, difference, head_lines, one_line, plain, wrong_first};
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
@@ -29,18 +29,22 @@ struct Test {
 
 /// The results of one submission.
 pub(super) fn render(grade: &Grade) -> String {
-    let tests = shown(grade)
-        .flat_map(|group| &group.scenes)
+    let tests = wrong_first(shown(grade))
+        .into_iter()
         .map(|scene| Test {
             name: one_line(&scene.scene),
             description: scene.verdict.words().to_owned(),
             points: scene.points,
             max_points: scene.max_points,
-            message: cut(&scene.summary),
+            message: if grade.unfit().is_some() { "not run, see above".to_owned() } else { cut(&scene.summary) },
             output: cut(&output(scene)),
         })
         .collect();
     let build = grade.build.as_ref().filter(|build| !build.succeeded);
+    // What is wrong with the upload itself tells of no scene; mistakes could tell of hidden ones.
+    let all_visible = grade.groups.iter().all(|group| group.visibility == Visibility::Visible);
+    let is_told = build.is_none() && (all_visible || grade.unfit().is_some());
+    let head = if is_told { head_lines(grade) } else { Vec::new() };
     let results = Results {
         gradable: grade.points.is_some(),
         score: grade.points.map(|points| if grade.max_points > 0.0 { points / grade.max_points } else { 0.0 }),
@@ -54,6 +58,7 @@ pub(super) fn render(grade: &Grade) -> String {
             .warnings
             .iter()
             .map(|warning| format!("warning: {warning}"))
+            .chain(head)
             .chain(build.map(|build| format!("{}\n{}", build.end, build.output)))
             .map(|text| cut(&text))
             .collect::<Vec<_>>()

@@ -64,7 +64,7 @@ pub(crate) fn bad() -> Grade {
     let mut crash = scene("Detection/b", Verdict::RuntimeError, "the program ended by signal 11");
     crash.stderr =
         "\u{1b}[32mOverall success: Passed.\u{1b}[m\n<b>]]></b>&amp;\u{202e}\0\n::error::forged\n".to_owned();
-    let rest = Verdict::ALL[2..11]
+    let rest = Verdict::ALL[2..12]
         .iter()
         .filter(|verdict| !matches!(verdict, Verdict::WrongAnswer | Verdict::RuntimeError))
         .map(|&verdict| scene(&format!("Rest/{}", verdict.code()), verdict, "=cmd|' /C calc'!A0 <i>*_`%0A::"))
@@ -83,6 +83,22 @@ pub(crate) fn bad() -> Grade {
         output: "a.cpp:1: error: \u{1b}[1mno".to_owned(),
     });
     grade
+}
+
+/// No program is in the upload.
+pub(crate) fn unfit() -> Grade {
+    let why = "no program called FOSSSim in the upload; it holds main.cpp, fosssim-sample";
+    let scenes = |names: &[&str]| {
+        let result = |name: &&str| SceneResult::without_run(name, 100, Verdict::Unusable, why);
+        names.iter().map(result).collect::<Vec<_>>()
+    };
+    grade(
+        "dan",
+        vec![
+            group("Detection", Visibility::Visible, scenes(&["Detection/a", "Detection/b"])),
+            group("Impulses", Visibility::Hidden, scenes(&["Impulses/a"])),
+        ],
+    )
 }
 
 /// Stopped while its second scene ran.

@@ -30,6 +30,9 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let share = format!("(explains {explained} of {})", counted(wrong, "wrong scene"));
         let _ = writeln!(text, "  - {} {share}", plain(&mistake.what));
     }
+    if grade.unfit().is_some() {
+        return text;
+    }
     let first = grade.scenes().find(|scene| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun));
     if let Some(scene) = first {
         let code = style.paint(look(scene.verdict), scene.verdict.code());

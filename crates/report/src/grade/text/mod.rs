@@ -56,7 +56,8 @@ impl Text<'_> {
         let mut text = String::new();
         for grade in grades {
             if self.shown == Shown::Line {
-                let _ = writeln!(text, "{}", self.verdict(grade));
+                let why = grade.unfit().map(|unfit| format!(": {}", one_line(unfit))).unwrap_or_default();
+                let _ = writeln!(text, "{}{why}", self.verdict(grade));
             } else {
                 self.submission(&mut text, grade);
             }
@@ -96,7 +97,11 @@ impl Text<'_> {
         for warning in &grade.warnings {
             let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
         }
-        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+        let build = grade.build.as_ref().filter(|build| !build.succeeded);
+        if let (Some(unfit), None) = (grade.unfit(), build) {
+            let _ = writeln!(text, "{}", one_line(unfit));
+        }
+        if let Some(build) = build {
             let most = if self.shown < Shown::Wrong { SHOWN_LINES } else { usize::MAX };
             let _ = writeln!(text, "\n{}\n{}", plain(&build.end), output(&build.output, most));
         }

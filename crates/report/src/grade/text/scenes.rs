@@ -16,7 +16,8 @@ const NAMED: usize = 3;
 
 /// The groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
-    if options.shown < Shown::Wrong {
+    // What is wrong with the submission itself is not said of each scene.
+    if options.shown < Shown::Wrong || grade.unfit().is_some() {
         return String::new();
     }
     let shown = |scene: &SceneGrade| options.shown == Shown::All || !scene.verdict.is_accepted();

@@ -1,0 +1,125 @@
+//! A class in numbers: how many points, which scenes few have right, which mistakes many make.
+use super::{likely_mistakes, one_line, points};
+use crate::{
+    number::counted,
+    style::{Look, Style},
+    table::{Align, Table},
+};
+use fosssim_grading::{Grade, Verdict};
+use std::{collections::BTreeMap, fmt::Write};
+
+/// How many submissions were run on a scene, and how many of these it was accepted for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Share {
+    accepted: usize,
+    run: usize,
+}
+
+/// The class, with at most so many scenes and mistakes.
+#[must_use]
+pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
+    let mut text = head(grades, style);
+    let (scenes, whole) = hardest(grades);
+    if !scenes.is_empty() {
+        let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scenes that fewest have right"));
+        let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
+        for (scene, share) in scenes.iter().take(most) {
+            let percent = 100 * share.accepted / share.run.max(1);
+            table.row([
+                format!("{} of {}", share.accepted, share.run).into(),
+                format!("{percent} %").into(),
+                one_line(scene).into(),
+            ]);
+        }
+        text += &table.render(style);
+        if scenes.len() > most {
+            let _ = writeln!(text, "  and {}", counted((scenes.len() - most) as u64, "more scene"));
+        }
+        if whole > 0 {
+            let _ = writeln!(text, "  {} accepted for everybody", counted(whole as u64, "scene"));
+        }
+    }
+    let mistakes = frequent(grades);
+    if !mistakes.is_empty() {
+        let _ = writeln!(text, "{}", style.paint(Look::Strong, "Most frequent mistakes"));
+        let mut table = Table::new([Align::Right, Align::Left]);
+        for (what, count) in mistakes.iter().take(most) {
+            table.row([counted(*count as u64, "submission").into(), one_line(what).into()]);
+        }
+        text += &table.render(style);
+    }
+    text
+}
+
+/// `Class: 30 submissions, 12 accepted; mean 63.2, median 71, from 0 to 100 of 100 points; 2 without points`.
+fn head(grades: &[Grade], style: Style) -> String {
+    let name = style.paint(Look::Strong, "Class");
+    let accepted = grades.iter().filter(|grade| grade.verdict.is_accepted()).count();
+    let mut text = format!("{name}: {}, {accepted} accepted", counted(grades.len() as u64, "submission"));
+    let mut reached: Vec<f64> = grades.iter().filter_map(|grade| grade.points).collect();
+    reached.sort_by(f64::total_cmp);
+    if let ([lowest, ..], [.., highest], Some(grade)) = (&reached[..], &reached[..], grades.first()) {
+        #[expect(clippy::cast_precision_loss, reason = "classes are small")]
+        let mean = reached.iter().sum::<f64>() / reached.len() as f64;
+        let middle = f64::midpoint(reached[(reached.len() - 1) / 2], reached[reached.len() / 2]);
+        let (mean, middle, lowest, highest) = (points(mean), points(middle), points(*lowest), points(*highest));
+        let most = points(grade.max_points);
+        let _ = write!(text, "; mean {mean}, median {middle}, from {lowest} to {highest} of {most} points");
+    }
+    let without = grades.len() - reached.len();
+    if without > 0 {
+        let _ = write!(text, "; {without} without points");
+    }
+    text + "\n"
+}
+
+/// The scenes that are not accepted for everybody, those that fewest have right first, and how many others there are.
+/// What was not run and what the grader failed on does not count.
+fn hardest(grades: &[Grade]) -> (Vec<(&str, Share)>, usize) {
+    let mut shares: BTreeMap<&str, Share> = BTreeMap::new();
+    let mut order = Vec::new();
+    for scene in grades.iter().flat_map(Grade::scenes) {
+        let share = shares.entry(&scene.scene).or_insert_with(|| {
+            order.push(scene.scene.as_str());
+            Share::default()
+        });
+        if !matches!(scene.verdict, Verdict::NotRun | Verdict::JudgeError) {
+            share.run += 1;
+            share.accepted += usize::from(scene.verdict.is_accepted());
+        }
+    }
+    let known = order.into_iter().map(|scene| (scene, shares[scene])).filter(|(_, share)| share.run > 0);
+    let (whole, mut wrong): (Vec<_>, Vec<_>) = known.partition(|(_, share)| share.accepted == share.run);
+    // Shares compared as fractions; stable, so that equal ones stay in the suite's order.
+    wrong.sort_by(|(_, a), (_, b)| (a.accepted * b.run).cmp(&(b.accepted * a.run)));
+    (wrong, whole.len())
+}
+
+/// Likely mistakes with the number of submissions that make them, the most frequent first.
+fn frequent(grades: &[Grade]) -> Vec<(String, usize)> {
+    let mut counts: BTreeMap<String, (String, usize)> = BTreeMap::new();
+    for (mistake, _) in grades.iter().flat_map(likely_mistakes) {
+        counts.entry(mistake.key).or_insert_with(|| (mistake.what, 0)).1 += 1;
+    }
+    let mut sorted: Vec<(String, usize)> = counts.into_values().collect();
+    sorted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    sorted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::samples, *};
+
+    #[test]
+    fn a_class_is_summed_up() {
+        let grades = [samples::good(), samples::bad(), samples::fault(), samples::stopped()];
+        insta::assert_snapshot!(class(&grades, 3, Style::Plain));
+        assert!(class(&grades, usize::MAX, Style::Plain).contains("Rest/SV"), "the whole list");
+    }
+
+    #[test]
+    fn what_was_not_run_or_not_judged_is_no_failure_of_a_scene() {
+        let grades = [samples::fault(), samples::stopped()];
+        assert_eq!(hardest(&grades), (Vec::new(), 1));
+    }
+}

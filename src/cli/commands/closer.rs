@@ -1,0 +1,91 @@
+//! What to type to look closer at a scene that is not accepted: the command that was typed, with the scene.
+use crate::{
+    cli::grading::Grade as Arguments,
+    suite::{Grade, SceneGrade, Verdict, batch::Submission, config::Hints, library, plan::Plan},
+};
+use std::path::{Path, PathBuf};
+
+/// What is known of the grading.
+pub(super) struct Closer<'a> {
+    pub(super) arguments: &'a Arguments,
+    pub(super) plan: &'a Plan,
+    pub(super) submissions: &'a [Submission],
+    /// Where the trace of a scene lies, when traces are kept.
+    pub(super) trace: &'a dyn Fn(&str, &str) -> Option<PathBuf>,
+}
+
+impl Closer<'_> {
+    /// The commands.
+    pub(super) fn advice(&self, grade: &Grade, scene: &SceneGrade) -> Vec<String> {
+        let Some(submission) = self.submissions.iter().find(|one| one.name == grade.submission) else {
+            return Vec::new();
+        };
+        let mut lines = Vec::new();
+        let of_trace = matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+        let hints = if self.plan.hints < Hints::Full && of_trace { " --hints full" } else { "" };
+        let alone = self.plan.scenes().count() == 1;
+        if !alone || !hints.is_empty() {
+            lines.push(format!("$ {} --scene {}{hints}", self.command(submission), quoted(&scene.scene)));
+        }
+        let kept = (self.trace)(&grade.submission, &scene.scene).filter(|trace| trace.exists());
+        if let (Some(trace), Some(name)) = (kept, self.scene(&scene.scene)) {
+            lines.push(format!("$ fosssim-oracle check {} {}", quoted(&name), quoted(&trace.to_string_lossy())));
+        }
+        let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
+        if wrong > 1 && wrong < grade.scenes().count() && !self.arguments.failed && self.submissions.len() == 1 {
+            lines.push(format!("$ {} --failed", self.command(submission)));
+        }
+        lines
+    }
+
+    /// What `check` calls a scene.
+    fn scene(&self, name: &str) -> Option<String> {
+        let task = self.plan.scenes().find(|task| task.name == name)?;
+        if library::scene(name).is_some_and(|embedded| embedded == task.xml) {
+            return Some(format!("asset:{name}"));
+        }
+        let file = Path::new(&self.arguments.suite).with_file_name(format!("{name}.xml"));
+        file.is_file().then(|| file.to_string_lossy().into_owned())
+    }
+
+    /// The command that grades this submission as it was graded.
+    fn command(&self, submission: &Submission) -> String {
+        let Arguments { suite, rules, program, single, recorded, unsafe_no_sandbox, output, .. } = self.arguments;
+        let path = match &submission.program {
+            // An entry of a folder of programs.
+            Some(entry) if !*single && submission.name.ends_with(entry.as_str()) => submission.path.join(entry),
+            _ => submission.path.clone(),
+        };
+        let mut words = format!("fosssim-oracle grade {}", quoted(&path.to_string_lossy()));
+        if suite != "t2m2" {
+            words += &format!(" --suite {}", quoted(suite));
+        }
+        if rules.is_some() {
+            words += &format!(" --rules {}", self.plan.rules.name());
+        }
+        if program != "FOSSSim" {
+            words += &format!(" --program {}", quoted(program));
+        }
+        if let Some(output) = output.as_ref().filter(|_| self.submissions.len() == 1) {
+            words += &format!(" --output {}", quoted(&output.to_string_lossy()));
+        }
+        for (set, word) in
+            [(*single, " --single"), (*recorded, " --recorded"), (*unsafe_no_sandbox, " --unsafe-no-sandbox")]
+        {
+            if set {
+                words += word;
+            }
+        }
+        words
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:=+,@".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}

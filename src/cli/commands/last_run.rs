@@ -1,0 +1,80 @@
+//! What the last grading of the same submissions did not accept, for `grade --failed`.
+//!
+//! Remembered in the output folder, or where there is none in the user's cache. A convenience: what can't be read or written
+//! is forgotten.
+use crate::{
+    cli::output,
+    suite::{Grade, Verdict, batch::Submission},
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Its file in an output folder.
+const FILE: &str = "last-run.json";
+
+/// By submission and scene, whether it was accepted.
+type Known = BTreeMap<String, BTreeMap<String, bool>>;
+
+/// What is known of the last run.
+#[derive(Debug, Default)]
+pub(super) struct LastRun {
+    file: Option<PathBuf>,
+    known: Known,
+}
+
+impl LastRun {
+    /// What is known of these submissions on this suite.
+    pub(super) fn open(folder: Option<&Path>, submissions: &[Submission], suite: &str) -> Self {
+        let file = folder.map(|folder| folder.join(FILE)).or_else(|| {
+            let mut hasher = blake3::Hasher::new();
+            for submission in submissions {
+                let path = std::path::absolute(&submission.path).unwrap_or_else(|_| submission.path.clone());
+                hasher.update(path.as_os_str().as_encoded_bytes()).update(b"\0");
+                hasher.update(submission.name.as_bytes()).update(b"\0");
+            }
+            let name = hasher.update(suite.as_bytes()).finalize().to_hex();
+            Some(cache()?.join("last-run").join(format!("{}.json", &name[..16])))
+        });
+        let text = file.as_ref().and_then(|file| fs::read(file).ok()).unwrap_or_default();
+        Self { file, known: serde_json::from_slice(&text).unwrap_or_default() }
+    }
+
+    /// The scenes that were not accepted, of whichever submission; nothing when no run is known.
+    pub(super) fn failed(&self) -> Option<BTreeSet<String>> {
+        let scenes = self.known.values().flatten().filter(|(_, accepted)| !**accepted);
+        (!self.known.is_empty()).then(|| scenes.map(|(scene, _)| scene.clone()).collect())
+    }
+
+    /// Whether a scene of this submission was not accepted.
+    pub(super) fn has_failed(&self, submission: &str) -> bool {
+        self.known.get(submission).is_none_or(|scenes| scenes.values().any(|accepted| !accepted))
+    }
+
+    /// Remembers these grades. Scenes that were not run keep what is known of them.
+    pub(super) fn remember(&mut self, grades: &[Grade]) {
+        for grade in grades {
+            let scenes = self.known.entry(grade.submission.clone()).or_default();
+            for scene in grade.scenes() {
+                if scene.verdict == Verdict::NotRun {
+                    scenes.entry(scene.scene.clone()).or_insert(false);
+                } else {
+                    scenes.insert(scene.scene.clone(), scene.verdict.is_accepted());
+                }
+            }
+        }
+        let Some(file) = &self.file else { return };
+        let written = file.parent().map_or(Ok(()), fs::create_dir_all).map_err(anyhow::Error::from);
+        let text = serde_json::to_vec(&self.known).unwrap_or_default();
+        drop(written.and_then(|()| output::write(file, &[], &text)));
+    }
+}
+
+/// The user's cache of this program.
+fn cache() -> Option<PathBuf> {
+    let set = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let cache = set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")))?;
+    Some(cache.join("fosssim-oracle"))
+}
