@@ -2,6 +2,7 @@
 //!
 //! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
 //! that `suite init` writes ([`TEMPLATE`]).
+use super::shape;
 pub use super::{hints::Hints, patience::Patience};
 use fosssim_judge::Rules;
 use serde::Deserialize;
@@ -171,32 +172,29 @@ pub struct SuiteError {
     pub problems: Vec<(Position, String)>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+/// A suite whose shape has been checked: what is missing has been told.
+#[derive(Deserialize, Default)]
 struct RawSuite {
-    schema: Spanned<u32>,
-    name: Spanned<String>,
-    rules: Option<Spanned<String>>,
+    schema: Option<Spanned<u32>>,
+    name: Option<Spanned<String>>,
+    rules: Option<String>,
     hints: Option<Hints>,
     show_output: Option<bool>,
     run: Option<Spanned<Vec<String>>>,
     build: Option<Spanned<RawBuild>>,
     limits: Option<RawLimits>,
-    #[serde(default)]
-    group: Vec<Spanned<RawGroup>>,
+    group: Option<Vec<Spanned<RawGroup>>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct RawBuild {
-    command: Vec<String>,
-    program: String,
+    command: Option<Vec<String>>,
+    program: Option<String>,
     wall_seconds: Option<Spanned<f64>>,
     memory_mib: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
 struct RawLimits {
     cpu_seconds: Option<Spanned<f64>>,
     wall_seconds: Option<Spanned<f64>>,
@@ -211,10 +209,9 @@ struct RawLimits {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct RawGroup {
-    name: Spanned<String>,
-    scenes: Spanned<Vec<Spanned<String>>>,
+    name: Option<Spanned<String>>,
+    scenes: Option<Spanned<Vec<Spanned<String>>>>,
     points: Option<Spanned<f64>>,
     credit: Option<Credit>,
     visibility: Option<Visibility>,
@@ -253,58 +250,59 @@ const MIB: f64 = 1024.0 * 1024.0;
 /// # Errors
 /// Every problem with line and column: syntax, unknown keys, values out of range, groups without scenes.
 pub fn read(text: &str) -> Result<Suite, SuiteError> {
-    let raw: RawSuite = toml::from_str(text).map_err(|error| {
-        let at = Position::of(text, error.span().map_or(0, |span| span.start));
-        SuiteError { problems: vec![(at, error.message().trim().replace('\n', " "))] }
-    })?;
-    let mut checker = Checker { text, problems: Vec::new() };
-    if *raw.schema.get_ref() != 1 {
-        checker.problem(
-            raw.schema.span(),
-            format!("schema {} is not known: this version reads schema 1", raw.schema.get_ref()),
-        );
+    let (suite, problems) = read_all(text);
+    if problems.is_empty() { Ok(suite) } else { Err(SuiteError { problems }) }
+}
+
+/// A suite and everything that is wrong with it, in order: what is wrong is left out or has its default.
+pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
+    let (table, problems) = shape::checked(text);
+    let is_syntax_right = !table.get_ref().is_empty() || problems.is_empty();
+    let place = |(span, text_of): (Range<usize>, String)| (Position::of(text, span.start), text_of);
+    let mut checker = Checker { text, problems: problems.into_iter().map(place).collect() };
+    let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
+        checker.problem(error.span().unwrap_or(0..0), error.message().trim().replace('\n', " "));
+        RawSuite::default()
+    });
+    if let Some(schema) = raw.schema.filter(|schema| *schema.get_ref() != 1) {
+        let text = format!("schema {} is not known: this version reads schema 1", schema.get_ref());
+        checker.problem(schema.span(), text);
     }
-    let rules = raw.rules.as_ref().map_or(Some(Rules::default()), |rules| Rules::from_name(rules.get_ref()));
-    if let (None, Some(rules)) = (rules, &raw.rules) {
-        let known = "there are \"parity\", \"fair\" and \"both\"";
-        checker.problem(rules.span(), format!("rules \"{}\" is not known: {known}", rules.get_ref()));
-    }
-    if raw.name.get_ref().trim().is_empty() {
-        checker.problem(raw.name.span(), "the suite's name is empty".to_owned());
+    if let Some(name) = raw.name.as_ref().filter(|name| name.get_ref().trim().is_empty()) {
+        checker.problem(name.span(), "the suite's name is empty".to_owned());
     }
     let run = read_run(&mut checker, raw.run);
     let raw_limits = raw.limits.unwrap_or_default();
     let limits = read_limits(&mut checker, &raw_limits);
     let patience = read_patience(&mut checker, &raw_limits);
     let build = raw.build.map(|build| read_build(&mut checker, build));
-    if raw.group.is_empty() {
+    let is_without_groups = raw.group.as_ref().is_none_or(Vec::is_empty);
+    if is_without_groups && is_syntax_right {
         checker.problem(0..0, "the suite has no [[group]], so there is nothing to grade".to_owned());
     }
-    let groups: Vec<Group> = raw.group.into_iter().map(|group| read_group(&mut checker, group.into_inner())).collect();
+    let groups = raw.group.unwrap_or_default().into_iter();
+    let groups: Vec<Group> = groups.map(|group| read_group(&mut checker, group.into_inner())).collect();
     for (number, group) in groups.iter().enumerate() {
-        if groups[..number].iter().any(|other| other.name == group.name) {
+        if !group.name.is_empty() && groups[..number].iter().any(|other| other.name == group.name) {
             checker.problems.push((
                 group.positions.first().copied().unwrap_or_default(),
                 format!("two groups have the name \"{}\"", group.name),
             ));
         }
     }
-    if checker.problems.is_empty() {
-        Ok(Suite {
-            name: raw.name.into_inner(),
-            run,
-            rules: rules.unwrap_or_default(),
-            hints: raw.hints.unwrap_or(Hints::What),
-            show_output: raw.show_output.unwrap_or(false),
-            build,
-            limits,
-            patience,
-            groups,
-        })
-    } else {
-        checker.problems.sort_by_key(|(at, _)| (at.line, at.column));
-        Err(SuiteError { problems: checker.problems })
-    }
+    let suite = Suite {
+        name: raw.name.map(Spanned::into_inner).unwrap_or_default(),
+        run,
+        rules: raw.rules.as_deref().and_then(Rules::from_name).unwrap_or_default(),
+        hints: raw.hints.unwrap_or(Hints::What),
+        show_output: raw.show_output.unwrap_or(false),
+        build,
+        limits,
+        patience,
+        groups,
+    };
+    checker.problems.sort_by_key(|(at, _)| (at.line, at.column));
+    (suite, checker.problems)
 }
 
 /// The course's protocol.
@@ -374,18 +372,21 @@ fn read_patience(checker: &mut Checker<'_>, raw: &RawLimits) -> Patience {
 fn read_build(checker: &mut Checker<'_>, build: Spanned<RawBuild>) -> BuildStep {
     let span = build.span();
     let raw = build.into_inner();
-    if raw.command.is_empty() {
+    if raw.command.as_ref().is_some_and(Vec::is_empty) {
         checker.problem(span.clone(), "build.command is empty: say what builds the program".to_owned());
     }
-    if raw.program.is_empty() || raw.program.starts_with('/') || raw.program.split('/').any(|part| part == "..") {
-        let text = format!("build.program \"{}\" has to be a path inside the submission's folder", raw.program);
+    let leads_out = |program: &&String| {
+        program.is_empty() || program.starts_with('/') || program.split('/').any(|part| part == "..")
+    };
+    if let Some(program) = raw.program.as_ref().filter(leads_out) {
+        let text = format!("build.program \"{program}\" has to be a path inside the submission's folder");
         checker.problem(span, text);
     }
     let wall = checker.number("build.wall_seconds", raw.wall_seconds.as_ref(), 120.0, 0.01..86_400.0);
     let memory = checker.number("build.memory_mib", raw.memory_mib.as_ref(), 2048.0, 1.0..1e6);
     BuildStep {
-        command: raw.command,
-        program: raw.program,
+        command: raw.command.unwrap_or_default(),
+        program: raw.program.unwrap_or_default(),
         wall: Duration::from_secs_f64(wall),
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
         memory: (memory * MIB) as u64,
@@ -393,18 +394,19 @@ fn read_build(checker: &mut Checker<'_>, build: Spanned<RawBuild>) -> BuildStep 
 }
 
 fn read_group(checker: &mut Checker<'_>, raw: RawGroup) -> Group {
-    if raw.name.get_ref().trim().is_empty() {
-        checker.problem(raw.name.span(), "the group's name is empty".to_owned());
+    let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
+    if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {
+        checker.problem(empty.span(), "the group's name is empty".to_owned());
     }
-    if raw.scenes.get_ref().is_empty() {
-        checker.problem(raw.scenes.span(), format!("group \"{}\" has no scenes", raw.name.get_ref()));
+    if let Some(none) = raw.scenes.as_ref().filter(|scenes| scenes.get_ref().is_empty()) {
+        checker.problem(none.span(), format!("group \"{name}\" has no scenes"));
     }
     let points = checker.number("points", raw.points.as_ref(), 1.0, 0.0..1e6);
-    let positions =
-        raw.scenes.get_ref().iter().map(|pattern| Position::of(checker.text, pattern.span().start)).collect();
+    let scenes = raw.scenes.map(Spanned::into_inner).unwrap_or_default();
+    let positions = scenes.iter().map(|pattern| Position::of(checker.text, pattern.span().start)).collect();
     Group {
-        name: raw.name.into_inner(),
-        scenes: raw.scenes.into_inner().into_iter().map(Spanned::into_inner).collect(),
+        name,
+        scenes: scenes.into_iter().map(Spanned::into_inner).collect(),
         positions,
         points,
         credit: raw.credit.unwrap_or(Credit::Scenes),
@@ -443,8 +445,48 @@ mod tests {
     }
 
     #[test]
-    fn misspelt_keys_are_named() {
+    fn misspelt_keys_are_named_with_what_was_meant() {
         let error = read("schema = 1\nnmae = \"x\"\n").expect_err("wrong").to_string();
-        assert!(error.starts_with("2:1: unknown field `nmae`"), "{error}");
+        assert!(error.contains("2:1: unknown key `nmae` in the suite: did you mean `name`?"), "{error}");
+    }
+
+    #[test]
+    fn unknown_keys_and_bad_values_are_told_all_at_once_with_what_follows_from_the_rest() {
+        let text = "schema = \"1\"\nname = \"x\"\nrules = \"Fair!\"\nhints = \"half\"\nshow_output = 1\ncpu_seconds = 3\n\
+                    run = \"{program}\"\n[limits]\ncpu-second = 1\nmemory_mib = \"512\"\nfiles = nan\n[build]\n\
+                    comand = [\"make\"]\nprogram = \"../x\"\n[[group]]\nnam = \"a\"\nscenes = [\"asset:No/*\", 3]\n\
+                    credit = \"step\"\n[[group]]\nname = \"b\"\nscenes = []\npoints = -1\nweight = 2\n";
+        let error = read(text).expect_err("wrong");
+        let told = error.to_string();
+        for line in [
+            "1:10: schema has to be a whole number that is not negative, and is a string",
+            "3:9: rules \"Fair!\" is not known: there are \"parity\", \"fair\" and \"both\"; did you mean \"fair\"?",
+            "4:9: hints \"half\" is not known: there are \"none\", \"where\", \"what\" and \"full\"",
+            "5:15: show_output has to be true or false, and is an integer",
+            "6:1: unknown key `cpu_seconds` in the suite: it belongs into [limits]",
+            "7:7: run has to be a list of texts, [\"...\"], and is a string",
+            "9:1: unknown key `cpu-second` in [limits]: did you mean `cpu_seconds`?",
+            "10:14: memory_mib has to be a number, and is a string",
+            "11:9: files is NaN: it has to lie between 1 and 1000000",
+            "13:1: unknown key `comand` in [build]: did you mean `command`?",
+            "build.program \"../x\" has to be a path inside the submission's folder",
+            "16:1: unknown key `nam` in this [[group]]: did you mean `name`?",
+            "17:25: each of scenes has to be a text in quotes, and this is an integer",
+            "18:10: credit \"step\" is not known: there are \"scenes\", \"steps\" and \"all\"; did you mean \"steps\"?",
+            "21:10: group \"b\" has no scenes",
+            "22:10: points is -1: it has to lie between 0 and 1000000",
+            "23:1: unknown key `weight` in this [[group]]: there are name, scenes, points, credit, visibility",
+        ] {
+            assert!(told.contains(line), "{line}\n{told}");
+        }
+        assert_eq!(error.problems.len(), 17, "and nothing else: {told}");
+    }
+
+    #[test]
+    fn broken_lines_are_told_and_nothing_that_follows_from_them() {
+        let error = read("schema = 1\nname = \n[[group]]\nscenes = [\"a\"\n").expect_err("wrong");
+        assert!(error.problems.iter().all(|(at, _)| at.line >= 2), "{error}");
+        assert!(!error.to_string().contains("no [[group]]"), "{error}");
+        assert!(read("").expect_err("empty").to_string().contains("no [[group]]"));
     }
 }

@@ -19,6 +19,7 @@ pub mod patience;
 pub mod plan;
 pub mod recording;
 pub mod score;
+mod shape;
 mod staging;
 mod temporary;
 pub mod upload;

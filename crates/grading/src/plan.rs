@@ -152,7 +152,15 @@ pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
 /// # Errors
 /// As [`config::read`] and [`resolve`].
 pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
-    resolve(&config::read(text)?, folder)
+    let (suite, mut problems) = config::read_all(text);
+    // Patterns are looked up although something else is wrong: everything is told at once.
+    let resolved = resolve(&suite, folder);
+    if problems.is_empty() {
+        return resolved;
+    }
+    problems.extend(resolved.err().into_iter().flat_map(|error| error.problems));
+    problems.sort_by_key(|(at, _)| (at.line, at.column));
+    Err(SuiteError { problems })
 }
 
 type Found = Vec<(String, Vec<u8>)>;
@@ -230,5 +238,9 @@ mod tests {
         assert!(error.contains("6:2: no scene file matches no/*.xml"), "{error}");
         assert!(error.contains("9:34: scene SimpleTests/"), "{error}");
         assert!(error.contains("is in group \"b\" already"), "{error}");
+        // Also where something else is wrong.
+        let both = text.replacen("name = \"x\"", "name = \"x\"\nhint = \"what\"", 1);
+        let error = load(&both, Path::new("nowhere")).expect_err("wrong").to_string();
+        assert!(error.starts_with("3:1: unknown key `hint` in the suite: did you mean `hints`?\n6:11: no "), "{error}");
     }
 }

@@ -1,0 +1,225 @@
+//! The shape of a suite file: which keys it has and what kind of value each takes.
+//!
+//! Finds every fault at once, and takes what is wrong out, so that what is right can still be looked at.
+use std::{borrow::Cow, ops::Range};
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
+
+/// A problem and where it is, in bytes.
+pub(super) type Problem = (Range<usize>, String);
+
+/// What a key takes.
+enum Kind {
+    Text,
+    Texts,
+    Number,
+    /// A whole number that is not negative.
+    Whole,
+    Flag,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    Table(&'static [Key]),
+    Tables(&'static [Key]),
+}
+
+/// A key: its name, what it takes, whether it has to be there.
+struct Key(&'static str, Kind, bool);
+
+const BUILD: &[Key] = &[
+    Key("command", Kind::Texts, true),
+    Key("program", Kind::Text, true),
+    Key("wall_seconds", Kind::Number, false),
+    Key("memory_mib", Kind::Number, false),
+];
+
+const LIMITS: &[Key] = &[
+    Key("cpu_seconds", Kind::Number, false),
+    Key("wall_seconds", Kind::Number, false),
+    Key("memory_mib", Kind::Number, false),
+    Key("output_mib", Kind::Number, false),
+    Key("trace_mib", Kind::Number, false),
+    Key("folder_mib", Kind::Number, false),
+    Key("files", Kind::Number, false),
+    Key("sanitizers", Kind::Flag, false),
+    Key("time_outs", Kind::Number, false),
+    Key("total_seconds", Kind::Number, false),
+];
+
+const GROUP: &[Key] = &[
+    Key("name", Kind::Text, true),
+    Key("scenes", Kind::Texts, true),
+    Key("points", Kind::Number, false),
+    Key("credit", Kind::Choice(&["scenes", "steps", "all"]), false),
+    Key("visibility", Kind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
+];
+
+const SUITE: &[Key] = &[
+    Key("schema", Kind::Whole, true),
+    Key("name", Kind::Text, true),
+    Key("rules", Kind::Choice(&["parity", "fair", "both"]), false),
+    Key("hints", Kind::Choice(&["none", "where", "what", "full"]), false),
+    Key("show_output", Kind::Flag, false),
+    Key("run", Kind::Texts, false),
+    Key("build", Kind::Table(BUILD), false),
+    Key("limits", Kind::Table(LIMITS), false),
+    Key("group", Kind::Tables(GROUP), false),
+];
+
+/// The tables in which a key that stands elsewhere may have been meant to be.
+const PLACES: [(&str, &[Key]); 4] =
+    [("[limits]", LIMITS), ("[build]", BUILD), ("a [[group]]", GROUP), ("the top of the file", SUITE)];
+
+/// The table without what is wrong with it, and all that is.
+pub(super) fn checked(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>) {
+    let (mut table, errors) = DeTable::parse_recoverable(text);
+    let mut problems: Vec<Problem> =
+        errors.iter().map(|error| (error.span().unwrap_or(0..0), error.message().trim().replace('\n', " "))).collect();
+    if problems.is_empty() {
+        clean(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
+    } else {
+        // What a broken line was meant to be nobody knows.
+        table.get_mut().clear();
+    }
+    (table, problems)
+}
+
+/// Takes out of a table what does not belong there.
+fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
+    for Key(name, _, required) in keys {
+        // A misspelt key is told where it stands.
+        let meant = |key: &Spanned<Cow<'_, str>>| {
+            key.get_ref() == name || closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
+        };
+        if *required && !table.keys().any(meant) {
+            problems.push((at.clone(), format!("{place} has no `{name}`")));
+        }
+    }
+    let entries = std::mem::take(table).into_iter().filter_map(|(key, mut value)| {
+        let fits = match keys.iter().find(|Key(name, ..)| key.get_ref() == name) {
+            Some(Key(name, kind, _)) => fits(name, kind, &mut value, problems),
+            None => {
+                problems.push((key.span(), unknown(key.get_ref(), keys, place)));
+                false
+            }
+        };
+        fits.then_some((key, value))
+    });
+    *table = entries.collect();
+}
+
+/// Whether a value is of its kind.
+fn fits(name: &str, kind: &Kind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
+    let at = value.span();
+    let is = value.get_ref().type_str();
+    let mut wrong = |wanted: &str| {
+        problems.push((at.clone(), format!("{name} has to be {wanted}, and is {}", article(is))));
+        false
+    };
+    match (kind, value.get_mut()) {
+        (Kind::Text, DeValue::String(_)) | (Kind::Flag, DeValue::Boolean(_)) => true,
+        (Kind::Number, DeValue::Float(_) | DeValue::Integer(_)) => true,
+        (Kind::Whole, DeValue::Integer(number)) if number.as_str().parse::<u32>().is_ok() => true,
+        (Kind::Choice(words), DeValue::String(word)) => {
+            let known = words.contains(&word.as_ref());
+            if !known {
+                problems.push((at, not_among(name, word, words)));
+            }
+            known
+        }
+        (Kind::Texts, DeValue::Array(list)) => {
+            let before = problems.len();
+            for item in list.iter().filter(|item| !item.get_ref().is_str()) {
+                let is = article(item.get_ref().type_str());
+                problems.push((item.span(), format!("each of {name} has to be a text in quotes, and this is {is}")));
+            }
+            problems.len() == before
+        }
+        (Kind::Table(keys), DeValue::Table(table)) => {
+            clean(table, keys, &format!("[{name}]"), at, problems);
+            true
+        }
+        (Kind::Tables(keys), DeValue::Array(list)) if list.iter().all(|item| item.get_ref().is_table()) => {
+            for item in list.iter_mut() {
+                let at = item.span();
+                if let DeValue::Table(table) = item.get_mut() {
+                    clean(table, keys, &format!("this [[{name}]]"), at, problems);
+                }
+            }
+            true
+        }
+        (Kind::Text, _) => wrong("a text in quotes"),
+        (Kind::Texts, _) => wrong("a list of texts, [\"...\"]"),
+        (Kind::Number, _) => wrong("a number"),
+        (Kind::Whole, _) => wrong("a whole number that is not negative"),
+        (Kind::Flag, _) => wrong("true or false"),
+        (Kind::Choice(words), _) => wrong(&format!("one of {}", listed(words, "or"))),
+        (Kind::Table(_), _) => wrong(&format!("a table, [{name}]")),
+        (Kind::Tables(_), _) => wrong(&format!("a list of tables, [[{name}]]")),
+    }
+}
+
+/// `an integer`, `a string`.
+fn article(kind: &str) -> String {
+    format!("{} {kind}", if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
+}
+
+/// What to say of a word that is none of these.
+fn not_among(name: &str, word: &str, words: &[&str]) -> String {
+    let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
+    format!("{name} \"{word}\" is not known: there are {}{}", listed(words, "and"), hint.unwrap_or_default())
+}
+
+/// `"a", "b" and "c"`.
+fn listed(words: &[&str], last: &str) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+    match &quoted[..] {
+        [rest @ .., one] if !rest.is_empty() => format!("{} {last} {one}", rest.join(", ")),
+        _ => quoted.join(", "),
+    }
+}
+
+/// What to say of a key that does not belong here.
+fn unknown(key: &Cow<'_, str>, keys: &[Key], place: &str) -> String {
+    let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
+    let here = keys.iter().map(|Key(name, ..)| *name);
+    let hint = match closest(key, here.clone()) {
+        Some(name) => format!("did you mean `{name}`?"),
+        None => match PLACES.iter().find(|(_, other)| names(*other).any(|name| name == key.as_ref())) {
+            Some((other, _)) => format!("it belongs into {other}"),
+            None => format!("there are {}", here.collect::<Vec<_>>().join(", ")),
+        },
+    };
+    format!("unknown key `{key}` in {place}: {hint}")
+}
+
+/// The word that was probably meant: few slips away, or the same but for case and punctuation.
+fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
+    const LONGEST: usize = 40;
+    let plain = |text: &str| -> Vec<char> {
+        text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(LONGEST).collect()
+    };
+    let typed = plain(word);
+    let near = candidates.filter_map(|candidate| {
+        let known = plain(candidate);
+        let begins = typed.len() >= 3 && (known.starts_with(&typed) || typed.starts_with(&known));
+        let slips = if begins && known != typed { 1 } else { distance(&typed, &known) };
+        (slips <= (typed.len().max(known.len()) / 3).min(2)).then_some((slips, candidate))
+    });
+    near.min_by_key(|(slips, _)| *slips).map(|(_, candidate)| candidate)
+}
+
+/// Letters to insert, remove or replace.
+fn distance(one: &[char], other: &[char]) -> usize {
+    let mut row: Vec<usize> = (0..=other.len()).collect();
+    for (number, letter) in one.iter().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], number + 1);
+        for (place, theirs) in other.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != theirs);
+            diagonal = row[place + 1];
+            row[place + 1] = replaced.min(diagonal + 1).min(row[place] + 1);
+        }
+    }
+    row[other.len()]
+}
