@@ -1,7 +1,7 @@
 //! The grade: what one submission got, scene by scene.
 use super::{config::Visibility, verdict::Verdict};
 use fosssim_judge::{Rules, fair::Cause};
-use fosssim_mistakes::diagnose::{Explanation, common};
+use fosssim_mistakes::diagnose::{Explanation, several};
 use std::{ops::Deref, time::Duration};
 
 /// The grade of one submission on one suite.
@@ -92,45 +92,25 @@ impl Grade {
     /// mistakes apart that one scene can't.
     #[must_use]
     pub fn likely_mistake(&self) -> Option<Explanation> {
-        let explained: Vec<&[Explanation]> =
-            self.scenes().map(|scene| scene.explanations.as_slice()).filter(|list| !list.is_empty()).collect();
-        if explained.len() > 1 { common(explained) } else { None }
+        let explained = self.scenes().filter(|scene| !scene.explanations.is_empty()).count();
+        if explained > 1 { self.likely_mistakes().into_iter().next().map(|(likely, _)| likely) } else { None }
     }
 
     /// The likely mistakes, at most three, with the number of wrong scenes that each explains: the one that explains most,
-    /// then of the scenes that are left the one that explains most of these, provided that it explains them completely.
+    /// then of what is left the one that explains most of it, provided that it explains it completely ([`several`]).
     #[must_use]
     pub fn likely_mistakes(&self) -> Vec<(Explanation, usize)> {
-        const MOST: usize = 3;
-        let all = self.scenes().map(|scene| scene.explanations.as_slice()).filter(|list| !list.is_empty());
-        let mut left: Vec<&[Explanation]> = all.collect();
-        let mut mistakes: Vec<(Explanation, usize)> = Vec::new();
-        while mistakes.len() < MOST {
-            let likely = match left[..] {
-                [] => None,
-                // One scene's explanations stand for themselves.
-                [only] if mistakes.is_empty() => only.first().cloned(),
-                _ => common(left.iter().copied()),
-            };
-            let Some(likely) = likely.filter(|likely| likely.reproduced > 0) else { break };
-            if !mistakes.is_empty() && likely.reproduced < likely.samples {
-                break;
-            }
-            let before = left.len();
-            left.retain(|list| !list.iter().any(|one| names(one, &likely.key)));
-            if left.len() == before {
-                break;
-            }
-            let explained = self.explained_by(&likely.key);
-            mistakes.push((likely, explained));
-        }
-        mistakes
+        several(self.scenes().map(|scene| scene.explanations.as_slice()), &[])
+            .into_iter()
+            .filter(|likely| likely.reproduced > 0)
+            .map(|likely| (likely.clone(), self.explained_by(&likely)))
+            .collect()
     }
 
-    /// How many scenes' explanations name this mistake first.
+    /// How many scenes' explanations name this mistake, or a stage of what is not written yet.
     #[must_use]
-    pub fn explained_by(&self, key: &str) -> usize {
-        self.scenes().filter(|scene| scene.explanations.iter().any(|one| names(one, key))).count()
+    pub fn explained_by(&self, mistake: &Explanation) -> usize {
+        self.scenes().filter(|scene| mistake.is_named_in(&scene.explanations)).count()
     }
 
     /// How many scenes have this verdict.
@@ -138,11 +118,6 @@ impl Grade {
     pub fn count(&self, verdict: Verdict) -> usize {
         self.scenes().filter(|scene| scene.verdict == verdict).count()
     }
-}
-
-/// Whether an explanation names this mistake.
-fn names(explanation: &Explanation, key: &str) -> bool {
-    explanation.key == key || explanation.same_as.iter().any(|other| other == key)
 }
 
 /// The build step's end.

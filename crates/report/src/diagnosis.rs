@@ -33,8 +33,8 @@ pub struct Case {
 pub struct Diagnosis {
     /// The traces, in the order in which they were asked about.
     pub cases: Vec<Case>,
-    /// With several traces, the mistake that explains most of them.
-    pub common: Option<Explanation>,
+    /// With several traces, the mistakes that explain them together, the one that explains most first.
+    pub common: Vec<Explanation>,
 }
 
 impl Diagnosis {
@@ -54,9 +54,10 @@ impl Diagnosis {
         }
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();
         let _ = writeln!(text, "{} of {} traces are wrong by the fair rules.\n", wrong, self.cases.len());
-        if let Some(common) = &self.common {
-            let explained = self.cases.iter().filter(|case| names(case, &common.key)).count();
-            let heading = format!("What explains most ({explained} of {wrong} wrong traces)");
+        for (number, common) in self.common.iter().enumerate() {
+            let explained = self.cases.iter().filter(|case| common.is_named_in(&case.explanations)).count();
+            let most = if number == 0 { "What explains most" } else { "What explains more" };
+            let heading = format!("{most} ({explained} of {wrong} wrong traces)");
             let _ = writeln!(text, "{}", style.paint(Look::Strong, &heading));
             text += &indented(std::slice::from_ref(common));
             text.push('\n');
@@ -72,9 +73,7 @@ impl Diagnosis {
     }
 
     fn is_common(&self, explanation: &Explanation) -> bool {
-        self.common
-            .as_ref()
-            .is_some_and(|common| common.key == explanation.key || explanation.same_as.contains(&common.key))
+        self.common.iter().any(|common| common.is_named_in(std::slice::from_ref(explanation)))
     }
 
     /// For programs.
@@ -95,16 +94,12 @@ impl Diagnosis {
         let view = View {
             schema: SCHEMA,
             accepted: self.accepted(),
-            common: self.common.as_ref().map(ExplanationView::from),
+            common: self.common.first().map(ExplanationView::from),
+            likely: self.common.iter().map(ExplanationView::from).collect(),
             traces: cases.collect(),
         };
         serde_json::to_string_pretty(&view).unwrap_or_default() + "\n"
     }
-}
-
-/// Whether a trace's explanations hold this key, told or as not to be told apart.
-fn names(case: &Case, key: &str) -> bool {
-    case.explanations.iter().any(|one| one.key == key || one.same_as.iter().any(|other| other == key))
 }
 
 fn head(case: &Case, style: Style) -> String {
@@ -153,6 +148,7 @@ struct View<'a> {
     schema: u32,
     accepted: bool,
     common: Option<ExplanationView>,
+    likely: Vec<ExplanationView>,
     traces: Vec<CaseView<'a>>,
 }
 

@@ -32,6 +32,7 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
     let mut lines = vec![match explanation {
         Explanation { what, samples: 0, .. } => what.clone(),
         Explanation { what, reproduced: 0, samples, .. } => format!("{what} ({samples} looked at)"),
+        Explanation { key, what, .. } if key == Explanation::UNFINISHED => what.clone(),
         Explanation { key, what, reproduced, samples, .. } if find(key).is_some() => {
             format!("likely mistake: {what} (in {reproduced} of {samples} wrong steps tried)")
         }
@@ -40,7 +41,7 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
         }
     }];
     lines.extend(explanation.details.iter().map(|detail| format!("  {detail}")));
-    if !explanation.same_as.is_empty() {
+    if !explanation.same_as.is_empty() && explanation.key != Explanation::UNFINISHED {
         let (shown, more) = explanation.same_as.split_at(explanation.same_as.len().min(LISTED));
         let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
         lines.push(format!("  not told apart from: {}{more}", shown.join(", ")));

@@ -10,7 +10,7 @@ use std::{
     time::Duration,
 };
 
-use fosssim_oracle::student::{Mistake, Student};
+use fosssim_oracle::student::{Area, Mistake, Student};
 
 /// How much a flood writes.
 const FLOOD_BYTES: usize = 256 << 20;
@@ -44,7 +44,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
         sleep(Duration::from_secs(60));
         return Ok(Some(0));
     }
-    match student.mistake() {
+    match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileNoOutput) => return Ok(Some(0)),
         Some(Mistake::HostileEmptyTrace) => {
             if let Some(path) = output {
@@ -81,7 +81,7 @@ pub enum Midway {
 
 /// Misbehaves in the middle of the run, that is before step `steps / 2 + 1`.
 pub fn midway(student: Student) -> io::Result<Midway> {
-    match student.mistake() {
+    match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileExitMidway) => return Ok(Midway::Leave(3)),
         Some(Mistake::HostileTruncated) => return Ok(Midway::LeaveInsideRecord(0)),
         Some(Mistake::HostileCrash) => std::process::abort(),
@@ -104,7 +104,7 @@ pub fn midway(student: Student) -> io::Result<Midway> {
 
 /// What follows the last record.
 pub fn after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
-    match student.mistake() {
+    match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileTrailingBytes) => output.write_all(&[0; 8]),
         Some(Mistake::HostileFloodTrace) => flood(output),
         _ => Ok(()),

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use fosssim_oracle::{
     scene::Collision,
-    student::{Mistake, Record, State, StepLog, Student},
+    student::{Area, Mistake, Record, State, StepLog, Student},
 };
 
 use crate::hostile;
@@ -36,7 +36,7 @@ impl<W: Write> Trace<W> {
             record.x.fill(f64::NAN);
             record.v.fill(f64::NAN);
         }
-        let claim = match self.student.mistake() {
+        let claim = match self.student.mistake_in(&[Area::Process]) {
             Some(Mistake::HostileHugeCounts) => Some(2_000_000_000),
             Some(Mistake::HostileNegativeCounts) => Some(-1),
             _ => None,

@@ -37,7 +37,9 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
     let diagnosis = match (&arguments.program, &arguments.inputs[..]) {
         (Some(program), scenes) => program_on_probes(program, scenes, arguments)?,
-        (None, [scene, trace]) => Diagnosis { cases: vec![trace_on_scene(scene, trace, arguments)?], common: None },
+        (None, [scene, trace]) => {
+            Diagnosis { cases: vec![trace_on_scene(scene, trace, arguments)?], common: Vec::new() }
+        }
         (None, _) => bail!("explain takes a scene and a trace, or --program PROGRAM and any number of scenes"),
     };
     let style = if target.is_some() { Style::Plain } else { console::style() };
@@ -120,10 +122,24 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
         let shown = program.display().to_string();
         cases.push(case(task.name.clone(), shown, &task.scene, &trace, note, arguments.hints.into()));
     }
-    let wrong: Vec<&[Explanation]> =
-        cases.iter().filter(|case| !case.accepted).map(|case| case.explanations.as_slice()).collect();
-    let common = diagnose::common(wrong);
+    let common = settled(&cases, &tasks);
     Ok(Diagnosis { cases, common })
+}
+
+/// The likely mistakes of the wrong traces together, without those that right traces of the same program speak against.
+fn settled(cases: &[Case], tasks: &[SceneTask]) -> Vec<Explanation> {
+    let wrong = || cases.iter().filter(|case| !case.accepted).map(|case| case.explanations.as_slice());
+    let right: Vec<&Scene> =
+        cases.iter().zip(tasks).filter(|(case, _)| case.accepted).map(|(_, task)| &task.scene).collect();
+    let mut refuted: Vec<String> = Vec::new();
+    loop {
+        let likely = diagnose::several(wrong(), &refuted);
+        let speaks_against = |one: &&Explanation| right.iter().any(|scene| diagnose::shows(scene, &one.key));
+        match likely.iter().find(speaks_against) {
+            Some(one) => refuted.push(one.key.clone()),
+            None => return likely,
+        }
+    }
 }
 
 fn tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {

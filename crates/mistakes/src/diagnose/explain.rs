@@ -1,8 +1,8 @@
 //! Puts the explanations of a trace together.
-use super::{Explanation, known, polynomial, samples};
+use super::{Explanation, known, known::is_empty_stage, polynomial, samples};
 use crate::{
     plain::formula_in,
-    student::{Area, find},
+    student::{Area, CATALOGUE, Mistake, Row, find},
 };
 use fosssim_model::scene::Scene;
 use std::collections::BTreeMap;
@@ -22,9 +22,13 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
         return known;
     }
     let mut polynomials = polynomial::explain(&samples::samples(scene, trace));
+    if known.iter().any(|one| find(&one.key).is_some_and(is_empty_stage)) {
+        polynomials.retain(|one| one.key != "missing-polynomials");
+    }
+    let alone = known.len() == 1;
     for explanation in &mut known {
         let is_formula = find(&explanation.key).is_some_and(|row| is_formula(row.area));
-        if is_formula && explanation.is_complete() {
+        if alone && is_formula && explanation.is_complete() {
             // The same mistake in other words, with its terms and an example of its own.
             for own in std::mem::take(&mut polynomials) {
                 if own.key == "unexplained" || !own.is_complete() {
@@ -82,6 +86,7 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
         }
     }
     votes.remove("unexplained");
+    votes.remove(Explanation::NEARLY_RIGHT);
     votes.remove(Explanation::OTHER_SCENE);
     let weight = |vote: &Vote<'_>| (vote.complete, vote.traces);
     let (key, vote) = votes
@@ -95,6 +100,87 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
     match vote.told {
         Some(told) => Some(Explanation { same_as, ..told.clone() }),
         None => Some(Explanation { key: (*key).to_owned(), what: find(key)?.sentence(), same_as, ..shared.clone() }),
+    }
+}
+
+/// The likeliest mistakes of a program that left several traces, at most three: greedily, each the one that explains most of
+/// what those before leave open ([`common`]). Stages that are still empty count as one, which is told first. `refuted` are
+/// keys of mistakes that right traces of the same program speak against.
+#[must_use]
+pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted: &[String]) -> Vec<Explanation> {
+    let is_refuted = |key: &String| refuted.contains(key);
+    let kept = |list: &[Explanation]| -> Vec<Explanation> {
+        let settle = |explanation: &Explanation| {
+            let mut keys = std::iter::once(&explanation.key).chain(&explanation.same_as).filter(|key| !is_refuted(key));
+            let key = keys.next()?.clone();
+            let same_as = keys.cloned().collect();
+            let what = if key == explanation.key { explanation.what.clone() } else { find(&key)?.sentence() };
+            Some(Explanation { key, what, same_as, ..explanation.clone() })
+        };
+        list.iter().filter_map(settle).collect()
+    };
+    let mut open: Vec<Vec<Explanation>> = traces.into_iter().map(kept).collect();
+    let mut found: Vec<Explanation> = unfinished(&open).into_iter().collect();
+    let empty: Vec<String> = found.iter().flat_map(|one| one.same_as.clone()).collect();
+    leave_open(&mut open, &empty);
+    while found.len() < MOST {
+        open.retain(|list| !list.is_empty());
+        let Some(next) = common(open.iter().map(Vec::as_slice)) else { break };
+        if !found.is_empty() && !next.is_complete() {
+            break;
+        }
+        leave_open(&mut open, std::slice::from_ref(&next.key));
+        found.push(next);
+    }
+    for one in &mut found {
+        if one.key == Explanation::UNFINISHED && one.same_as.len() == 1 {
+            (one.key, one.what) =
+                (one.same_as[0].clone(), find(&one.same_as[0]).map_or_else(String::new, Row::sentence));
+            one.same_as.clear();
+        }
+    }
+    found
+}
+
+/// So many mistakes of a program are told.
+const MOST: usize = 3;
+
+/// Leaves what these keys don't explain: of a trace that one of them explains only what is complete besides.
+fn leave_open(open: &mut [Vec<Explanation>], keys: &[String]) {
+    let names = |one: &Explanation| keys.iter().any(|key| one.key == *key || one.same_as.contains(key));
+    for list in open {
+        if list.iter().any(names) {
+            list.retain(|one| !names(one) && one.is_complete());
+        }
+    }
+}
+
+/// All stages that are told to be empty, as one explanation; their keys are in [`Explanation::same_as`].
+fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
+    let told: Vec<&Explanation> = traces.iter().flatten().filter(|one| one.is_complete()).collect();
+    let rows: Vec<&Row> =
+        CATALOGUE.iter().filter(|row| is_empty_stage(row) && told.iter().any(|one| one.key == row.id)).collect();
+    let of_rows = || told.iter().filter(|one| rows.iter().any(|row| row.id == one.key));
+    (!rows.is_empty()).then(|| Explanation {
+        key: Explanation::UNFINISHED.to_owned(),
+        what: format!("Not written yet: {}.", rows.iter().map(|row| stage(row)).collect::<Vec<_>>().join(", ")),
+        details: Vec::new(),
+        reproduced: of_rows().map(|one| one.reproduced).sum(),
+        samples: of_rows().map(|one| one.samples).sum(),
+        example: None,
+        same_as: rows.iter().map(|row| row.id.to_owned()).collect(),
+    })
+}
+
+/// An empty stage in a few words.
+fn stage(row: &Row) -> &'static str {
+    match row.mistake {
+        Mistake::ParticleParticleEmpty => "the particle-particle detection, which logs nothing",
+        Mistake::ParticleEdgeEmpty => "the particle-edge detection, which logs nothing",
+        Mistake::HalfPlaneEmpty => "the particle-half-plane detection, which logs nothing",
+        Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => "the impulse loop",
+        Mistake::GeometricEmpty => "the geometric part",
+        _ => "the rigid failsafe",
     }
 }
 

@@ -23,6 +23,12 @@ impl Explanation {
     /// The key of the question whether a trace is of its scene, which is no explanation: nothing else is said then.
     pub const OTHER_SCENE: &'static str = "other-scene";
 
+    /// The key of stages that are still empty, told as one ([`several`](super::several)).
+    pub const UNFINISHED: &'static str = "unfinished";
+
+    /// The key of what is right but for too much round-off.
+    pub const NEARLY_RIGHT: &'static str = "nearly-right";
+
     /// The question whether a trace is of its scene; `has_length` says that at least the number of records is right.
     pub(super) fn of_other_scene(has_length: bool) -> Self {
         let length = if has_length { "" } else { ", and neither is its length" };
@@ -41,6 +47,14 @@ impl Explanation {
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
         self.key == Self::OTHER_SCENE
+    }
+
+    /// Whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet, one stage.
+    #[must_use]
+    pub fn is_named_in(&self, explanations: &[Self]) -> bool {
+        let stages = if self.key == Self::UNFINISHED { self.same_as.as_slice() } else { &[] };
+        let is_meant = |key: &String| *key == self.key || stages.contains(key);
+        explanations.iter().any(|one| is_meant(&one.key) || one.same_as.iter().any(is_meant))
     }
 
     /// Whether it reproduces everything that was looked at.

@@ -168,7 +168,18 @@ fn sizes(pairs: [usize; 3], before: usize, all: usize) -> Option<Sizes> {
         let changed = sizes.iter().zip(full).zip(pairs).filter(|((size, full), pairs)| *pairs > 0 && **size != *full);
         (changed.count(), std::cmp::Reverse(sizes.iter().sum::<usize>()))
     });
-    choices.into_iter().find(|sizes| fits(*sizes)).map(Sizes)
+    let changes = |sizes: &[usize; 3]| {
+        sizes.iter().zip(full).zip(pairs).filter(|((size, full), pairs)| *pairs > 0 && **size != *full).count()
+    };
+    let is_empty = |sizes: &[usize; 3]| sizes.iter().zip(pairs).any(|(size, pairs)| pairs > 0 && *size == 0);
+    // Kinds without a pair have one choice.
+    choices.retain(|sizes| sizes.iter().zip(full).zip(pairs).all(|((size, full), pairs)| pairs > 0 || *size == full));
+    let mut fitting = choices.into_iter().filter(|sizes| fits(*sizes));
+    let first = fitting.next()?;
+    // Which of two detections is empty numbers alone can't tell, and a wrong guess would make everything look wrong.
+    let is_rival = |other: [usize; 3]| changes(&other) == changes(&first) && is_empty(&other);
+    let is_open = is_empty(&first) && fitting.any(is_rival);
+    (!is_open).then_some(Sizes(first))
 }
 
 impl Observer for Gatherer<'_> {

@@ -2,7 +2,7 @@
 //!
 //! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
 //! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
-//! a mistake is made asks [`Student::makes`].
+//! a mistake is made asks [`Student::makes`](super::Student::makes).
 /// What is to be thought of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -97,43 +97,6 @@ pub struct Row {
     pub term: &'static str,
 }
 
-/// The program's author: makes one mistake, or none.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Student {
-    mistake: Option<Mistake>,
-    right_approach: bool,
-}
-
-impl Student {
-    /// A student who makes this mistake.
-    pub fn new(mistake: Option<Mistake>) -> Self {
-        Self { mistake, right_approach: false }
-    }
-
-    /// Whether the student makes this mistake.
-    pub fn makes(self, mistake: Mistake) -> bool {
-        self.mistake == Some(mistake)
-    }
-
-    /// The mistake, where many are told apart in one place.
-    pub fn mistake(self) -> Option<Mistake> {
-        self.mistake
-    }
-
-    /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too, and
-    /// independent of the mistake.
-    #[must_use]
-    pub fn with_right_approach(self) -> Self {
-        Self { right_approach: true, ..self }
-    }
-
-    /// Whether the particle-edge approach is mathematically right, not the supplied one.
-    #[must_use]
-    pub fn approach_is_right(self) -> bool {
-        self.right_approach || self.makes(Mistake::QuinticRightRearranged)
-    }
-}
-
 impl Row {
     /// What is wrong, with the part of the program in front.
     #[must_use]
@@ -177,6 +140,15 @@ macro_rules! catalogue {
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Mistake {
             $($(#[doc = $what] $mistake,)*)*
+        }
+
+        impl Mistake {
+            /// The part of the assignment that it belongs to.
+            pub const fn area(self) -> Area {
+                match self {
+                    $($(Self::$mistake => Area::$area,)*)*
+                }
+            }
         }
 
         /// All rows, in the order of the assignment.
@@ -349,6 +321,7 @@ catalogue! {
         PairsNeighboursOnly "pairs-neighbours-only": "A particle is tested only against the next one in the list." => "The inner loop ends at j = i + 1; it runs to the last particle.";
         PairsEndpointsToo "pairs-endpoints-too": "Edges are tested against their own endpoints." => "The test i != edge.first && i != edge.second is missing.";
         PairsFixedSkipped "pairs-fixed-skipped": "Pairs of fixed objects are skipped, so their polynomials are missing." => "isFixed(i) && isFixed(j) leaves a pair out; every pair is tested.";
+        PairsConnectedSkipped "pairs-connected-skipped": "Two particles that an edge connects are not tested against each other, so their polynomials are missing." => "A test for an edge between i and j leaves the pair out; every pair is tested.";
         PairsPruned "pairs-pruned": "Distant particles are sorted out by bounding circles, so their polynomials are missing." => "|x21| > r1 + r2 + |dx1| + |dx2| leaves a pair out; every pair is tested.";
         PairsFirstHalfPlaneOnly "pairs-first-half-plane-only": "Only the first half-plane is looked at." => "The loop over half-planes ends after index 0.";
         PairsHalfPlanesFirst "pairs-half-planes-first": "Half-planes are looked at before everything else." => "The order is, per particle: particles j > i, edges, half-planes.";
@@ -386,6 +359,7 @@ catalogue! {
     }
     Wrong ImpulseLoop {
         ImpulsesEmpty "loop-empty": "The loop is left empty: it reports failure at once." => "return false stands where maxiters rounds of detection and impulses belong.";
+        ImpulsesEmptySuccess "loop-empty-succeeds": "The loop is left empty: it reports success at once, so the geometric part never runs." => "return true stands where maxiters rounds of detection and impulses belong.";
         ImpulsesOneFewer "loop-one-fewer": "The loop makes one round fewer than maxiters allows." => "maxiters - 1 rounds stand where maxiters belong.";
         ImpulsesOneMore "loop-one-more": "The loop makes one round more than maxiters allows." => "maxiters + 1 rounds stand where maxiters belong.";
         ImpulsesOnlyOne "loop-only-one": "The loop makes one round only, whatever maxiters says." => "1 round stands where maxiters belong.";
@@ -401,6 +375,7 @@ catalogue! {
         ImpulsesAlwaysSucceed "loop-always-succeeds": "The loop reports success also when it has run out of rounds." => "return true stands where return false belongs after maxiters rounds with collisions.";
         ImpulsesInverted "loop-inverted": "Success and failure are exchanged." => "return true and return false stand in each other's places.";
         ImpulsesFromPrediction "loop-from-prediction": "Every round computes its impulses from the integrator's prediction, not from the last round's result." => "applyImpulses gets qe and qdote; the last round's qm and qdotm belong there.";
+        ImpulsesPredictedVelocities "loop-predicted-velocities": "Every round adds its impulses to the predicted velocities, which drops those of the rounds before." => "qdote stands where qdotm, the loop's own velocities, belongs.";
         ImpulsesResultNotAccumulated "loop-not-accumulated": "Every round applies its impulses to the integrator's prediction, which drops the rounds before." => "qm = qe + impulses stands where qm += impulses belongs.";
         ImpulsesOneByOne "loop-one-by-one": "Each impulse of a round is computed from the positions that the one before left." => "The round's start (qe, qdote) is to be kept while all impulses of the round are computed.";
         ImpulsesLastWins "loop-last-wins": "The impulses of a round overwrite one another instead of adding up." => "qm = qe + I_k stands where qm = qe + I_1 + I_2 + ... belongs.";
@@ -422,6 +397,7 @@ catalogue! {
         GeometricStopsWhenEmpty "geometric-stops-when-empty": "Without zones the second pass is left out." => "The loop ends before step 5 when Z is empty; detectCollisions(qs, qm) belongs there all the same.";
         GeometricExtraPass "geometric-extra-pass": "One more detection pass is made after the zones have settled." => "detectCollisions runs once more after Z = Z'.";
         GeometricFirstZoneOnly "geometric-first-zone-only": "Only the first zone is moved." => "performFailsafe(Z[0]) stands where all zones of Z belong.";
+        GeometricNewZonesOnly "geometric-new-zones-only": "Zones that a round leaves as they were are not moved again." => "performFailsafe runs for zones of Z' that are not in Z; it runs for all of Z'.";
         ZonesOneEndpoint "zones-one-endpoint": "A zone of a particle and an edge holds only one of the endpoints." => "{i, j} stands where {i, j, k} belongs.";
         ZonesEdgeIndex "zones-edge-index": "A zone of a particle and an edge holds the edge's index, as if it were a particle's." => "{i, e} stands where {i, first(e), second(e)} belongs.";
         ZonesEdgeWithoutParticle "zones-edge-without-particle": "A zone of a particle and an edge lacks the particle." => "{j, k} stands where {i, j, k} belongs.";
@@ -458,6 +434,8 @@ catalogue! {
         FailsafeRotationSign "failsafe-rotation-sign": "The body turns the wrong way." => "-w stands where w belongs.";
         FailsafeNoRotation "failsafe-no-rotation": "The body does not turn." => "w = 0 stands where w = L / I belongs.";
         FailsafeSmallAngle "failsafe-small-angle": "Sine and cosine are replaced by their values for small angles." => "1 and w stand where cos(w) and sin(w) belong.";
+        FailsafeSeries "failsafe-series": "Sine and cosine are replaced by the first terms of their series." => "1 - w^2 / 2 and w - w^3 / 6 stand where cos(w) and sin(w) belong.";
+        FailsafeMassInteger "failsafe-mass-integer": "The total mass is summed as an integer, which cuts fractions off." => "int M stands where double M = sum(m) belongs.";
         FailsafeDegrees "failsafe-degrees": "The angle is converted to degrees before sine and cosine." => "cos(w 180 / pi) stands where cos(w) belongs, and likewise sin.";
         FailsafeAnglePerStep "failsafe-angle-per-step": "The angle is multiplied by the step size once too often." => "w dt stands where w belongs.";
         FailsafePerpendicular "failsafe-perpendicular": "The perpendicular vector has its components exchanged without a change of sign." => "(b, a) stands where (-b, a) belongs.";

@@ -5,14 +5,17 @@ use fosssim_num::{
 };
 
 use super::{
-    catalogue::Mistake,
+    catalogue::{Area, Mistake},
     world::{State, World},
     zones::Zone,
 };
 
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::Failsafe];
+
 /// Replaces the end of the step for the zone's particles by that of a rigid body with their momentum.
 pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
-    let mistake = world.student.mistake();
+    let mistake = world.student.mistake_in(HERE);
     if mistake == Some(Mistake::FailsafeEmpty) {
         return;
     }
@@ -25,7 +28,7 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 
 /// Whether something in the zone cannot move.
 fn stops(world: &World, zone: &Zone) -> bool {
-    let mistake = world.student.mistake();
+    let mistake = world.student.mistake_in(HERE);
     let fixed = zone.particles.iter().any(|&particle| world.fixed(particle));
     let half_plane = zone.half_plane && mistake != Some(Mistake::FailsafeHalfPlaneForgotten);
     match mistake {
@@ -39,7 +42,7 @@ fn stops(world: &World, zone: &Zone) -> bool {
 }
 
 fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
-    let mistake = world.student.mistake();
+    let mistake = world.student.mistake_in(HERE);
     for &particle in &zone.particles {
         if mistake == Some(Mistake::FailsafeStopsFixedOnly) && !world.fixed(particle) {
             continue;
@@ -75,7 +78,7 @@ impl<'a> Rigid<'a> {
     }
 
     fn mistake(&self) -> Option<Mistake> {
-        self.world.student.mistake()
+        self.world.student.mistake_in(HERE)
     }
 
     fn mass(&self, particle: usize) -> f64 {
@@ -93,13 +96,16 @@ impl<'a> Rigid<'a> {
             let position = if self.mistake() == Some(Mistake::FailsafeCentreAtEnd) { start + moved } else { start };
             let student = self.world.student;
             let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { mass };
-            let motion = match student.mistake() {
+            let motion = match student.mistake_in(HERE) {
                 Some(Mistake::FailsafeMomentumVelocity) => at(&state.v, particle),
                 _ => moved,
             };
             self.centre = student.add_scaled(self.centre, weight(Mistake::FailsafeCentreUnweighted), position);
             self.shift = student.add_scaled(self.shift, weight(Mistake::FailsafeMomentumUnweighted), motion);
             total += mass;
+            if self.mistake() == Some(Mistake::FailsafeMassInteger) {
+                total = total.trunc();
+            }
         }
         #[expect(clippy::cast_precision_loss, reason = "a number of particles")]
         let count = zone.particles.len() as f64;
@@ -164,6 +170,10 @@ impl<'a> Rigid<'a> {
     fn carry_out(&self, zone: &Zone, state: &mut State) {
         let (cosine, sine) = match self.mistake() {
             Some(Mistake::FailsafeSmallAngle) => (1.0, self.angle),
+            Some(Mistake::FailsafeSeries) => {
+                let square = self.angle * self.angle;
+                (1.0 - square / 2.0, self.angle - square * self.angle / 6.0)
+            }
             Some(Mistake::FailsafeDegrees) => {
                 (elementary::cos(self.angle.to_degrees()), elementary::sin(self.angle.to_degrees()))
             }

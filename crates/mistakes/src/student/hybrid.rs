@@ -1,11 +1,14 @@
 //! Collision type `hybrid`: impulses first, and rigid impact zones where they do not suffice (collisions.md 5).
 use super::{
-    catalogue::Mistake,
+    catalogue::{Area, Mistake},
     detection, failsafe, impulses,
     integrators::StepFailure,
     world::{State, StepLog, World},
     zones::{self, Zone},
 };
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::ImpactZones];
 
 /// A watched step is left when it has more zones than this, and than particles.
 const MOST_ZONES: usize = 1000;
@@ -37,11 +40,18 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
     if zones.is_empty() && student.makes(Mistake::GeometricStopsWhenEmpty) {
         return Ok(());
     }
+    let mut moved: Vec<Zone> = Vec::new();
     loop {
         if student.makes(Mistake::GeometricRestarts) {
             state.clone_from(&prediction);
         }
-        move_zones(world, q_start, &zones, state);
+        if student.makes(Mistake::GeometricNewZonesOnly) {
+            let new: Vec<Zone> = zones.iter().filter(|zone| !moved.contains(zone)).cloned().collect();
+            move_zones(world, q_start, &new, state);
+            moved.clone_from(&zones);
+        } else {
+            move_zones(world, q_start, &zones, state);
+        }
         if student.makes(Mistake::GeometricOneRound) {
             return Ok(());
         }
@@ -76,7 +86,7 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
 }
 
 fn move_zones(world: &World, q_start: &[f64], zones: &[Zone], state: &mut State) {
-    match world.student.mistake() {
+    match world.student.mistake_in(HERE) {
         Some(Mistake::ZonesReversed) => {
             zones.iter().rev().for_each(|zone| failsafe::perform(world, zone, q_start, state));
         }

@@ -2,7 +2,7 @@
 use fosssim_num::vector::{at, length, put};
 
 use super::{
-    catalogue::Mistake,
+    catalogue::{Area, Mistake},
     detection,
     integrators::StepFailure,
     response::respond,
@@ -25,8 +25,9 @@ pub fn apply(
     let prediction = state.clone();
     let mut start = q_start.to_vec();
     let mut rounds = 0;
-    match student.mistake() {
+    match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesEmpty) => return Ok(false),
+        Some(Mistake::ImpulsesEmptySuccess) => return Ok(true),
         Some(Mistake::ImpulsesPassWhenZero) if max_iterations <= 0 => {
             detection::pass(world, q_start, &state.x, log)?;
             return Ok(false);
@@ -45,7 +46,10 @@ pub fn apply(
             if student.makes(Mistake::ImpulsesVelocityRestored) {
                 state.v.clone_from(&prediction.v);
             }
-            return Ok(!matches!(student.mistake(), Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted)));
+            return Ok(!matches!(
+                student.mistake_in(&[Area::ImpulseLoop]),
+                Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted)
+            ));
         }
         resolve(world, &start, &contacts, &prediction, state, log);
         if student.makes(Mistake::ImpulsesStartAdvances) {
@@ -62,7 +66,7 @@ pub fn apply(
 
 /// How many rounds this program allows itself.
 fn limit(world: &World, max_iterations: i32) -> i32 {
-    match world.student.mistake() {
+    match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),
         Some(Mistake::ImpulsesOneMore) if max_iterations > 0 => max_iterations.saturating_add(1),
         Some(Mistake::ImpulsesOnlyOne) => max_iterations.min(1),
@@ -83,13 +87,16 @@ fn resolve(
 ) {
     let student = world.student;
     let before = if student.makes(Mistake::ImpulsesFromPrediction) { prediction.clone() } else { state.clone() };
-    let chosen = match student.mistake() {
+    let chosen = match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesFirstOnly) => &contacts[..1],
         Some(Mistake::ImpulsesLastOnly) => &contacts[contacts.len() - 1..],
         _ => contacts,
     };
     if student.makes(Mistake::ImpulsesResultNotAccumulated) {
         state.clone_from(prediction);
+    }
+    if student.makes(Mistake::ImpulsesPredictedVelocities) {
+        state.v.clone_from(&prediction.v);
     }
     for contact in chosen {
         if student.makes(Mistake::ImpulsesOneByOne) {
@@ -103,7 +110,7 @@ fn resolve(
             respond(world, contact, start, &before, state);
         }
     }
-    match student.mistake() {
+    match student.mistake_in(&[Area::ImpulseLoop, Area::Trace]) {
         Some(Mistake::ImpulsesCapped) => cap(world, &before, state),
         Some(Mistake::ImpulsesPositionsRestored) => state.x.clone_from(&prediction.x),
         Some(Mistake::LogHybridImpulses) => log.impulses.extend_from_slice(contacts),
@@ -132,7 +139,7 @@ fn finish(
     state: &mut State,
     log: &mut StepLog,
 ) -> Result<bool, StepFailure> {
-    match world.student.mistake() {
+    match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesDetectAfterLast) => {
             return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
         }

@@ -11,6 +11,7 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod author;
 mod catalogue;
 mod continuous_time;
 mod detection;
@@ -30,7 +31,8 @@ mod step;
 mod world;
 mod zones;
 
-pub use catalogue::{Area, CATALOGUE, Kind, Mistake, Row, Student, find};
+pub use author::Student;
+pub use catalogue::{Area, CATALOGUE, Kind, Mistake, Row, find};
 pub use integrators::StepFailure;
 pub use record::{Record, trace};
 pub use refused::{KNOWN_ACCUSED, KNOWN_REFUSED};

@@ -1,12 +1,16 @@
 //! What a program writes of a state and its log: the contents of one record, not yet as bytes (trace-format.md).
 
 use super::{
-    catalogue::{Mistake, Student},
+    author::Student,
+    catalogue::{Area, Mistake},
     integrators::StepFailure,
     step::step,
     world::{Contact, Object, State, StepLog, World},
 };
 use fosssim_model::scene::{Collision, Scene};
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::Trace];
 
 /// The numbers of one record, with this student's mistakes of logging. A block is `None` where scenes of this
 /// collision type have none.
@@ -105,7 +109,7 @@ fn numbers(student: Student, values: &[f64]) -> Vec<f64> {
 }
 
 fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
-    let mut listed: Vec<Contact> = match student.mistake() {
+    let mut listed: Vec<Contact> = match student.mistake_in(HERE) {
         Some(Mistake::LogNoImpulses) => Vec::new(),
         Some(Mistake::LogDuplicateImpulses) => impulses.iter().flat_map(|impulse| [*impulse, *impulse]).collect(),
         Some(Mistake::LogImpulsesReversed) => impulses.iter().rev().copied().collect(),
@@ -122,7 +126,7 @@ fn polynomial(student: Student, log: &StepLog, index: usize) -> Vec<f64> {
     let partner = index ^ 1;
     let swapped = student.makes(Mistake::LogSwapped) && partner < log.polynomials.len();
     let mut list = log.polynomials[if swapped { partner } else { index }].coefficients().to_vec();
-    match student.mistake() {
+    match student.mistake_in(HERE) {
         Some(Mistake::LogLowestFirst) => list.reverse(),
         Some(Mistake::LogNegated) => list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient),
         Some(Mistake::LogNan) => list.fill(f64::NAN),

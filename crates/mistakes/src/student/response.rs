@@ -3,9 +3,12 @@ use fosssim_model::scene::Collision;
 use fosssim_num::vector::{Vec2, at, over, unit};
 
 use super::{
-    catalogue::Mistake,
+    catalogue::{Area, Mistake},
     world::{Contact, Object, State, World, subtract},
 };
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::Response];
 
 /// The coefficient of restitution of the scene; 1 where it has none.
 pub fn restitution(world: &World) -> f64 {
@@ -53,7 +56,7 @@ impl<'a> Response<'a> {
     ) -> Self {
         let student = world.student;
         let u = if student.makes(Mistake::ResponseNotNormalised) { contact.n } else { unit(contact.n) };
-        let f = match student.mistake() {
+        let f = match student.mistake_in(HERE) {
             Some(Mistake::ResponseNoRestitution) => 1.0,
             Some(Mistake::ResponseInelastic) => 0.5,
             Some(Mistake::ResponseRestitutionOnly) => restitution(world) / 2.0,
@@ -91,7 +94,7 @@ impl<'a> Response<'a> {
     fn particle_particle(&mut self, one: usize, two: usize) {
         let h = self.world.scene.time_step;
         let (mut m1, mut m2) = (self.world.collision_mass(one), self.world.collision_mass(two));
-        match self.world.student.mistake() {
+        match self.world.student.mistake_in(HERE) {
             Some(Mistake::ResponseMassesSwapped) => std::mem::swap(&mut m1, &mut m2),
             Some(Mistake::ResponseEqualMasses) => (m1, m2) = (1.0, 1.0),
             _ => {}
@@ -120,7 +123,7 @@ impl<'a> Response<'a> {
         let (y1, y2, y3) = (impact(one, v1), impact(two, v2), impact(three, v3));
         let along = y3 - y2;
         let mut alpha = clamped(student.dot(y1 - y2, along) / student.dot(along, along));
-        match student.mistake() {
+        match student.mistake_in(HERE) {
             Some(Mistake::ResponseEdgeMiddle) => alpha = 0.5,
             Some(Mistake::ResponseEdgeSwapped) => alpha = 1.0 - alpha,
             _ => {}

@@ -1,7 +1,7 @@
 //! Sums of products outside detection, as this student's compiler evaluates them: operation by operation, or fused.
 use fosssim_num::vector::{Vec2, at, put};
 
-use super::catalogue::{Mistake, Student};
+use super::{author::Student, catalogue::Mistake};
 
 impl Student {
     /// `addend + a * b`.

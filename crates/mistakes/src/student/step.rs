@@ -1,12 +1,15 @@
 //! One step with its records.
 use super::{
-    catalogue::Mistake,
+    catalogue::{Area, Mistake},
     continuous_time, hybrid,
     integrators::{self, StepFailure},
     simple,
     world::{State, StepLog, World},
 };
 use fosssim_model::scene::Collision;
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::Trace];
 
 /// Advances `state` by one step (simulation.md 1). `log` is that of the step before; it is emptied first, unless that is
 /// forgotten. `write` is called for each record that the program writes: the mid record where there is one, and the end
@@ -41,7 +44,7 @@ pub fn step(
         }
         Collision::Hybrid { max_iterations, .. } => {
             hybrid::handle(world, &q_start, max_iterations, state, log, &mut |state, log| {
-                if !matches!(student.mistake(), Some(Mistake::LogNoMid | Mistake::LogMidIsEnd)) {
+                if !matches!(student.mistake_in(HERE), Some(Mistake::LogNoMid | Mistake::LogMidIsEnd)) {
                     write(state, log);
                 }
             })?;

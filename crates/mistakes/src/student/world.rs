@@ -5,7 +5,7 @@ use fosssim_num::{
     vector::{Vec2, at, put},
 };
 
-use super::catalogue::{Mistake, Student};
+use super::{author::Student, catalogue::Mistake};
 
 /// Everything that stays as it is during a run.
 pub struct World {
@@ -118,6 +118,14 @@ impl World {
     }
 }
 
+/// Whether an edge joins two particles.
+fn are_connected(scene: &Scene, one: usize, two: usize) -> bool {
+    let joins = |edge: &fosssim_model::scene::Edge| {
+        (edge.first, edge.second) == (one, two) || (edge.first, edge.second) == (two, one)
+    };
+    scene.edges.iter().any(joins)
+}
+
 /// All pairs in the order of detection: per particle the later particles, the edges of which it is not an endpoint,
 /// the half-planes.
 fn pairs(scene: &Scene, student: Student) -> Vec<Pair> {
@@ -128,7 +136,9 @@ fn pairs(scene: &Scene, student: Student) -> Vec<Pair> {
         let last = if student.makes(Mistake::PairsNeighboursOnly) { count.min(particle + 2) } else { count };
         for other in (first..last).filter(|&other| other != particle) {
             let both_fixed = scene.particles[particle].fixed && scene.particles[other].fixed;
-            if !(both_fixed && student.makes(Mistake::PairsFixedSkipped)) {
+            let skips = (both_fixed && student.makes(Mistake::PairsFixedSkipped))
+                || (student.makes(Mistake::PairsConnectedSkipped) && are_connected(scene, particle, other));
+            if !skips {
                 pairs.push(Pair { particle, object: Object::Particle(other) });
             }
         }

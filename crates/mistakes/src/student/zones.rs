@@ -2,9 +2,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
-    catalogue::{Mistake, Student},
+    author::Student,
+    catalogue::{Area, Mistake},
     world::{Contact, Object, World},
 };
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::ImpactZones];
 
 /// Particles to be moved together.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,7 +30,7 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
         }
         Object::Edge(index) => {
             let edge = world.scene.edges[index];
-            match student.mistake() {
+            match student.mistake_in(HERE) {
                 Some(Mistake::ZonesOneEndpoint) => particles.extend([edge.first]),
                 Some(Mistake::ZonesEdgeIndex) => particles.extend([index.min(world.scene.particles.len() - 1)]),
                 Some(Mistake::ZonesEdgeWithoutParticle) => particles = BTreeSet::from([edge.first, edge.second]),
@@ -40,7 +44,7 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
 
 /// Joins zones until no two share a particle.
 pub fn merge(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
-    match student.mistake() {
+    match student.mistake_in(HERE) {
         Some(Mistake::ZonesNotMerged) => return zones,
         Some(Mistake::ZonesAllInOne) => return everything(zones),
         Some(Mistake::ZonesUnionFind) => return disjoint_sets(&zones),
@@ -63,7 +67,7 @@ pub fn merge(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
 }
 
 fn join(student: Student, zone: &mut Zone, other: Zone) {
-    zone.half_plane = match student.mistake() {
+    zone.half_plane = match student.mistake_in(HERE) {
         Some(Mistake::ZonesFlagLost) => zone.half_plane,
         Some(Mistake::ZonesFlagOverwritten) => other.half_plane,
         Some(Mistake::ZonesFlagBoth) => zone.half_plane && other.half_plane,
@@ -118,7 +122,7 @@ fn root(parents: &[usize], mut particle: usize) -> usize {
 
 /// Whether two lists hold the same zones, in whatever order.
 pub fn equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
-    match student.mistake() {
+    match student.mistake_in(HERE) {
         Some(Mistake::ZonesEqualByCount) => old.len() == new.len(),
         Some(Mistake::ZonesEqualNoFlag) => {
             old.len() == new.len() && new.iter().all(|zone| old.iter().any(|other| other.particles == zone.particles))

@@ -56,6 +56,8 @@ pub(super) struct Candidates<'a> {
     /// Wrong steps: first one of each sort, the cheapest first, then the others.
     wrong: Vec<&'a Sample>,
     probes: usize,
+    /// The first divergence.
+    first: Option<&'a Sample>,
     right: Vec<&'a Sample>,
     work: Cell<u64>,
 }
@@ -83,7 +85,8 @@ impl<'a> Candidates<'a> {
         probes.sort_by_key(|sample| sample.records.end.polynomials.len());
         let number = probes.len();
         probes.append(&mut others);
-        Self { candidates, wrong: probes, probes: number, right: scan.right.iter().collect(), work: Cell::new(0) }
+        let (first, right) = (scan.wrong.first(), scan.right.iter().collect());
+        Self { candidates, wrong: probes, probes: number, first, right, work: Cell::new(0) }
     }
 
     /// The rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue. Empty when
@@ -132,8 +135,11 @@ impl<'a> Candidates<'a> {
                 tried - *reproduced <= allowed
             });
         }
+        // A mistake that does not make the first divergence is not the one to look for.
         left.retain(|(candidate, reproduced)| {
-            2 * reproduced >= tried && self.right.iter().all(|sample| self.reproduces(candidate, sample))
+            2 * reproduced >= tried
+                && self.first.is_none_or(|first| self.reproduces(candidate, first))
+                && self.right.iter().all(|sample| self.reproduces(candidate, sample))
         });
         let most = left.iter().map(|(_, reproduced)| *reproduced).max().unwrap_or(0);
         left.retain(|(_, reproduced)| *reproduced == most && most > 0);

@@ -13,20 +13,27 @@ mod candidates;
 mod capture;
 mod compare;
 mod example;
+mod refute;
 mod remedy;
 mod scan;
+mod several;
+
+pub use refute::shows;
+pub(super) use several::is_empty_stage;
 
 use super::{Explanation, notation};
 use crate::student::{Kind, Mistake, Row, find};
 use candidates::{Candidates, Correct, Score};
 use fosssim_model::{scene::Scene, trace::Layout};
 use scan::Scan;
+use several::Several;
 use std::io::Read;
 
 /// Searches the catalogue for the mistake that explains this trace.
 ///
 /// The result is empty when all steps are right, when no mistake reproduces at least half of the wrong steps, or when a
-/// correct variant reproduces them as well. Else it holds one explanation; further mistakes that reproduce the same steps
+/// correct variant reproduces them as well. Else it holds one explanation, or those of up to three mistakes that reproduce the
+/// steps together, stages that are still empty besides; further mistakes that reproduce the same steps
 /// are in [`Explanation::same_as`]. Of those, the first one is a stage that was left empty, if there is one, else the earliest of the
 /// assignment's order: polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
 ///
@@ -47,25 +54,47 @@ pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
     }
     let padded = scan.padded;
     let found = of_wrong_steps(scene, scan);
-    if found.is_some() || padded == 0 {
-        return found.into_iter().collect();
+    if !found.is_empty() || padded == 0 {
+        return found;
     }
     // Reading drops what the course's library would have dropped, so such steps look right.
     find("log-padded").map(|row| explain(row, (padded, padded))).into_iter().collect()
 }
 
-fn of_wrong_steps(scene: &Scene, scan: Scan) -> Option<Explanation> {
+fn of_wrong_steps(scene: &Scene, scan: Scan) -> Vec<Explanation> {
     if scan.wrong.is_empty() {
-        return None;
+        return Vec::new();
     }
     let supplied = best(scene, &scan, Correct::Supplied);
     if supplied.complete {
-        return supplied.explanation;
+        return supplied.explanation.into_iter().collect();
+    }
+    if let Some(several) = several::several(scene, &scan, Correct::Supplied) {
+        return together(scene, &scan, Correct::Supplied, &several);
     }
     // The fair rules accept the right approach as well as the supplied one; behind it may be a mistake of another kind.
-    let right =
-        scan.with_right_approach(scene).map(|scan| best(scene, &scan, Correct::RightApproach)).unwrap_or_default();
-    if right.complete { right.explanation } else { supplied.explanation.or(right.explanation) }
+    let Some(scan) = scan.with_right_approach(scene) else { return supplied.explanation.into_iter().collect() };
+    let right = best(scene, &scan, Correct::RightApproach);
+    if right.complete {
+        return right.explanation.into_iter().collect();
+    }
+    if let Some(several) = several::several(scene, &scan, Correct::RightApproach) {
+        return together(scene, &scan, Correct::RightApproach, &several);
+    }
+    supplied.explanation.or(right.explanation).into_iter().collect()
+}
+
+/// The explanations of several mistakes, which reproduce the same steps together. Empty stages are told first.
+fn together(scene: &Scene, scan: &Scan, correct: Correct, several: &Several) -> Vec<Explanation> {
+    let counts = (several.samples, several.samples);
+    let mut all: Vec<Explanation> = several.rows.iter().map(|row| explain(row, counts)).collect();
+    if let Some(first) = all.first_mut() {
+        first.example = scan.wrong.first().map(|sample| example::example(scene, correct, sample));
+    }
+    if let Some(last) = all.last_mut() {
+        last.same_as = several.same_as.iter().map(|row| row.id.to_owned()).collect();
+    }
+    all
 }
 
 /// What the catalogue says about a trace.
@@ -100,6 +129,7 @@ fn plausibility(row: &Row) -> u8 {
         | Mistake::ParticleEdgeEmpty
         | Mistake::HalfPlaneEmpty
         | Mistake::ImpulsesEmpty
+        | Mistake::ImpulsesEmptySuccess
         | Mistake::GeometricEmpty
         | Mistake::FailsafeEmpty => 0,
         Mistake::ImpulsesPassWhenZero

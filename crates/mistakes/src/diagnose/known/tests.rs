@@ -1,7 +1,7 @@
 //! Traces with mistakes, made in memory, and what is said of them.
-use super::known;
+use super::{known, shows};
 use crate::{
-    diagnose::explain,
+    diagnose::{Explanation, explain, several},
     student::{self, Student, find},
 };
 use fosssim_model::scene::{Scene, original};
@@ -129,4 +129,80 @@ fn damaged_traces_are_read_as_far_as_they_go() {
         damaged[place] ^= 0xff;
         let _explanations = known(&scene(), &damaged[..]);
     }
+}
+
+/// The scene with impulse rounds, impact zones and several discs at once.
+fn hybrid() -> Scene {
+    let text =
+        SCENE.replace("type=\"continuous-time\" COR=\"0.8\"", "type=\"hybrid\" COR=\"0.8\" maxiters=\"1\"").replace(
+            "<edge",
+            "<particle m=\"1.5\" px=\"1.55\" py=\"0.05\" vx=\"-1.5\" vy=\"0\" fixed=\"0\" radius=\"0.25\"/><edge",
+        );
+    original::read(text.as_bytes()).expect("a scene").scene
+}
+
+fn made(scene: &Scene, ids: &[&str]) -> Vec<u8> {
+    let student = ids.iter().fold(Student::default(), |student, id| student.and(find(id).map(|row| row.mistake)));
+    student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
+}
+
+/// What is said of a program that makes all of these: each named as made, or as not to be told from it.
+fn are_named(scene: &Scene, ids: &[&str]) {
+    let found = explain(scene, &made(scene, ids));
+    assert_eq!(found.len(), ids.len(), "{ids:?}: {found:#?}");
+    for id in ids {
+        let named = found.iter().any(|one| one.key == *id || one.same_as.iter().any(|other| other == id));
+        assert!(named, "{id} of {ids:?}: {found:#?}");
+    }
+    assert!(found.iter().all(Explanation::is_complete), "{ids:?}: {found:#?}");
+}
+
+#[test]
+fn what_is_not_written_yet_is_said_by_stage() {
+    are_named(&scene(), &["pp-empty", "pe-empty", "ph-empty"]);
+    are_named(&scene(), &["pe-empty", "ph-empty"]);
+    are_named(&scene(), &["pp-empty", "pe-empty"]);
+}
+
+#[test]
+fn half_done_work_with_a_mistake_has_both() {
+    are_named(&scene(), &["pe-empty", "pp-no-two"]);
+    are_named(&scene(), &["ph-empty", "response-sign"]);
+}
+
+#[test]
+fn several_mistakes_are_named_together() {
+    for ids in [
+        &["pp-no-two", "response-sign"][..],
+        &["pe-square-no-eh", "pp-radii-squared-apart"],
+        &["pe-alpha-low-negated", "response-halved"],
+        &["pp-one-radius", "pe-no-cubic", "response-no-restitution"],
+    ] {
+        are_named(&scene(), ids);
+    }
+    are_named(&hybrid(), &["pp-linear-sign", "geometric-empty"]);
+}
+
+#[test]
+fn a_right_scene_speaks_against_what_it_would_show() {
+    assert!(shows(&scene(), "pp-no-two") && shows(&scene(), "pe-square-no-eh"));
+    assert!(!shows(&scene(), "geometric-empty") && !shows(&scene(), "no-such-mistake"));
+    let explanations = explain(&scene(), &made(&scene(), &["pp-no-two"]));
+    assert_eq!(several([explanations.as_slice()], &[])[0].key, "pp-no-two");
+    assert!(several([explanations.as_slice()], &["pp-no-two".to_owned()]).iter().all(|one| one.key != "pp-no-two"));
+}
+
+#[test]
+fn mistakes_of_several_scenes_are_settled_together() {
+    let alone = explain(&scene(), &made(&scene(), &["pp-empty"]));
+    let other = explain(&scene(), &made(&scene(), &["pe-empty", "ph-empty"]));
+    let found = several([alone.as_slice(), other.as_slice()], &[]);
+    assert_eq!((found.len(), found[0].key.as_str()), (1, Explanation::UNFINISHED), "{found:#?}");
+    assert!(found[0].what.starts_with("Not written yet: the particle-particle detection"), "{}", found[0].what);
+    assert!(found[0].is_named_in(&alone) && found[0].is_named_in(&other));
+    let (one, two) =
+        (explain(&scene(), &made(&scene(), &["pp-no-two"])), explain(&scene(), &made(&scene(), &["response-sign"])));
+    let found: Vec<String> =
+        several([one.as_slice(), one.as_slice(), two.as_slice()], &[]).into_iter().map(|found| found.key).collect();
+    assert_eq!(found, ["pp-no-two", "response-sign"]);
 }

@@ -36,6 +36,9 @@ use study::{Candidate, Study};
 /// So many other keys are told per explanation.
 const MOST_OTHERS: usize = 5;
 
+/// Up to this error, relative to the size of its terms, a polynomial is right but for round-off.
+const NEARLY: f64 = 1e-10;
+
 /// Guesses that are this much less likely than the best (see [`Candidate::cost`]) are not told beside it.
 const AS_LIKELY: f64 = 1.6;
 
@@ -53,7 +56,8 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
         .filter_map(|subject| Study::new(subject, samples))
         .map(|study| Suspect { candidates: candidates(&study), study })
         .collect();
-    let mut explanations = Vec::new();
+    let mut explanations: Vec<Explanation> = open.iter().filter_map(nearly_right).collect();
+    open.retain(|suspect| nearly_right(suspect).is_none());
     while let Some(key) = best_shared_key(&open) {
         let (covered, rest): (Vec<Suspect>, Vec<Suspect>) =
             open.into_iter().partition(|suspect| suspect.full().any(|candidate| candidate.key == key));
@@ -133,6 +137,9 @@ fn candidates(study: &Study) -> Vec<Candidate> {
     all.extend(specials::candidates(study));
     all.extend(slips::candidates(study));
     all.extend(terms::candidates(study));
+    // What the right formula does as well is no explanation.
+    let plain = study.plainly_right();
+    all.retain(|guess| guess.reproduced > plain);
     all.sort_by(|one, two| two.reproduced.cmp(&one.reproduced).then(one.cost.total_cmp(&two.cost)));
     all
 }
@@ -155,6 +162,21 @@ fn exchanged_inputs(study: &Study) -> Vec<Candidate> {
         })
     };
     EXCHANGES.iter().filter(|exchange| exchange.concerns(study.subject.kind())).filter_map(of).collect()
+}
+
+/// What is right but for more round-off than the rules allow, and not explained by anything better.
+fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
+    let study = &suspect.study;
+    let (error, samples) = (study.error(), study.cases.len() as u64);
+    (error < NEARLY && suspect.full().next().is_none()).then(|| Explanation {
+        key: Explanation::NEARLY_RIGHT.to_owned(),
+        what: placed(&[study.subject.name()], "The formula is right, but for more round-off than the rules allow"),
+        details: vec![format!("right up to {error:.0e} of the size of its terms")],
+        reproduced: 0,
+        samples,
+        example: example::smallest(study).map(|(_, example)| example),
+        same_as: Vec::new(),
+    })
 }
 
 /// One explanation that says for which polynomials there is none.

@@ -4,13 +4,16 @@ use super::{
     formulas::{Formula, readings},
     sample::{Inputs, Sample, Subject},
 };
-use fosssim_num::bounded::Bounded;
+use fosssim_num::{bounded::Bounded, tolerances::LEADING_COEFFICIENT};
 
 /// So many samples are looked at; more add nothing but time.
 const MOST_CASES: usize = 1200;
 
 /// A guess is tried on so many wrong samples before it is tried on all.
 const PROBES: usize = 12;
+
+/// One right sample in so many may speak against a guess, for round-off.
+const SPARED: usize = 50;
 
 /// Ratios of coefficients to what they should be are alike up to this: rounding of coefficients that cancel to a
 /// ten-thousandth of their terms, and room.
@@ -112,8 +115,12 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// In how many samples a property holds; `None` if it holds in fewer than half of the wrong ones.
+    /// In how many samples a property holds; `None` if it holds in fewer than half of the wrong ones, not in the first of
+    /// them, or only in some wrong ones and not in the right ones: what these speak against explains nothing.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
+        if self.cases.iter().find(|case| !case.right).is_some_and(|first| !holds(first)) {
+            return None;
+        }
         let mut failed = 0;
         for case in self.probes() {
             failed += usize::from(!holds(case));
@@ -127,7 +134,38 @@ impl<'a> Study<'a> {
                 *(if case.right { &mut right } else { &mut wrong }) += 1;
             }
         }
-        (2 * wrong >= self.wrong).then_some(wrong + right)
+        self.is_supported(wrong, right).then_some(wrong + right)
+    }
+
+    /// Whether so many wrong and right samples are enough. What reproduces all wrong ones may be done under a condition, so that
+    /// right samples don't speak against it.
+    pub fn is_supported(&self, wrong: usize, right: usize) -> bool {
+        let all_right = self.cases.len() - self.wrong;
+        wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED)
+    }
+
+    /// How many samples the right formula reproduces within the tolerance of a guess.
+    pub fn plainly_right(&self) -> usize {
+        let holds =
+            |case: &&Case| matches(&case.expected, case.logged, case.scale) || fits_at_any_scale(&case.expected, case);
+        self.cases.iter().filter(holds).count()
+    }
+
+    /// How far coefficients are off at most, relative to the size of their terms.
+    pub fn error(&self) -> f64 {
+        let of_case = |case: &Case| {
+            let scale = fitted_scale(&case.expected, case.logged).unwrap_or(case.scale);
+            let powers = 0..case.expected.len().max(case.logged.len());
+            let errors = powers.map(|power| {
+                let expected = expected_at(&case.expected, power);
+                let residual = (logged_at(case.logged, power).unwrap_or(0.0) - scale * expected.value).abs();
+                let missing = if power < case.logged.len() { 0.0 } else { LEADING_COEFFICIENT };
+                if residual <= missing { 0.0 } else { residual / (scale * expected.bound) }
+            });
+            // NaN is as far off as can be.
+            errors.fold(0.0_f64, |most, error| if error <= most { most } else { error })
+        };
+        self.cases.iter().map(of_case).fold(0.0_f64, |most, error| if error <= most { most } else { error })
     }
 
     /// Finds the positive factor that most coefficients agree on: 1, another one for all samples, or one for each.

@@ -62,17 +62,18 @@ fn candidate(study: &Study, formula: &'static Formula, reading: usize) -> Option
     }
     // A polynomial of which nothing is known needs no candidate.
     guesses.iter().find(|guess| !matches!(guess.edit, Edit::Unknown))?;
-    let reproduced = (0..study.cases.len())
-        .filter(|&index| {
-            let case = &study.cases[index];
-            case.logged.len() <= formula.degree + 1
-                && (0..=formula.degree).all(|power| {
-                    let guess = guesses.iter().find(|guess| guess.power == power);
-                    let predicted = fitting.predicted(index, power, guess.map(|guess| &guess.edit));
-                    coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
-                })
-        })
-        .count();
+    let holds = |index: usize| {
+        let case = &study.cases[index];
+        case.logged.len() <= formula.degree + 1
+            && (0..=formula.degree).all(|power| {
+                let guess = guesses.iter().find(|guess| guess.power == power);
+                let predicted = fitting.predicted(index, power, guess.map(|guess| &guess.edit));
+                coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
+            })
+    };
+    let (right, wrong): (Vec<usize>, Vec<usize>) =
+        (0..study.cases.len()).filter(|&index| holds(index)).partition(|&index| study.cases[index].right);
+    let reproduced = right.len() + wrong.len();
     let words = Words { dictionary: &fitting.dictionary, formula };
     Some(Candidate {
         key: words.key(&guesses).to_owned(),

@@ -40,6 +40,7 @@ pub fn probe_scenes() -> Vec<(String, Scene)> {
         ("zones-of-all-kinds", rounds::zones_of_all_kinds()),
         ("zones-that-grow", rounds::zones_that_grow()),
         ("zones-reach-a-half-plane", rounds::zones_reach_a_half_plane()),
+        ("zones-of-fractional-masses", rounds::zones_of_fractional_masses()),
     ]
     .map(|(name, scene)| (name.to_owned(), scene))
     .into()

@@ -156,3 +156,21 @@ pub(super) fn zones_reach_a_half_plane() -> Scene {
         )
     }
 }
+
+/// Rows whose masses are fractions, after one impulse round: zones that turn a little, and grow.
+pub(super) fn zones_of_fractional_masses() -> Scene {
+    scene(
+        2,
+        hybrid(1),
+        vec![
+            ball(0.0, 0.0, 3.0, 0.125, 6.5, 1.0),
+            ball(3.0, 0.125, 0.0, 0.25, 0.75, 1.0),
+            ball(5.5, 0.0, -0.25, 0.0, 1.25, 1.0),
+            ball(8.0, 0.125, -1.0, 0.125, 2.5, 1.0),
+            // Lighter than one each.
+            ball(0.0, 20.0, 2.0, 0.125, 0.25, 1.0),
+            ball(2.5, 20.5, 0.25, 0.0, 0.375, 1.0),
+            ball(5.0, 20.0, -2.0, 0.25, 0.625, 1.0),
+        ],
+    )
+}

@@ -1,7 +1,13 @@
 //! Correct programs that compute in other coordinates than the scene's: nothing that happens depends on them.
 use fosssim_num::vector::Vec2;
 
-use crate::student::catalogue::{Mistake, Student};
+use crate::student::{
+    author::Student,
+    catalogue::{Area, Mistake},
+};
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::Handover];
 
 /// Where the coordinates of a program are those of the scene after moving the origin here.
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
@@ -26,7 +32,7 @@ pub enum Frame {
 impl Frame {
     /// The coordinates that this student computes in.
     pub fn of(student: Student) -> Self {
-        match student.mistake() {
+        match student.mistake_in(HERE) {
             Some(Mistake::FrameShifted) => Self::Shifted,
             Some(Mistake::FrameComoving) => Self::Comoving,
             Some(Mistake::FrameRotated) => Self::Rotated,

@@ -3,9 +3,13 @@ use fosssim_num::polynomial::Polynomial;
 
 use super::trimmed;
 use crate::student::{
-    catalogue::{Mistake, Student},
+    author::Student,
+    catalogue::{Area, Mistake},
     world::Object,
 };
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::Handover];
 
 /// Hands the polynomials of one pair over: as they are, or as this student does.
 pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
@@ -13,7 +17,7 @@ pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> 
         lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= factor);
     }
     let edge = matches!(object, Object::Edge(_));
-    match student.mistake() {
+    match student.mistake_in(HERE) {
         Some(Mistake::HandoverLowestFirst) => lists.iter_mut().for_each(|list| list.reverse()),
         Some(Mistake::HandoverNegated) => lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= -1.0),
         Some(Mistake::HandoverSwapped) => lists.swap(0, 1),
@@ -34,7 +38,7 @@ pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> 
 
 /// The positive factor of the correct variants that rescale their polynomials.
 fn factor(student: Student, object: Object) -> Option<f64> {
-    let factor = match (student.mistake()?, object) {
+    let factor = match (student.mistake_in(HERE)?, object) {
         (Mistake::ScaleTwo, _) | (Mistake::ScaleParticleParticleTwo, Object::Particle(_)) => 2.0,
         (Mistake::ScaleHalf, _) => 0.5,
         (Mistake::ScaleThree, _)

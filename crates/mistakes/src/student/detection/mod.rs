@@ -8,7 +8,8 @@ use fosssim_num::{
 };
 
 use crate::student::{
-    catalogue::{Mistake, Student},
+    author::Student,
+    catalogue::{Area, Mistake},
     integrators::StepFailure,
     world::{Contact, Object, Pair, StepLog, World},
 };
@@ -166,7 +167,7 @@ pub fn detect(
     if rejected(student, &encounter, time) {
         return Ok(None);
     }
-    match student.mistake() {
+    match student.mistake_in(&[Area::ContactVector]) {
         Some(Mistake::ContactUnitLength) => n = unit(n),
         Some(Mistake::ContactNoise) => n += 1e-7 * Vec2::new(n.y, n.x),
         _ => {}
@@ -186,7 +187,7 @@ pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) ->
 
 /// Whether a time of impact lies within the step.
 fn within_step(student: Student, time: f64, time_step: f64) -> bool {
-    match student.mistake() {
+    match student.mistake_in(&[Area::Decision, Area::Process]) {
         Some(Mistake::DecisionOpenEnd) => time < 1.0,
         Some(Mistake::DecisionOpenStart) => 0.0 < time && time <= 1.0,
         Some(Mistake::DecisionOpenInterval) => 0.0 < time && time < 1.0,
@@ -200,7 +201,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
 
 /// The further tests that some programs make, and should not.
 fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
-    match (student.mistake(), encounter) {
+    match (student.mistake_in(&[Area::Decision, Area::Process]), encounter) {
         (Some(Mistake::DecisionOverlapAtEnd), _) => length(encounter.contact_vector(student, 1.0)) >= encounter.reach(),
         (Some(Mistake::DecisionOverlapAtStart), _) => {
             time == 0.0 && length(encounter.contact_vector(student, 0.0)) < encounter.reach()

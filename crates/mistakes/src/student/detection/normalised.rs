@@ -4,11 +4,17 @@
 use fosssim_num::vector::Vec2;
 
 use super::Encounter;
-use crate::student::catalogue::{Mistake, Student};
+use crate::student::{
+    author::Student,
+    catalogue::{Area, Mistake},
+};
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::Handover];
 
 /// Divides as this student does, if at all.
 pub fn normalise(student: Student, encounter: &Encounter, lists: &mut [Vec<f64>]) {
-    let size: fn(&Encounter, &[f64]) -> f64 = match student.mistake() {
+    let size: fn(&Encounter, &[f64]) -> f64 = match student.mistake_in(HERE) {
         Some(Mistake::NormalisedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
         Some(Mistake::NormalisedNorm) => |_, list| list.iter().map(|c| c * c).sum::<f64>().sqrt(),
         Some(Mistake::NormalisedPerPair) => |encounter, _| of_pair(encounter),

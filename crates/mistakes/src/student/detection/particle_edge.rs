@@ -7,11 +7,20 @@ use super::{
     basis, factorised, quintic,
     wide::Wide,
 };
-use crate::student::catalogue::{Mistake, Student};
+use crate::student::{
+    author::Student,
+    catalogue::{Area, Mistake},
+};
+
+/// The parts of the assignment whose mistakes are made in the polynomials.
+const FORMULAS: &[Area] = &[Area::ParticleEdge, Area::Handover, Area::ContactVector];
+
+/// Those of the contact vectors.
+const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// Overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic).
 pub fn polynomials(student: Student, bodies: &[Body; 3], edge_radius: f64) -> Vec<Vec<f64>> {
-    let mistake = student.mistake();
+    let mistake = student.mistake_in(FORMULAS);
     match mistake {
         Some(Mistake::ParticleEdgeEmpty) => return Vec::new(),
         Some(Mistake::ParticleEdgeZero) => return vec![vec![0.0; 5], vec![0.0; 3], vec![0.0; 3], vec![0.0; 6]],
@@ -46,7 +55,7 @@ pub fn polynomials(student: Student, bodies: &[Body; 3], edge_radius: f64) -> Ve
 /// The moving points as this student puts them into the formulas.
 fn seen(student: Student, bodies: &[Body; 3]) -> [Body; 3] {
     let [one, mut two, mut three] = *bodies;
-    match student.mistake() {
+    match student.mistake_in(FORMULAS) {
         Some(Mistake::ParticleEdgeStill) => {
             two.displacement = Vec2::zeros();
             three.displacement = Vec2::zeros();
@@ -66,7 +75,7 @@ fn seen(student: Student, bodies: &[Body; 3]) -> [Body; 3] {
 
 fn reach_squared(student: Student, particle: f64, edge: f64) -> f64 {
     let reach = particle + edge;
-    match student.mistake() {
+    match student.mistake_in(FORMULAS) {
         Some(Mistake::ParticleEdgeRadiiSquaredApart) => particle * particle + edge * edge,
         Some(Mistake::ParticleEdgeRadiusNotSquared) => reach,
         Some(Mistake::ParticleEdgeNoEdgeRadius) => particle * particle,
@@ -112,7 +121,7 @@ impl Dots {
 /// The overlap with the line: `(r1 + re)^2 |x32|^2 - |x21|^2 |x32|^2 + (x12.x32)^2` along the motion.
 fn quartic(student: Student, dots: &Dots, s: f64) -> Vec<f64> {
     let &Dots { a, b, c, d, e, f, g, h, i } = dots;
-    let mistake = student.mistake();
+    let mistake = student.mistake_in(FORMULAS);
     let t4 = match mistake {
         Some(Mistake::ParticleEdgeQuarticNoFi) => c * c,
         Some(Mistake::ParticleEdgeQuarticPlusFi) => c * c + f * i,
@@ -191,7 +200,7 @@ fn interpolated(bodies: &[Body; 3], s: f64) -> Vec<f64> {
 
 fn alpha_above_zero(student: Student, dots: &Dots) -> Vec<f64> {
     let &Dots { a, b, c, .. } = dots;
-    match student.mistake() {
+    match student.mistake_in(FORMULAS) {
         Some(Mistake::AlphaLowSlopeSign) => vec![c, -b, a],
         Some(Mistake::AlphaLowNegated) => vec![-c, -b, -a],
         Some(Mistake::AlphaLowNoQuadratic) => vec![b, a],
@@ -207,7 +216,7 @@ fn alpha_below_one(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f64
     let (x13, x23) = (one.start - three.start, two.start - three.start);
     let d13 = one.displacement - three.displacement;
     let d23 = two.displacement - three.displacement;
-    match student.mistake() {
+    match student.mistake_in(FORMULAS) {
         Some(Mistake::AlphaHighIsLow) => vec![c, b, a],
         Some(Mistake::AlphaHighUnscaled) => vec![-c, -b, 1.0 - a],
         Some(Mistake::AlphaHighNegated) => vec![-d13.dot(&d23), -(d13.dot(&x23) + x13.dot(&d23)), -x13.dot(&x23)],
@@ -228,7 +237,7 @@ pub fn alpha([one, two, three]: &[Body; 3], t: f64) -> f64 {
 
 /// From the particle to the closest point of the line at time `t`.
 pub fn contact_vector(student: Student, bodies: &[Body; 3], t: f64) -> Vec2 {
-    let mistake = student.mistake();
+    let mistake = student.mistake_in(VECTORS);
     let [one, two, three] = bodies;
     let t = if mistake == Some(Mistake::ParticleEdgeContactAtStart) { 0.0 } else { t };
     let along = three.start + t * three.displacement - two.start - t * two.displacement;

@@ -7,11 +7,20 @@ use super::{
     basis,
     wide::Wide,
 };
-use crate::student::catalogue::{Mistake, Student};
+use crate::student::{
+    author::Student,
+    catalogue::{Area, Mistake},
+};
+
+/// The parts of the assignment whose mistakes are made in the polynomials.
+const FORMULAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::ContactVector];
+
+/// Those of the contact vectors.
+const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// Overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &Body, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
-    let mistake = student.mistake();
+    let mistake = student.mistake_in(FORMULAS);
     let q = if mistake == Some(Mistake::HalfPlaneUnitNormal) { unit(normal) } else { normal };
     let s = one.displacement.dot(&q);
     let w = match mistake {
@@ -34,7 +43,7 @@ pub fn polynomials(student: Student, one: &Body, point: Vec2, normal: Vec2) -> V
 }
 
 fn overlap(student: Student, radius: f64, s: f64, w: f64, q: Vec2) -> Vec<f64> {
-    let mistake = student.mistake();
+    let mistake = student.mistake_in(FORMULAS);
     let square = match mistake {
         Some(Mistake::HalfPlaneRadiusNotSquared) => radius,
         Some(Mistake::HalfPlaneNoRadius) => 0.0,
@@ -72,7 +81,7 @@ fn rearranged_overlap(one: &Body, s: f64, w: f64, q: Vec2) -> Vec<f64> {
 }
 
 fn approach(student: Student, s: f64, w: f64) -> Vec<f64> {
-    match student.mistake() {
+    match student.mistake_in(FORMULAS) {
         Some(Mistake::HalfPlaneApproachNoSpeed) => vec![-s, w],
         Some(Mistake::HalfPlaneApproachNegated) => vec![s * s, -w * s],
         Some(Mistake::HalfPlaneApproachSlopeSign) => vec![s * s, w * s],
@@ -86,7 +95,7 @@ fn approach(student: Student, s: f64, w: f64) -> Vec<f64> {
 pub fn contact_vector(student: Student, one: &Body, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
     let offset = point - one.start - t * one.displacement;
     let square = normal.dot(&normal);
-    match student.mistake() {
+    match student.mistake_in(VECTORS) {
         Some(Mistake::HalfPlaneContactUndivided) => offset.dot(&normal) * normal,
         Some(Mistake::HalfPlaneContactDividedByLength) => offset.dot(&normal) / square.sqrt() * normal,
         Some(Mistake::HalfPlaneContactIsNormal) => normal,

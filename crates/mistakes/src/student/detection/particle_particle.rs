@@ -7,11 +7,20 @@ use super::{
     basis,
     wide::Wide,
 };
-use crate::student::catalogue::{Mistake, Student};
+use crate::student::{
+    author::Student,
+    catalogue::{Area, Mistake},
+};
+
+/// The parts of the assignment whose mistakes are made in the polynomials.
+const FORMULAS: &[Area] = &[Area::ParticleParticle, Area::Handover, Area::ContactVector];
+
+/// Those of the contact vectors.
+const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// Overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &Body, two: &Body) -> Vec<Vec<f64>> {
-    let mistake = student.mistake();
+    let mistake = student.mistake_in(FORMULAS);
     match mistake {
         Some(Mistake::ParticleParticleEmpty) => return Vec::new(),
         Some(Mistake::ParticleParticleZero) => return vec![vec![0.0; 3], vec![0.0; 2]],
@@ -42,7 +51,7 @@ pub fn polynomials(student: Student, one: &Body, two: &Body) -> Vec<Vec<f64>> {
 }
 
 fn overlap(student: Student, x: Vec2, d: Vec2, r1: f64, r2: f64) -> Vec<f64> {
-    let mistake = student.mistake();
+    let mistake = student.mistake_in(FORMULAS);
     let reach = match mistake {
         Some(Mistake::ParticleParticleFirstRadiusTwice) => r1 + r1,
         Some(Mistake::ParticleParticleOneRadius) => r1,
@@ -87,7 +96,7 @@ fn rearranged_overlap(one: &Body, two: &Body) -> Vec<f64> {
 }
 
 fn approach(student: Student, x: Vec2, d: Vec2, e: Vec2) -> Vec<f64> {
-    match student.mistake() {
+    match student.mistake_in(FORMULAS) {
         Some(Mistake::ParticleParticleSeparating) => vec![-d.dot(&d), d.dot(&x)],
         Some(Mistake::ParticleParticleApproachSlopeSign) => vec![e.dot(&e), e.dot(&x)],
         Some(Mistake::ParticleParticleApproachSlopeTwice) => vec![-2.0 * e.dot(&e), e.dot(&x)],
@@ -99,7 +108,7 @@ fn approach(student: Student, x: Vec2, d: Vec2, e: Vec2) -> Vec<f64> {
 
 /// From the first centre to the second at time `t`.
 pub fn contact_vector(student: Student, one: &Body, two: &Body, t: f64) -> Vec2 {
-    match student.mistake() {
+    match student.mistake_in(VECTORS) {
         Some(Mistake::ParticleParticleContactAtStart) => two.start - one.start,
         Some(Mistake::ParticleParticleContactAtEnd) => two.end() - one.end(),
         Some(Mistake::ParticleParticleContactReversed) => one.at(t) - two.at(t),

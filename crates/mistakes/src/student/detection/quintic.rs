@@ -1,11 +1,17 @@
 //! The approach of a particle and an edge: the quintic that the course supplies, and what becomes of it.
 use super::{Body, factorised};
-use crate::student::catalogue::{Mistake, Student};
+use crate::student::{
+    author::Student,
+    catalogue::{Area, Mistake},
+};
+
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::ParticleEdge];
 
 /// The quintic, or what this student puts in its place.
 pub fn approach(student: Student, bodies: &[Body; 3]) -> Vec<f64> {
     let supplied = || supplied(student, bodies);
-    match student.mistake() {
+    match student.mistake_in(HERE) {
         Some(Mistake::QuinticConstantAlpha) => constant_alpha(bodies),
         Some(Mistake::QuinticNegated) => supplied().iter().map(|coefficient| -coefficient).collect(),
         Some(Mistake::QuinticMissing) => vec![1.0],

@@ -1,0 +1,45 @@
+//! Whether a mistake would be seen on a scene: where a program was right all the same, it does not make it.
+use super::{
+    candidates::resimulate,
+    capture::Capture,
+    compare::{ROUND_OFF, first_difference, same_polynomial},
+};
+use crate::student::{StepLog, Student, World, find};
+use fosssim_model::{
+    scene::Scene,
+    sim::{RootSearch, Simulation},
+};
+use std::cell::Cell;
+
+/// Polynomials that may be computed; about a microsecond each.
+const WORK: u64 = 200_000;
+/// What a step costs besides its polynomials, in polynomials.
+const STEP_WORK: u64 = 10;
+
+/// Whether a program that makes this mistake of the catalogue logs something wrong on this scene. False also where looking for
+/// it would take too long.
+#[must_use]
+pub fn shows(scene: &Scene, key: &str) -> bool {
+    let Some(row) = find(key) else { return false };
+    let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut capture = Capture::new(&scene.collision);
+    let work = Cell::new(0);
+    for _ in 0..scene.steps() {
+        let before = simulation.state().clone();
+        if work.get() > WORK || simulation.step(&mut capture).is_err() {
+            return false;
+        }
+        let expected = &capture.records.end.polynomials;
+        work.set(work.get() + STEP_WORK + expected.len() as u64);
+        let guard = |index: usize, coefficients: &[f64]| {
+            work.set(work.get() + 1);
+            index < expected.len() && same_polynomial(coefficients, expected.get(index), &ROUND_OFF)
+        };
+        let records = resimulate(&world, &before, StepLog { guard: Some(&guard), ..StepLog::default() });
+        if records.is_none_or(|records| first_difference(&capture.records, &records, &ROUND_OFF).is_some()) {
+            return true;
+        }
+    }
+    false
+}

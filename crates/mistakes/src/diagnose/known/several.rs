@@ -1,0 +1,260 @@
+//! Several mistakes at once: stages that are still empty, and rows that are added one by one.
+//!
+//! A row is worth adding when it carries the simulation of the wrong steps further before it parts from what was logged.
+//! Only a set that reproduces everything, right steps included, and of which no row can be left out, explains anything.
+use super::{
+    candidates::{Correct, resimulate},
+    compare::{Difference, ROUND_OFF, first_difference, same_polynomial},
+    plausibility,
+    scan::{Sample, Scan},
+};
+use crate::student::{Area, CATALOGUE, Kind, Mistake, Object, Row, StepLog, Student, World};
+use fosssim_model::scene::{Collision, Scene};
+use std::{cell::Cell, collections::BTreeSet};
+
+/// Besides empty stages, so many mistakes are looked for.
+const MOST: usize = 3;
+/// Wrong steps on which rows are compared, one of each sort.
+const PROBES: usize = 8;
+/// Polynomials that may be computed in all; about a microsecond each.
+const WORK: u64 = 700_000;
+/// What a step costs besides its polynomials, in polynomials.
+const STEP_WORK: u64 = 10;
+
+/// Rows that reproduce a trace together.
+pub(super) struct Several {
+    /// The rows: empty stages first, then in the order in which they were found.
+    pub(super) rows: Vec<&'static Row>,
+    /// Rows that are as good as the last one.
+    pub(super) same_as: Vec<&'static Row>,
+    /// The wrong steps that were tried, all of them reproduced.
+    pub(super) samples: u64,
+}
+
+/// The set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
+pub(super) fn several(scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
+    let search = Search::new(scene, scan, correct);
+    search.starts().into_iter().find_map(|start| search.from(start))
+}
+
+/// Whether a row is work that was not done at all.
+pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
+    plausibility(row) == 0
+}
+
+struct Search<'a> {
+    scene: &'a Scene,
+    correct: Correct,
+    wrong: Vec<&'a Sample>,
+    probes: Vec<&'a Sample>,
+    right: Vec<&'a Sample>,
+    work: Cell<u64>,
+}
+
+impl<'a> Search<'a> {
+    fn new(scene: &'a Scene, scan: &'a Scan, correct: Correct) -> Self {
+        let mut signatures = BTreeSet::new();
+        // The first divergence has to be reproduced, whatever it is.
+        let is_probe = |sample: &&Sample| signatures.insert(sample.signature);
+        let mut probes: Vec<&Sample> = scan.wrong.iter().filter(is_probe).take(PROBES).collect();
+        probes.sort_by_key(|sample| sample.records.end.polynomials.len());
+        let wrong = scan.wrong.iter().collect();
+        Self { scene, correct, wrong, probes, right: scan.right.iter().collect(), work: Cell::new(0) }
+    }
+
+    fn world(&self, rows: &[&'static Row]) -> World {
+        let student: Student = rows.iter().fold(self.correct.with(None), |student, row| student.and(Some(row.mistake)));
+        World::new(self.scene.clone(), student)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a handful")]
+    fn goal(&self) -> f64 {
+        self.probes.len() as f64 - 1e-9
+    }
+
+    fn progress(&self, rows: &[&'static Row]) -> f64 {
+        let world = self.world(rows);
+        let logs_wrongly = rows.iter().any(|row| row.area == Area::Trace);
+        self.probes.iter().map(|sample| self.reached(&world, logs_wrongly, sample)).sum()
+    }
+
+    /// How far the program's step is what was logged: 1 is all the way, polynomials are the first half.
+    #[expect(clippy::cast_precision_loss, reason = "a share")]
+    fn reached(&self, world: &World, logs_wrongly: bool, sample: &Sample) -> f64 {
+        let logged = &sample.records.end.polynomials;
+        let (asked, failed) = (Cell::new(STEP_WORK), Cell::new(None));
+        let guard = |index: usize, coefficients: &[f64]| {
+            asked.set(asked.get() + 1);
+            let goes_on =
+                index < logged.len() && (logs_wrongly || same_polynomial(coefficients, logged.get(index), &ROUND_OFF));
+            if !goes_on && failed.get().is_none() {
+                failed.set(Some(index));
+            }
+            goes_on
+        };
+        let records = resimulate(world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
+        self.work.set(self.work.get() + asked.get());
+        let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
+        let Some(records) = records else { return failed.get().map_or(0.0, share) };
+        match first_difference(&records, &sample.records, &ROUND_OFF) {
+            None => 1.0,
+            Some(Difference::Polynomial(index)) => share(index),
+            Some(Difference::PolynomialCount) => share(records.end.polynomials.len().min(logged.len())),
+            Some(Difference::MidState(_)) => 0.6,
+            Some(Difference::Impulses) => 0.7,
+            Some(Difference::EndState(_)) => 0.8,
+            Some(Difference::MidLists) => 0.9,
+        }
+    }
+
+    /// Adds rows to a set of empty stages until it reproduces everything.
+    fn from(&self, mut set: Vec<&'static Row>) -> Option<Several> {
+        let mut alike = Vec::new();
+        let mut best = self.progress(&set);
+        while best < self.goal() && set.iter().filter(|row| !is_empty_stage(row)).count() < MOST {
+            let (row, progress, others) = self.next(&set, best)?;
+            set.push(row);
+            (best, alike) = (progress, others);
+        }
+        if set.len() < 2 || best < self.goal() || !self.is_needed(&set) {
+            return None;
+        }
+        let samples = self.confirmed(&set)?;
+        let is_variant = |row: &&'static Row| row.kind == Kind::Variant;
+        if set.iter().chain(&alike).any(is_variant) {
+            return None;
+        }
+        let same_as = if set.last().is_some_and(|last| is_empty_stage(last)) { Vec::new() } else { alike };
+        Some(Several { rows: set, same_as, samples })
+    }
+
+    /// Sets of empty stages to begin with: the one that carries furthest, and those detections without which the numbers of
+    /// polynomials are those of whole passes, should another mistake hide it.
+    fn starts(&self) -> Vec<Vec<&'static Row>> {
+        let mut starts = vec![self.empty_stages()];
+        let counts: Vec<usize> = self.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();
+        let fits =
+            |pass: usize| counts.iter().all(|&count| if pass == 0 { count == 0 } else { count.is_multiple_of(pass) });
+        let sizes = self.sizes();
+        let all: usize = sizes.iter().map(|(_, size)| size).sum();
+        if fits(all) {
+            return starts;
+        }
+        let mut sets: Vec<Vec<&'static Row>> = Vec::new();
+        for bits in 1..1_u32 << sizes.len() {
+            let empty = |index: &usize| bits >> index & 1 == 1;
+            let left: usize = (0..sizes.len()).filter(|index| !empty(index)).map(|index| sizes[index].1).sum();
+            if fits(left) {
+                sets.push((0..sizes.len()).filter(empty).map(|index| sizes[index].0).collect());
+            }
+        }
+        sets.sort_by_key(Vec::len);
+        starts.extend(sets.into_iter().take(MOST));
+        starts
+    }
+
+    /// The detections that the scene asks for when they are left empty, and how many polynomials a pass of each logs.
+    fn sizes(&self) -> Vec<(&'static Row, usize)> {
+        let world = self.world(&[]);
+        let of = |row: &'static Row| {
+            let size = |object: &Object| match (row.mistake, object) {
+                (Mistake::ParticleParticleEmpty, Object::Particle(_))
+                | (Mistake::HalfPlaneEmpty, Object::HalfPlane(_)) => 2,
+                (Mistake::ParticleEdgeEmpty, Object::Edge(_)) => 4,
+                _ => 0,
+            };
+            (row, world.pairs.iter().map(|pair| size(&pair.object)).sum())
+        };
+        self.stages().into_iter().map(of).filter(|(_, size)| *size > 0).collect()
+    }
+
+    /// The smallest set of stages whose emptiness carries furthest; nothing where none does.
+    fn empty_stages(&self) -> Vec<&'static Row> {
+        let rows = self.stages();
+        let mut sets: Vec<Vec<&'static Row>> = (0..1_u32 << rows.len())
+            .map(|bits| (0..rows.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| rows[bit]).collect())
+            .collect();
+        // Of the loop one reading is enough, and nobody sees a failsafe that is never called.
+        sets.retain(|set: &Vec<&Row>| {
+            let has = |mistake| set.iter().any(|row| row.mistake == mistake);
+            !(has(Mistake::ImpulsesEmpty) && has(Mistake::ImpulsesEmptySuccess))
+                && !(has(Mistake::GeometricEmpty) && has(Mistake::FailsafeEmpty))
+        });
+        sets.sort_by_key(Vec::len);
+        let mut best = (self.progress(&[]), Vec::new());
+        for set in sets.into_iter().skip(1) {
+            if self.work.get() > WORK / 2 {
+                break;
+            }
+            let progress = self.progress(&set);
+            if progress > best.0 + 1e-9 {
+                best = (progress, set);
+            }
+        }
+        best.1
+    }
+
+    /// The rows of empty stages that the scene can show.
+    fn stages(&self) -> Vec<&'static Row> {
+        let Scene { particles, edges, half_planes, collision, .. } = self.scene;
+        let is_hybrid = matches!(collision, Collision::Hybrid { .. });
+        let can_show = |row: &&Row| match row.mistake {
+            Mistake::ParticleParticleEmpty => particles.len() > 1,
+            Mistake::ParticleEdgeEmpty => !edges.is_empty() && particles.len() > 2,
+            Mistake::HalfPlaneEmpty => !half_planes.is_empty(),
+            _ => is_hybrid && is_empty_stage(row),
+        };
+        CATALOGUE.iter().filter(can_show).collect()
+    }
+
+    /// The row that carries the set furthest beyond `reached`, how far, and those that do as well.
+    fn next(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
+        let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
+        let rows = CATALOGUE.iter().filter(|row| {
+            row.kind != Kind::Hostile
+                && !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid)
+                && set.iter().all(|other| other.mistake != row.mistake)
+        });
+        for row in rows {
+            if self.work.get() > WORK {
+                return None;
+            }
+            let with: Vec<&Row> = set.iter().copied().chain([row]).collect();
+            let progress = self.progress(&with);
+            if progress > best.0 + 1e-9 {
+                best = (progress, vec![row]);
+            } else if (progress - best.0).abs() <= 1e-9 && !best.1.is_empty() {
+                best.1.push(row);
+            }
+        }
+        let (progress, mut rows) = best;
+        rows.sort_by_key(|row| plausibility(row));
+        (!rows.is_empty()).then(|| (rows[0], progress, rows[1..].to_vec()))
+    }
+
+    /// Whether no row can be left out.
+    fn is_needed(&self, set: &[&'static Row]) -> bool {
+        (0..set.len()).all(|index| {
+            let without: Vec<&Row> =
+                set.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, row)| *row).collect();
+            self.progress(&without) < self.goal()
+        })
+    }
+
+    /// How many wrong steps the set reproduces, if that is all of them and all right ones, as far as there is time.
+    fn confirmed(&self, set: &[&'static Row]) -> Option<u64> {
+        let world = self.world(set);
+        let logs_wrongly = set.iter().any(|row| row.area == Area::Trace);
+        let mut samples = 0;
+        for sample in self.right.iter().chain(&self.wrong) {
+            if self.work.get() > 2 * WORK && samples > 0 {
+                break;
+            }
+            if self.reached(&world, logs_wrongly, sample) < 1.0 {
+                return None;
+            }
+            samples += u64::from(sample.difference.is_some());
+        }
+        (samples > 0).then_some(samples)
+    }
+}

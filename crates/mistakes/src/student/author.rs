@@ -1,0 +1,67 @@
+//! Who wrote a program: the mistakes that are made in it.
+use super::catalogue::{Area, Mistake};
+
+/// So many mistakes one student makes at most.
+const MOST: usize = 8;
+
+/// The program's author: makes one mistake, none, or several of different parts of the assignment.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Student {
+    mistakes: [Option<Mistake>; MOST],
+    right_approach: bool,
+}
+
+impl Student {
+    /// A student who makes this mistake.
+    pub fn new(mistake: Option<Mistake>) -> Self {
+        Self::default().and(mistake)
+    }
+
+    /// The same student, who makes this mistake, too. Of two mistakes in one formula or rule only the first is made.
+    #[must_use]
+    pub fn and(mut self, mistake: Option<Mistake>) -> Self {
+        if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
+            *free = mistake;
+        }
+        self
+    }
+
+    /// Whether the student makes this mistake.
+    pub fn makes(self, mistake: Mistake) -> bool {
+        self.mistakes.contains(&Some(mistake))
+    }
+
+    /// The mistake of these parts of the assignment, where many are told apart in one place; the first part that has one
+    /// counts.
+    pub fn mistake_in(self, areas: &[Area]) -> Option<Mistake> {
+        areas.iter().find_map(|area| self.mistakes.into_iter().flatten().find(|mistake| mistake.area() == *area))
+    }
+
+    /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too, and
+    /// independent of the mistake.
+    #[must_use]
+    pub fn with_right_approach(self) -> Self {
+        Self { right_approach: true, ..self }
+    }
+
+    /// Whether the particle-edge approach is mathematically right, not the supplied one.
+    #[must_use]
+    pub fn approach_is_right(self) -> bool {
+        self.right_approach || self.makes(Mistake::QuinticRightRearranged)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn several_mistakes_are_made_each_in_its_place() {
+        let student = Student::new(Some(Mistake::ParticleParticleNoTwo)).and(Some(Mistake::ResponseSign)).and(None);
+        assert!(student.makes(Mistake::ParticleParticleNoTwo) && student.makes(Mistake::ResponseSign));
+        assert!(!student.makes(Mistake::ParticleParticleEmpty));
+        assert_eq!(student.mistake_in(&[Area::Response]), Some(Mistake::ResponseSign));
+        assert_eq!(student.mistake_in(&[Area::Handover, Area::ParticleParticle]), Some(Mistake::ParticleParticleNoTwo));
+        assert_eq!(student.mistake_in(&[Area::Failsafe]), None);
+    }
+}
