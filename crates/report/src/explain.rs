@@ -18,9 +18,18 @@ pub fn lines(explanations: &[Explanation]) -> Vec<String> {
     explanations.iter().flat_map(of_one).collect()
 }
 
-/// The sentence about the likeliest mistake, for formats with room for one line.
+/// The sentence about the likeliest mistake, or about those that explain everything together, for formats with room for one
+/// line.
 #[must_use]
 pub fn sentence(explanations: &[Explanation]) -> Option<String> {
+    let together: Vec<&str> = explanations
+        .iter()
+        .filter(|one| one.is_complete() && find(&one.key).is_some())
+        .map(|one| one.what.as_str())
+        .collect();
+    if together.len() > 1 {
+        return Some(format!("likely mistakes: {}", together.join(" ")));
+    }
     explanations.first().map(|explanation| match explanation.reproduced {
         0 => explanation.what.clone(),
         _ => format!("likely mistake: {}", explanation.what),
@@ -207,6 +216,12 @@ pub(crate) mod tests {
             Some("Nothing that is known explains the overlap polynomial.")
         );
         assert_eq!((lines(&[]), sentence(&[])), (Vec::new(), None));
+        let known = |key: &str, what: &str| {
+            let (key, what) = (key.to_owned(), what.to_owned());
+            Explanation { key, what, reproduced: 5, samples: 5, ..explanations().swap_remove(0) }
+        };
+        let both = [known("pp-no-two", "One."), known("response-sign", "Two.")];
+        assert_eq!(sentence(&both).as_deref(), Some("likely mistakes: One. Two."));
     }
 
     #[test]
