@@ -31,6 +31,8 @@ pub struct Grade {
     pub layers: Vec<String>,
     /// Wall time of all runs together, those taken from an earlier grading included.
     pub wall: Duration,
+    /// Keys of mistakes that accepted scenes speak against ([`diagnose::refuted`](fosssim_mistakes::diagnose::refuted)).
+    pub refuted: Vec<String>,
 }
 
 impl Grade {
@@ -100,7 +102,7 @@ impl Grade {
     /// then of what is left the one that explains most of it, provided that it explains it completely ([`several`]).
     #[must_use]
     pub fn likely_mistakes(&self) -> Vec<(Explanation, usize)> {
-        several(self.scenes().map(|scene| scene.explanations.as_slice()), &[])
+        several(self.scenes().map(|scene| scene.explanations.as_slice()), &self.refuted)
             .into_iter()
             .filter(|likely| likely.reproduced > 0)
             .map(|likely| (likely.clone(), self.explained_by(&likely)))

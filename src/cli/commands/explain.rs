@@ -128,18 +128,12 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
 
 /// The likely mistakes of the wrong traces together, without those that right traces of the same program speak against.
 fn settled(cases: &[Case], tasks: &[SceneTask]) -> Vec<Explanation> {
-    let wrong = || cases.iter().filter(|case| !case.accepted).map(|case| case.explanations.as_slice());
+    let wrong: Vec<&[Explanation]> =
+        cases.iter().filter(|case| !case.accepted).map(|case| case.explanations.as_slice()).collect();
     let right: Vec<&Scene> =
         cases.iter().zip(tasks).filter(|(case, _)| case.accepted).map(|(_, task)| &task.scene).collect();
-    let mut refuted: Vec<String> = Vec::new();
-    loop {
-        let likely = diagnose::several(wrong(), &refuted);
-        let speaks_against = |one: &&Explanation| right.iter().any(|scene| diagnose::shows(scene, &one.key));
-        match likely.iter().find(speaks_against) {
-            Some(one) => refuted.push(one.key.clone()),
-            None => return likely,
-        }
-    }
+    let refuted = diagnose::refuted(&wrong, &right);
+    diagnose::several(wrong, &refuted)
 }
 
 fn tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {

@@ -6,7 +6,7 @@
 use super::{
     config::Visibility,
     execute::{Cancellation, Runner, SceneTask},
-    grade::{Build, Grade, SceneResult},
+    grade::{Build, Grade, GroupGrade, SceneResult},
     guard::{Fault, guarded},
     journal::{Journal, JournalError, Key},
     patience,
@@ -17,6 +17,8 @@ use super::{
     verdict::Verdict,
 };
 use fosssim_judge::Rules;
+use fosssim_mistakes::diagnose::{self, Explanation};
+use fosssim_model::scene::Scene;
 use fosssim_sandbox::Backend;
 use std::{
     collections::BTreeMap,
@@ -30,6 +32,9 @@ use std::{
 use work::{Work, called};
 
 mod work;
+
+/// So many accepted scenes are asked whether they speak against a likely mistake.
+const WITNESSES: usize = 12;
 
 /// What is graded.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -364,6 +369,7 @@ impl Batch<'_> {
             .iter()
             .map(|group| score::group(&group.name, group.stakes, results.by_ref().take(group.scenes.len()).collect()))
             .collect();
+        let refuted = self.refuted(&groups);
         let active = self.backend.layers().iter().filter(|report| report.active);
         Grade {
             submission: submission.name.clone(),
@@ -378,7 +384,27 @@ impl Batch<'_> {
             warnings: self.backend.weaknesses(),
             layers: active.map(|report| report.layer.name().to_owned()).collect(),
             wall,
+            refuted,
         }
+    }
+
+    /// Likely mistakes that accepted scenes speak against; the smallest of these are asked.
+    fn refuted(&self, groups: &[GroupGrade]) -> Vec<String> {
+        let graded = || groups.iter().flat_map(|group| &group.scenes).zip(self.plan.scenes());
+        let wrong: Vec<&[Explanation]> = graded()
+            .map(|(graded, _)| graded.explanations.as_slice())
+            .filter(|explanations| !explanations.is_empty())
+            .collect();
+        if wrong.len() < 2 {
+            return Vec::new();
+        }
+        let mut right: Vec<&Scene> = graded()
+            .filter(|(graded, _)| graded.verdict == Verdict::Accepted && graded.differs.is_none())
+            .map(|(_, task)| &task.scene)
+            .collect();
+        right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
+        right.truncate(WITNESSES);
+        diagnose::refuted(&wrong, &right)
     }
 }
 

@@ -1,5 +1,9 @@
 //! Puts the explanations of a trace together.
-use super::{Explanation, known, known::is_empty_stage, polynomial, samples};
+use super::{
+    Explanation, known,
+    known::{is_empty_stage, shows},
+    polynomial, samples,
+};
 use crate::{
     plain::formula_in,
     student::{Area, CATALOGUE, Mistake, Row, find},
@@ -140,6 +144,24 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         }
     }
     found
+}
+
+/// Keys of mistakes that [`several`] would tell and that these scenes speak against: the program was right there, and with the
+/// mistake it would not have been ([`shows`]).
+#[must_use]
+pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
+    let mut refuted: Vec<String> = Vec::new();
+    loop {
+        let likely = several(traces.iter().copied(), &refuted);
+        let speaks_against = |one: &&Explanation| {
+            let is_new = !refuted.contains(&one.key);
+            is_new && right.iter().any(|scene| shows(scene, &one.key))
+        };
+        match likely.iter().find(speaks_against) {
+            Some(one) => refuted.push(one.key.clone()),
+            None => return refuted,
+        }
+    }
 }
 
 /// So many mistakes of a program are told.

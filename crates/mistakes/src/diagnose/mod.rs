@@ -14,7 +14,7 @@ mod probe;
 mod samples;
 
 pub use crate::plain::formula_in;
-pub use explain::{common, explain, several};
+pub use explain::{common, explain, refuted, several};
 pub use explanation::{Example, ExampleValue, Explanation};
 pub use known::{known, shows};
 pub use probe::probe_scenes;

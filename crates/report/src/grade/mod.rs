@@ -194,6 +194,7 @@ pub fn rehearse(result: &SceneResult) {
         points: group.points,
         max_points: group.max_points,
         groups: vec![group],
+        refuted: Vec::new(),
         shows_output: true,
         build: None,
         warnings: Vec::new(),
