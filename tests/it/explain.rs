@@ -4,10 +4,10 @@ use super::{
     workspace::Workspace,
 };
 use fosssim_oracle::{
-    diagnose::{Explanation, common, explain, formula_in, known, several},
+    diagnose::{Explanation, common, explain, formula_in, known},
     judge::{fair::Verdict, parity},
     scene::Scene,
-    student::{self, Area, KNOWN_ACCUSED, Kind, Row, Student},
+    student::{self, KNOWN_ACCUSED, Kind, Row},
 };
 use fosssim_testing::{Need, skip};
 use rayon::prelude::*;
@@ -72,94 +72,6 @@ fn nine_of_ten_mistakes_are_named_first() {
     let confused: Vec<&String> = named.iter().flatten().collect();
     eprintln!("{} of {} mistakes named first; the others:\n{confused:#?}", rows.len() - confused.len(), rows.len());
     assert!(10 * confused.len() <= rows.len(), "{confused:#?}");
-}
-
-/// What is said of a program that makes several mistakes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Said {
-    /// All of them, and nothing else.
-    All,
-    /// Some of them, and nothing else.
-    Some,
-    /// That nothing is known.
-    Nothing,
-    /// Something that the program does not do.
-    Wrong,
-}
-
-/// Programs with two or three mistakes of different parts of the assignment, every tenth of a long list.
-fn programs() -> Vec<Vec<&'static Row>> {
-    let rows: Vec<&Row> = rows(Kind::Wrong).into_iter().filter(|row| row.area != Area::Trace).collect();
-    let mut programs = Vec::new();
-    for number in 0..48_usize {
-        let one = rows[(number * 37) % rows.len()];
-        let two = rows[(number * 101 + 13) % rows.len()];
-        let three = rows[(number * 53 + 7) % rows.len()];
-        let mut program = vec![one];
-        for row in [two, three].into_iter().take(if number % 4 == 3 { 2 } else { 1 }) {
-            if program.iter().all(|other| other.area != row.area) {
-                program.push(row);
-            }
-        }
-        if program.len() > 1 {
-            programs.push(program);
-        }
-    }
-    programs
-}
-
-fn said_of(scenes: &[(String, Scene)], program: &[&Row]) -> (Said, String) {
-    let student = program.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
-    let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
-    let mut explained: Vec<Vec<Explanation>> = Vec::new();
-    for (_, scene) in scenes {
-        let trace = student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes);
-        let fair = parity::judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
-        if fair.verdict == Verdict::Rejected {
-            explained.push(explain(scene, &trace));
-        }
-    }
-    let told = several(explained.iter().map(Vec::as_slice), &[]);
-    let keys: Vec<String> =
-        told.iter().flat_map(|one| std::iter::once(&one.key).chain(&one.same_as)).cloned().collect();
-    let is_made = |one: &Explanation| match student::find(&one.key) {
-        Some(_) => program.iter().any(|row| row.id == one.key || one.same_as.iter().any(|id| id == row.id)),
-        None if one.key == Explanation::UNFINISHED => {
-            one.same_as.iter().all(|id| program.iter().any(|row| row.id == id))
-        }
-        // What is said of polynomials in general.
-        None => program.iter().any(|row| {
-            let place = row.place();
-            matches!(row.area, Area::Handover) || one.what.contains(place) || one.what.contains(&place.to_lowercase())
-        }),
-    };
-    let named = program.iter().filter(|row| keys.iter().any(|key| key == row.id)).count();
-    let said = match () {
-        () if told.is_empty() => Said::Nothing,
-        () if !told.iter().all(is_made) => Said::Wrong,
-        () if named == program.len() => Said::All,
-        () => Said::Some,
-    };
-    let ids: Vec<&str> = program.iter().map(|row| row.id).collect();
-    (said, format!("{ids:?}: {said:?}: {:?}", told.iter().map(|one| (&one.key, &one.same_as)).collect::<Vec<_>>()))
-}
-
-#[test]
-fn several_mistakes_at_once_are_named_and_no_other() {
-    let scenes: Vec<(String, Scene)> = suite().into_iter().step_by(2).collect();
-    let said: Vec<(Said, String)> = programs().par_iter().map(|program| said_of(&scenes, program)).collect();
-    let count = |what: Said| said.iter().filter(|(said, _)| *said == what).count();
-    let lines: Vec<&String> = said.iter().filter(|(said, _)| *said != Said::All).map(|(_, line)| line).collect();
-    eprintln!(
-        "{} all, {} some, {} nothing, {} wrong of {}:\n{lines:#?}",
-        count(Said::All),
-        count(Said::Some),
-        count(Said::Nothing),
-        count(Said::Wrong),
-        said.len()
-    );
-    assert_eq!(count(Said::Wrong), 0, "{lines:#?}");
-    assert!(10 * (count(Said::All) + count(Said::Some)) >= 8 * said.len(), "{lines:#?}");
 }
 
 /// No correct variant is accused of anything: the fair rules accept it, and nobody asks. Where one is asked about all the

@@ -280,7 +280,7 @@ impl<'a> Count<'a> {
             return (logged == 0).then_some(self.passes);
         }
         let per_pass = self.polynomials / passes;
-        (logged % per_pass == 0).then(|| u32::try_from(logged / per_pass).unwrap_or(u32::MAX))
+        logged.is_multiple_of(per_pass).then(|| u32::try_from(logged / per_pass).unwrap_or(u32::MAX))
     }
 }
 

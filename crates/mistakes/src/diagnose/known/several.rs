@@ -177,8 +177,9 @@ impl<'a> Search<'a> {
         // Of the loop one reading is enough, and nobody sees a failsafe that is never called.
         sets.retain(|set: &Vec<&Row>| {
             let has = |mistake| set.iter().any(|row| row.mistake == mistake);
-            !(has(Mistake::ImpulsesEmpty) && has(Mistake::ImpulsesEmptySuccess))
-                && !(has(Mistake::GeometricEmpty) && has(Mistake::FailsafeEmpty))
+            let loops = has(Mistake::ImpulsesEmpty) && has(Mistake::ImpulsesEmptySuccess);
+            let unseen = has(Mistake::GeometricEmpty) && has(Mistake::FailsafeEmpty);
+            !loops && !unseen
         });
         sets.sort_by_key(Vec::len);
         let mut best = (self.progress(&[]), Vec::new());

@@ -170,6 +170,16 @@ fn half_done_work_with_a_mistake_has_both() {
     are_named(&scene(), &["ph-empty", "response-sign"]);
 }
 
+/// Programs are made of any two rows: none of them may bring the search down.
+#[test]
+fn an_empty_detection_goes_with_every_other_mistake() {
+    for row in student::CATALOGUE.iter().filter(|row| row.kind != student::Kind::Hostile) {
+        for empty in ["pp-empty", "pe-empty", "ph-empty"] {
+            let _trace = made(&scene(), &[empty, row.id]);
+        }
+    }
+}
+
 #[test]
 fn several_mistakes_are_named_together() {
     for ids in [

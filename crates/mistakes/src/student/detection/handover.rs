@@ -13,6 +13,10 @@ const HERE: &[Area] = &[Area::Handover];
 
 /// Hands the polynomials of one pair over: as they are, or as this student does.
 pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
+    // A detection that was left empty hands nothing over, whatever else the student gets wrong.
+    if lists.is_empty() {
+        return Vec::new();
+    }
     if let Some(factor) = factor(student, object) {
         lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= factor);
     }
