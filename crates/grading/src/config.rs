@@ -256,8 +256,7 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
 
 /// A suite and everything that is wrong with it, in order: what is wrong is left out or has its default.
 pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
-    let (table, problems) = shape::checked(text);
-    let is_syntax_right = !table.get_ref().is_empty() || problems.is_empty();
+    let (table, problems, is_readable) = shape::checked(text);
     let place = |(span, text_of): (Range<usize>, String)| (Position::of(text, span.start), text_of);
     let mut checker = Checker { text, problems: problems.into_iter().map(place).collect() };
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
@@ -277,7 +276,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let patience = read_patience(&mut checker, &raw_limits);
     let build = raw.build.map(|build| read_build(&mut checker, build));
     let is_without_groups = raw.group.as_ref().is_none_or(Vec::is_empty);
-    if is_without_groups && is_syntax_right {
+    if is_without_groups && is_readable {
         checker.problem(0..0, "the suite has no [[group]], so there is nothing to grade".to_owned());
     }
     let groups = raw.group.unwrap_or_default().into_iter();

@@ -71,18 +71,19 @@ const SUITE: &[Key] = &[
 const PLACES: [(&str, &[Key]); 4] =
     [("[limits]", LIMITS), ("[build]", BUILD), ("a [[group]]", GROUP), ("the top of the file", SUITE)];
 
-/// The table without what is wrong with it, and all that is.
-pub(super) fn checked(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>) {
+/// The table without what is wrong with it, all that is, and whether every line could be read.
+pub(super) fn checked(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) {
     let (mut table, errors) = DeTable::parse_recoverable(text);
     let mut problems: Vec<Problem> =
         errors.iter().map(|error| (error.span().unwrap_or(0..0), error.message().trim().replace('\n', " "))).collect();
-    if problems.is_empty() {
+    let is_readable = problems.is_empty();
+    if is_readable {
         clean(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
     } else {
         // What a broken line was meant to be nobody knows.
         table.get_mut().clear();
     }
-    (table, problems)
+    (table, problems, is_readable)
 }
 
 /// Takes out of a table what does not belong there.
@@ -204,10 +205,17 @@ fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<
     let near = candidates.filter_map(|candidate| {
         let known = plain(candidate);
         let begins = typed.len() >= 3 && (known.starts_with(&typed) || typed.starts_with(&known));
-        let slips = if begins && known != typed { 1 } else { distance(&typed, &known) };
+        let swapped = sorted(&typed) == sorted(&known);
+        let slips = if (begins || swapped) && known != typed { 1 } else { distance(&typed, &known) };
         (slips <= (typed.len().max(known.len()) / 3).min(2)).then_some((slips, candidate))
     });
     near.min_by_key(|(slips, _)| *slips).map(|(_, candidate)| candidate)
+}
+
+fn sorted(letters: &[char]) -> Vec<char> {
+    let mut letters = letters.to_vec();
+    letters.sort_unstable();
+    letters
 }
 
 /// Letters to insert, remove or replace.
