@@ -66,6 +66,18 @@ fn namespaces_hold_the_promises_where_there_is_no_landlock() {
 }
 
 #[test]
+fn older_kernels_with_the_first_landlock_hold_the_promises_too() {
+    let Some(backend) = backend() else { return };
+    let backend = backend.without(Layer::Namespaces).and_then(|backend| backend.with_landlock(1));
+    let backend = match backend {
+        Ok(backend) => backend,
+        Err(error) => return skip(Need::Walls, error),
+    };
+    let Some(table) = attacked(&backend) else { return };
+    assert_all_held(&table, 190);
+}
+
+#[test]
 fn hosts_without_namespaces_and_control_groups_hold_the_promises_too() {
     let Some(backend) = backend() else { return };
     let backend = backend.without(Layer::Namespaces).and_then(|backend| backend.without(Layer::ControlGroup));

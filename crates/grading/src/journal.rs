@@ -89,12 +89,18 @@ impl Journal {
             let path = path.to_owned();
             move |source| JournalError::Io { path, source }
         };
+        let path = folder.join("journal.jsonl");
+        for path in [&lock_path, &path] {
+            // A link would have another file of ours cut and written to.
+            if path.is_symlink() {
+                return Err(at(path)(io::Error::other("it is a link, which is not followed: remove it")));
+            }
+        }
         let lock = OpenOptions::new().create(true).append(true).open(&lock_path).map_err(at(&lock_path))?;
         lock.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => JournalError::Locked { folder: folder.to_owned() },
             std::fs::TryLockError::Error(source) => JournalError::Io { path: lock_path.clone(), source },
         })?;
-        let path = folder.join("journal.jsonl");
         let mut file =
             OpenOptions::new().create(true).read(true).write(true).truncate(false).open(&path).map_err(at(&path))?;
         let mut found = BTreeMap::new();
@@ -271,6 +277,20 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let _first = Journal::open(folder.path(), false).expect("journal");
         assert!(matches!(Journal::open(folder.path(), false), Err(JournalError::Locked { .. })));
+    }
+
+    #[test]
+    fn a_journal_that_is_a_link_is_not_followed() {
+        let folder = tempfile::tempdir().expect("folder");
+        let other = folder.path().join("other");
+        std::fs::write(&other, "something else").expect("a file");
+        for name in ["journal.jsonl", ".lock"] {
+            let output = tempfile::tempdir().expect("folder");
+            std::os::unix::fs::symlink(&other, output.path().join(name)).expect("a link");
+            let refused = Journal::open(output.path(), true).expect_err("it is a link").to_string();
+            assert!(refused.contains(name) && refused.contains("is a link"), "{refused}");
+        }
+        assert_eq!(std::fs::read(&other).expect("a file"), b"something else");
     }
 
     #[test]

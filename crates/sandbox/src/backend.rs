@@ -257,6 +257,24 @@ impl Backend {
         Ok(Self { kind, layers: reports.into() })
     }
 
+    /// The same with the file rules of an older kernel (Landlock's version, from 1 on), to prove that they hold, too.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Backend::without`].
+    pub fn with_landlock(&self, version: u8) -> Result<Self, SandboxError> {
+        let reports = layers::with_landlock(&self.layers, version);
+        let kind = match &self.kind {
+            Kind::Launcher { supervisor, .. } => {
+                let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
+                let walls = Walls { landlock_version: version, ..walls };
+                Kind::Launcher { supervisor: supervisor.clone(), walls }
+            }
+            Kind::Fake(script) => Kind::Fake(script.clone()),
+        };
+        Ok(Self { kind, layers: reports.into() })
+    }
+
     /// The same with bubblewrap in place of the grader's own namespaces, to prove that it holds, too. By itself a backend
     /// takes bubblewrap only where the grader cannot make namespaces.
     ///

@@ -73,6 +73,9 @@ impl Layer {
     }
 }
 
+/// The first version of Landlock that confines signals.
+const SCOPES_SINCE: u8 = 6;
+
 /// Whether one wall holds on this host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LayerReport {
@@ -268,6 +271,15 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
     reports
 }
 
+/// The same reports with the file rules of an older kernel.
+pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerReport> {
+    let mut reports = if version < SCOPES_SINCE { without(reports, Layer::Scopes) } else { reports.to_vec() };
+    for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules && report.active) {
+        report.detail = format!("version {version} on request");
+    }
+    reports
+}
+
 /// The same reports with bubblewrap in place of the grader's own namespaces.
 pub(super) fn in_bubblewrap(reports: &[LayerReport]) -> Vec<LayerReport> {
     let mut reports = without(reports, Layer::Namespaces);
@@ -307,6 +319,7 @@ fn active(reports: &[LayerReport]) -> Walls {
     let active = |layer| reports.iter().any(|report| report.layer == layer && report.active);
     Walls {
         landlock: active(Layer::FileRules),
+        landlock_version: 0,
         scopes: active(Layer::Scopes),
         seccomp: active(Layer::CallFilter),
         // A listener belongs to the filter.
@@ -346,6 +359,7 @@ mod tests {
     fn a_healthy_host_has_every_wall_that_it_can_have() {
         let all = Walls {
             landlock: true,
+            landlock_version: 0,
             scopes: true,
             seccomp: true,
             notify: true,

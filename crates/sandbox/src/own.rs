@@ -3,8 +3,12 @@
 //! They hold the answers: the grader computes the original's traces, and the sample is a right submission. Landlock
 //! only ever allows, so that a folder with such a file in it is allowed entry by entry.
 
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// How the name of the sample begins.
 const SAMPLE: &str = "fosssim-sample";
@@ -15,8 +19,19 @@ const FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"
 
 /// Whether the file's name is one of the grader's programs.
 pub(super) fn is_name(path: &Path) -> bool {
-    let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
-    NAMES.iter().any(|own| name.starts_with(own))
+    path.file_name().is_some_and(is_named)
+}
+
+fn is_named(name: &OsStr) -> bool {
+    let begins =
+        |own: &&str| name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()));
+    NAMES.iter().any(|own| begins(&own))
+}
+
+/// The same as [`files`], looked up once: for a supervisor, which lives as long as one run and loses sight of most folders.
+pub(super) fn known() -> &'static [PathBuf] {
+    static KNOWN: OnceLock<Vec<PathBuf>> = OnceLock::new();
+    KNOWN.get_or_init(files)
 }
 
 /// The resolved paths of this very program, of its siblings beside it, and of those that are installed.
@@ -24,8 +39,10 @@ pub(super) fn files() -> Vec<PathBuf> {
     let this = std::fs::read_link("/proc/self/exe").ok();
     let beside = this.as_deref().and_then(Path::parent).map(Path::to_path_buf);
     let installed = FOLDERS.into_iter().map(PathBuf::from).chain(beside);
-    let entries = installed.flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
-    let named = entries.map(|entry| entry.path()).filter(|path| is_name(path));
+    // Some of them are links to others, and large.
+    let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let named = entries.filter(|entry| is_named(&entry.file_name())).map(|entry| entry.path());
     let mut files: Vec<PathBuf> = named.chain(this).filter_map(|path| path.canonicalize().ok()).collect();
     files.sort();
     files.dedup();

@@ -44,6 +44,8 @@ pub(super) fn path(raw: &Raw) -> PathBuf {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Walls {
     pub(super) landlock: bool,
+    /// Rules of an older kernel than ours; 0 for the newest.
+    pub(super) landlock_version: u8,
     pub(super) scopes: bool,
     pub(super) seccomp: bool,
     pub(super) notify: bool,

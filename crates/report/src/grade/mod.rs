@@ -89,7 +89,7 @@ pub use json::line as json_line;
 pub use text::{Advice, Shown, Text, changes, score, table as text_table};
 
 /// Somebody else's words without control characters: escape codes, bells and NULs become visible, line breaks and
-/// tabs stay, characters that XML 1.0 forbids are replaced.
+/// tabs stay, characters that XML 1.0 forbids and those that nobody sees are replaced.
 #[must_use]
 pub fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
@@ -98,8 +98,17 @@ pub fn plain(text: &str) -> String {
             '\n' | '\t' => plain.push(c),
             '\r' => {}
             '\u{fffe}' | '\u{ffff}' => plain.push('\u{fffd}'),
-            // Marks that change the direction of the text could show a report's words in another order.
-            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' => plain.push('\u{fffd}'),
+            // Marks that change the direction of the text could show a report's words in another order, and what has no
+            // width makes two names look alike.
+            '\u{ad}'
+            | '\u{61c}'
+            | '\u{180e}'
+            | '\u{200b}'..='\u{200f}'
+            | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}'
+            | '\u{feff}'
+            | '\u{fff9}'..='\u{fffb}'
+            | '\u{e0000}'..='\u{e007f}' => plain.push('\u{fffd}'),
             c if c.is_control() => plain.push_str(&format!("\\x{:02x}", u32::from(c))),
             c => plain.push(c),
         }
@@ -215,6 +224,9 @@ mod tests {
     #[test]
     fn control_characters_become_visible() {
         assert_eq!(plain("a\u{1b}[31mb\0\u{7}\r\nc\td\u{202e}e"), "a\\x1b[31mb\\x00\\x07\nc\td\u{fffd}e");
+        for hidden in "\u{61c}\u{2069}\u{200b}\u{feff}\u{2028}\u{ad}\u{e0041}".chars() {
+            assert_eq!(plain(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
+        }
         assert_eq!(one_line("a\nb"), "a b");
         assert_eq!((points(10.0), points(2.5), points(0.0)), ("10".into(), "2.5".into(), "0".into()));
     }

@@ -5,7 +5,7 @@
 //! beneath one of that group's parents; no controller is switched on and nobody else is moved. What the supervisor
 //! counts by itself stays the rule, so that a verdict does not depend on the groups of a host.
 //!
-//! Version 2 comes first. Controllers that it lacks are looked for in hierarchies of version 1, which limit and cannot end.
+//! Version 2 comes first. Where it has no controller for memory, version 1 limits memory, but cannot end a run.
 
 use std::ffi::CStr;
 use std::fs::File;
@@ -28,10 +28,8 @@ const SPARE_PROCESSES: u32 = 16;
 enum Kind {
     /// The one of version 2.
     Unified,
-    /// Version 1, memory.
+    /// The memory of version 1.
     Memory,
-    /// Version 1, threads and processes.
-    Processes,
 }
 
 /// A group. It is removed when this is dropped in sight of the host's files, once nobody is in it.
@@ -44,6 +42,8 @@ struct Part {
     kind: Kind,
     path: PathBuf,
     folder: File,
+    /// The limits whose controllers are there.
+    limits: Vec<Limit>,
 }
 
 impl Group {
@@ -58,8 +58,8 @@ impl Group {
         let groups = std::fs::read_to_string("/proc/self/cgroup")?;
         let mut problem = io::Error::other("no control groups are mounted");
         let mut parts: Vec<Part> = Vec::new();
-        for kind in [Kind::Unified, Kind::Memory, Kind::Processes] {
-            if parts.iter().any(|part| part.limits().any(|limit| kind.limits().contains(&limit))) {
+        for kind in [Kind::Unified, Kind::Memory] {
+            if parts.iter().any(|part| part.limits.iter().any(|limit| kind.limits().contains(limit))) {
                 continue;
             }
             match Part::make(kind, &places_in(&mounts, &groups, kind)) {
@@ -80,7 +80,7 @@ impl Group {
     pub(super) fn controls(&self) -> Vec<&'static str> {
         [Limit::Memory, Limit::Processes]
             .into_iter()
-            .filter(|limit| self.parts.iter().any(|part| part.limits().any(|held| held == *limit)))
+            .filter(|limit| self.parts.iter().any(|part| part.limits.contains(limit)))
             .map(Limit::name)
             .collect()
     }
@@ -133,7 +133,6 @@ impl Group {
                     (c"memory.limit_in_bytes", memory.to_string()),
                     (c"memory.memsw.limit_in_bytes", memory.to_string()),
                 ],
-                Kind::Processes => &[(c"pids.max", processes.to_string())],
             };
             for (file, value) in values {
                 match part.open(file, libc::O_WRONLY) {
@@ -170,7 +169,6 @@ impl Kind {
         match self {
             Self::Unified => &[Limit::Memory, Limit::Processes],
             Self::Memory => &[Limit::Memory],
-            Self::Processes => &[Limit::Processes],
         }
     }
 
@@ -188,7 +186,6 @@ impl Kind {
         match self {
             Self::Unified => None,
             Self::Memory => Some("memory"),
-            Self::Processes => Some("pids"),
         }
     }
 }
@@ -200,7 +197,7 @@ impl Part {
         for place in places {
             sweep(place);
             match Self::make_in(kind, place) {
-                Ok(part) if part.limits().count() == kind.limits().len() => return Ok(Some(part)),
+                Ok(part) if part.limits.len() == kind.limits().len() => return Ok(Some(part)),
                 // In version 1 there is nothing to be had without the limit.
                 Ok(part) if weaker.is_none() && kind == Kind::Unified => weaker = Some(part),
                 Ok(_) => {}
@@ -230,19 +227,20 @@ impl Part {
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
         let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
         std::fs::create_dir(&path)?;
-        let part = File::open(&path).map(|folder| Self { kind, path, folder })?;
+        let mut part = File::open(&path).map(|folder| Self { kind, path, folder, limits: Vec::new() })?;
         part.folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
         // Only a group that can be entered and, in version 2, ended is of use.
         if kind == Kind::Unified {
             part.open(c"cgroup.kill", libc::O_WRONLY)?;
         }
         part.entrance()?;
+        part.look_for_limits();
         Ok(part)
     }
 
-    fn limits(&self) -> impl Iterator<Item = Limit> {
+    fn look_for_limits(&mut self) {
         let held = |limit: &&Limit| self.open(self.kind.file(**limit), libc::O_WRONLY).is_ok();
-        self.kind.limits().iter().filter(held).copied()
+        self.limits = self.kind.limits().iter().filter(held).copied().collect();
     }
 
     fn entrance(&self) -> io::Result<File> {
@@ -344,14 +342,14 @@ mod tests {
     }
 
     #[test]
-    fn hierarchies_of_version_1_are_found_by_their_controller() {
+    fn the_memory_of_version_1_is_found_by_its_controller() {
         let mounts = "32 31 0:28 / /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n\
                       33 31 0:29 / /sys/fs/cgroup/memory rw shared:9 - cgroup cgroup rw,memory\n\
                       34 31 0:30 / /sys/fs/cgroup/unified rw - cgroup2 cgroup2 rw\n";
         let groups = "5:memory:/a/b\n4:cpu,cpuacct:/c\n3:pids:/p\n0::/u\n";
         let memory = ["/sys/fs/cgroup/memory/a/b", "/sys/fs/cgroup/memory/a", "/sys/fs/cgroup/memory"];
         assert_eq!(places_in(mounts, groups, Kind::Memory), memory.map(PathBuf::from));
-        assert!(places_in(mounts, groups, Kind::Processes).is_empty(), "not mounted");
+        assert!(places_in(&mounts.replace("memory", "pids"), groups, Kind::Memory).is_empty(), "not mounted");
         assert_eq!(places_in(mounts, groups, Kind::Unified)[0], Path::new("/sys/fs/cgroup/unified/u"));
         assert!(places_in(mounts, "0::/u\n", Kind::Memory).is_empty());
     }
@@ -378,9 +376,9 @@ mod tests {
         let (unified, memory) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         let part = |kind, folder: &tempfile::TempDir| {
             let path = folder.path().to_path_buf();
-            Part { kind, folder: File::open(&path).unwrap(), path }
+            Part { kind, folder: File::open(&path).unwrap(), path, limits: Vec::new() }
         };
-        let group = Group { parts: vec![part(Kind::Unified, &unified), part(Kind::Memory, &memory)] };
+        let mut group = Group { parts: vec![part(Kind::Unified, &unified), part(Kind::Memory, &memory)] };
         let order = Order { memory: 1 << 20, folder_bytes: 1 << 10, processes: 4, ..Order::default() };
         group.set_limits(&order).unwrap();
         assert!(group.controls().is_empty() && !group.was_out_of_memory() && group.cpu().is_zero());
@@ -389,6 +387,7 @@ mod tests {
             std::fs::write(memory.path().join(name), "").unwrap();
         }
         group.set_limits(&order).unwrap();
+        group.parts.iter_mut().for_each(Part::look_for_limits);
         assert_eq!(group.controls(), ["memory", "threads and processes"]);
         let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
         let limit = ((65 << 20) + (1 << 10)).to_string();

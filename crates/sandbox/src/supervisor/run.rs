@@ -422,7 +422,9 @@ impl Run {
         self.peak_memory = self.peak_memory.max(memory);
         self.blame_if(memory > self.order.memory, Cause::Memory);
         self.blame_if(usage.threads > u64::from(self.order.processes), Cause::Processes);
-        let cpu = (usage.cpu + reaped).max(self.group_cpu());
+        // One process's own count is whole; only those that nobody reaps are missing from it.
+        let counted = if self.has_children() { self.group_cpu() } else { Duration::ZERO };
+        let cpu = (usage.cpu + reaped).max(counted);
         self.blame_if(micros(cpu) > self.order.cpu_micros, Cause::Cpu);
         let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
         self.stalled.look(full, Instant::now());

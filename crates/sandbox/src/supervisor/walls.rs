@@ -63,10 +63,11 @@ pub(super) fn readable(order: &Order) -> Vec<PathBuf> {
 pub(super) fn rules(order: &Order, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
     let read = AccessFs::ReadFile | AccessFs::ReadDir;
     let execute = read | AccessFs::Execute;
-    let own = own::files();
-    let mut ruleset = handled(order.walls.scopes)?;
+    let own = own::known();
+    let version = version(order.walls.landlock_version);
+    let mut ruleset = handled(order.walls.scopes, version)?;
     for path in LIBRARIES.iter().chain(&MACHINE) {
-        ruleset = add_around(ruleset, Path::new(path), read, &own)?;
+        ruleset = add_around(ruleset, Path::new(path), read, own)?;
     }
     for path in DEVICES {
         // What is written to shared mappings of /dev/zero would be memory that no counter shows.
@@ -74,20 +75,21 @@ pub(super) fn rules(order: &Order, folder: BorrowedFd<'_>) -> io::Result<Ruleset
         ruleset = add(ruleset, Path::new(path), access | AccessFs::ReadFile)?;
     }
     for raw in &order.readable {
-        ruleset = add_around(ruleset, &wire::path(raw), read, &own)?;
+        ruleset = add_around(ruleset, &wire::path(raw), read, own)?;
     }
     for raw in order.executable.iter().chain([&order.program]) {
         ruleset = add(ruleset, &wire::path(raw), execute)?;
     }
     if order.tools {
         for path in TOOLS {
-            ruleset = add_around(ruleset, Path::new(path), execute, &own)?;
+            ruleset = add_around(ruleset, Path::new(path), execute, own)?;
         }
         for path in SETTINGS {
             ruleset = add(ruleset, Path::new(path), read)?;
         }
     }
-    ruleset.add_rule(PathBeneath::new(folder, in_folder(order.tools))).map_err(refused)
+    let inside = in_folder(order.tools) & AccessFs::from_all(version);
+    ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(refused)
 }
 
 /// Adds what the process may read of its own entry in `/proc`, file by file, because the entry also shows sockets, mounts
@@ -116,17 +118,24 @@ pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
 
 /// A ruleset that allows nothing, for the probe.
 pub(super) fn nothing(scopes: bool) -> io::Result<RulesetCreated> {
-    handled(scopes)
+    handled(scopes, NEWEST)
+}
+
+/// The rules of an older kernel, to try what they hold; 0 means the newest.
+fn version(number: u8) -> ABI {
+    [NEWEST, ABI::V1, ABI::V2, ABI::V3, ABI::V4, ABI::V5].get(usize::from(number)).copied().unwrap_or(NEWEST)
 }
 
 /// Everything that the running kernel can refuse is refused unless a rule allows it.
-fn handled(scopes: bool) -> io::Result<RulesetCreated> {
+fn handled(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     let mut ruleset = Ruleset::default()
         .set_compatibility(CompatLevel::BestEffort)
-        .handle_access(AccessFs::from_all(NEWEST))
-        .map_err(refused)?
-        .handle_access(AccessNet::from_all(NEWEST))
+        .handle_access(AccessFs::from_all(version))
         .map_err(refused)?;
+    let network = AccessNet::from_all(version);
+    if !network.is_empty() {
+        ruleset = ruleset.handle_access(network).map_err(refused)?;
+    }
     if scopes {
         ruleset = ruleset.scope(Scope::from_all(NEWEST)).map_err(refused)?;
     }
