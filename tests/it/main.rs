@@ -15,6 +15,7 @@ mod kills;
 mod known;
 mod layers;
 mod metamorphic;
+mod ordinary_user;
 mod parity;
 mod properties;
 mod record;
