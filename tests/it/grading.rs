@@ -11,7 +11,7 @@ use std::{
     time::Duration,
 };
 
-const SUITE: &str = "schema = 1\nname = \"test\"\nhints = \"full\"\n[limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
+const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n[limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
                      [[group]]\nname = \"Impulses\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\ncredit = \"steps\"\n\
                      [[group]]\nname = \"Zones\"\nscenes = [\"asset:GeometricTests/ball-*\"]\npoints = 10\n";
 
@@ -80,6 +80,32 @@ fn against_recordings_the_right_program_passes_too() {
     submit(&workspace, &["", "response-half-plane-spares-fixed"]);
     let right = workspace.run(["grade", "submissions/fosssim-sample", "--suite", "suite.toml", "--recorded"]);
     assert_eq!(right.code, Some(0), "{}", right.shown());
+}
+
+#[test]
+fn the_fair_rules_count_unless_somebody_says_otherwise() {
+    let Some(workspace) = workspace() else { return };
+    let submissions = submit(&workspace, &["scale-1000", "trailing-bytes"]);
+    workspace.write("plain.toml", SUITE.replacen("rules = \"both\"\n", "", 1));
+    let verdict = |submission: &str, more: &[&str]| {
+        let fixed = ["grade", submission, "--format", "csv"];
+        let run = workspace.run(fixed.iter().chain(more));
+        let rows = csv::Reader::from_reader(&run.stdout[..]).into_records();
+        let mut codes: Vec<_> = rows.map(|row| row.expect("a row")[3].to_owned()).collect();
+        codes.sort();
+        codes.dedup();
+        (codes.join(" "), run)
+    };
+    let scene = ["--scene", "ImpulsesTests/off-centre-on-turning-edge"];
+    for suite in [&["--suite", "plain.toml"][..], &scene] {
+        assert_eq!(verdict(&submissions[0], suite).0, "AC", "{suite:?}");
+        let (codes, run) = verdict(&submissions[1], suite);
+        assert_eq!(codes, "BT", "{}", run.shown());
+        assert!(run.out().contains("trailing_bytes"), "where the original differs is told: {}", run.shown());
+        assert_eq!(verdict(&submissions[1], &[suite, &["--rules", "parity"]].concat()).0, "AC");
+    }
+    let recorded = verdict(&submissions[1], &[&scene[..], &["--recorded"]].concat());
+    assert_eq!(recorded.0, "AC", "recordings know parity only: {}", recorded.1.shown());
 }
 
 #[test]

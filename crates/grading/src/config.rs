@@ -292,7 +292,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let suite = Suite {
         name: raw.name.map(Spanned::into_inner).unwrap_or_default(),
         run,
-        rules: raw.rules.as_deref().and_then(Rules::from_name).unwrap_or_default(),
+        rules: raw.rules.as_deref().and_then(Rules::from_name).unwrap_or(Rules::Fair),
         hints: raw.hints.unwrap_or(Hints::What),
         show_output: raw.show_output.unwrap_or(false),
         build,
@@ -422,7 +422,9 @@ mod tests {
         let suite = read(TEMPLATE).expect("the template");
         assert_eq!((suite.limits, suite.patience), (RunLimits::default(), Patience::default()));
         assert_eq!(suite.run, default_run());
-        assert_eq!(suite.rules, Rules::Both);
+        assert_eq!(suite.rules, Rules::Fair);
+        let without = TEMPLATE.replacen("rules = \"fair\"\n", "", 1);
+        assert_eq!(read(&without).expect("sound").rules, Rules::Fair, "the default");
         assert!(!suite.groups.is_empty());
     }
 

@@ -144,7 +144,7 @@ impl Runner<'_> {
         };
         let explained = guarded(|| {
             fault::injected(Stage::Explaining, &program.program);
-            self.hints.cut(explain(&result, task, &kept))
+            self.hints.cut(explain(&result, self.rules, task, &kept))
         });
         let result = match explained {
             Ok(explanations) => SceneResult { explanations, ..result },
@@ -249,9 +249,10 @@ impl Runner<'_> {
 
 /// What is likely wrong with a program whose trace is: nothing where the fair rules find no fault, or where what the program
 /// did besides is its worse fault.
-fn explain(result: &SceneResult, task: &SceneTask, trace: &[u8]) -> Vec<Explanation> {
+fn explain(result: &SceneResult, rules: Rules, task: &SceneTask, trace: &[u8]) -> Vec<Explanation> {
+    let fair_finds_fault = rules == Rules::Fair || result.differs.is_none();
     match result.verdict {
-        Verdict::WrongAnswer | Verdict::BadTrace if result.differs.is_none() => diagnose::explain(&task.scene, trace),
+        Verdict::WrongAnswer | Verdict::BadTrace if fair_finds_fault => diagnose::explain(&task.scene, trace),
         _ => Vec::new(),
     }
 }

@@ -210,6 +210,7 @@ mod tests {
             let plan = load(built_in(name).expect("its text"), Path::new("nowhere")).expect(name);
             assert!(plan.scenes().count() > 10, "{name}");
             assert!(plan.max_points() > 0.0);
+            assert_eq!(plan.rules, Rules::Fair, "{name}");
         }
         load(config::TEMPLATE, Path::new("nowhere")).expect("the template");
     }

@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     if let Some(rules) = arguments.rules {
         plan.rules = rules.into();
     }
-    if arguments.recorded && plan.rules == Rules::Fair {
+    if arguments.recorded && arguments.rules.map(Rules::from) == Some(Rules::Fair) {
         bail!("the fair rules follow the submission, so they can't judge against recordings: leave --recorded out");
     }
     if let Some(hints) = arguments.hints {

@@ -11,7 +11,7 @@ use std::{
     sync::{Arc, Mutex},
 };
 
-const SUITE: &str = "schema = 1\nname = \"test\"\nhints = \"full\"\n[[group]]\nname = \"first\"\npoints = 10\n\
+const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n[[group]]\nname = \"first\"\npoints = 10\n\
                      scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
                      scenes = [\"asset:PenaltyTests/*\"]\n";
 

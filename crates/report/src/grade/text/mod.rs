@@ -120,8 +120,10 @@ pub fn score(reached: f64, most: f64) -> String {
 fn rules(grade: &Grade) -> String {
     match (grade.rules, grade.differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
-        (Rules::Fair, _) => ", by the fair rules".to_owned(),
-        (Rules::Both, 0) => String::new(),
+        (Rules::Fair | Rules::Both, 0) => String::new(),
+        (Rules::Fair, differing) => {
+            format!(", by the fair rules (the original's differ in {})", counted(differing, "scene"))
+        }
         (Rules::Both, differing) => {
             format!(", by the original's rules (the fair rules differ in {})", counted(differing, "scene"))
         }
