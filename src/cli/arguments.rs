@@ -7,7 +7,7 @@ use super::{
 use crate::{judge, suite::config};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
+use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf, str::FromStr};
 
 /// Grades the traces of FOSSSim, a course's collision simulator: right or wrong, where, and why.
 #[derive(Debug, Parser)]
@@ -60,6 +60,16 @@ pub(super) enum Command {
     Man(Man),
 }
 
+/// The number of a step.
+fn step(word: &str) -> Result<u32, &'static str> {
+    word.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
+}
+
+/// A count that can't be zero.
+pub(super) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
+    word.trim().parse().map_err(|_| "it is a whole number, 1 or more")
+}
+
 /// How a report is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
@@ -78,6 +88,8 @@ pub(super) enum CheckFormat {
     Json,
     /// For a browser: one file with pictures and a viewer of both motions.
     Html,
+    /// Annotations for GitHub Actions.
+    Github,
 }
 
 /// Which rule books are asked.
@@ -101,6 +113,14 @@ impl From<Rules> for judge::Rules {
     }
 }
 
+/// Of commands whose exit code, or whose file, is the answer.
+#[derive(Debug, Clone, Copy, Args)]
+pub(super) struct Quiet {
+    /// Show no report, no warnings and no progress: errors only, and the exit code. Files are written all the same.
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
 /// Simulates a scene, and records its trace.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -118,6 +138,8 @@ pub(super) struct Simulate {
     /// How the summary is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,
+    #[command(flatten)]
+    pub(super) quiet: Quiet,
 }
 
 /// Grades a trace by the original's rules and by fair ones: what is wrong, and where.
@@ -153,17 +175,19 @@ pub(super) struct Check {
     #[arg(long, conflicts_with_all = ["step", "own"])]
     pub(super) all: bool,
     /// Show these steps alone, from 1; 0 is the first record. Several are separated by commas.
-    #[arg(long, short, value_name = "N", value_delimiter = ',', conflicts_with = "own")]
+    #[arg(long, short, value_name = "N", value_delimiter = ',', conflicts_with = "own", allow_negative_numbers = true, value_parser = step)]
     pub(super) step: Vec<u32>,
     /// Do not look for the mistake that explains a wrong trace.
     #[arg(long)]
     pub(super) no_explain: bool,
     /// Number of threads, eight at most; the report does not depend on it. One per core by default.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
     pub(super) threads: Option<NonZeroUsize>,
     /// Search all roots, also where a certificate excludes an impact, and count disagreements.
     #[arg(long)]
     pub(super) audit: bool,
+    #[command(flatten)]
+    pub(super) quiet: Quiet,
 }
 
 /// How much an explanation tells.
@@ -212,6 +236,8 @@ pub(super) struct Explain {
     /// Run the program without the sandbox where its layers are missing. Never do this with programs of others.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
+    #[command(flatten)]
+    pub(super) quiet: Quiet,
 }
 
 /// Looks into traces.
@@ -251,7 +277,7 @@ pub(super) struct TraceShow {
     /// The trace.
     pub(super) trace: PathBuf,
     /// The step, from 1; 0 is the initial record.
-    #[arg(long, short, value_name = "N")]
+    #[arg(long, short, value_name = "N", allow_negative_numbers = true, value_parser = step)]
     pub(super) step: u32,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -275,6 +301,8 @@ pub(super) struct TraceDiff {
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,
+    #[command(flatten)]
+    pub(super) quiet: Quiet,
 }
 
 /// Records the traces of all scenes of a folder, or checks that they are still the same.
@@ -297,6 +325,8 @@ pub(super) struct Record {
     /// The folder of recordings.
     #[arg(long, value_name = "DIR", default_value = "references")]
     pub(super) references: PathBuf,
+    #[command(flatten)]
+    pub(super) quiet: Quiet,
 }
 
 /// Behaves as the original program: same flags, same output, same files, same exit codes.

@@ -1,15 +1,21 @@
-//! The terminal: standard output that survives a closed pipe, the decision about colours, lines that fit, and the
-//! progress bar.
-use super::arguments::{Colour, Format};
+//! The terminal: standard output that survives a closed pipe, the decision about colours, lines that fit, and progress
+//! bars that nothing is written across.
+use super::{
+    arguments::{Colour, Format},
+    output,
+};
 use crate::{
     judge::parity::{Progress, Remark},
     report::{style::Style, wrap},
 };
 use anyhow::{Context, Result};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::{
     io::{self, IsTerminal, Write},
-    sync::OnceLock,
+    sync::{
+        Mutex, MutexGuard, OnceLock, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
     time::{Duration, Instant},
 };
 use terminal_size::{Width, terminal_size_of};
@@ -20,6 +26,18 @@ static COLOUR: OnceLock<Colour> = OnceLock::new();
 /// Remembers what `--color` says; the first word counts.
 pub(super) fn choose_colour(colour: Colour) {
     let _ = COLOUR.set(colour);
+}
+
+/// Whether `--quiet` was given.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on there are no reports on standard output, no bars and no warnings; errors are told all the same.
+pub(super) fn be_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
 }
 
 /// The style of reports on standard output. Unless `--color` says so, colours only where nobody objects (`NO_COLOR`),
@@ -75,13 +93,27 @@ pub(super) fn show(text: &str, format: Format) -> Result<()> {
 /// # Errors
 /// Anything else, such as a full disk.
 pub(super) fn print(text: &[u8]) -> Result<()> {
+    if is_quiet() {
+        return Ok(());
+    }
     let mut stdout = io::stdout().lock();
     unless_closed(stdout.write_all(text).and_then(|()| stdout.flush())).context("cannot write to standard output")
 }
 
-/// Prints to standard error; there is nowhere left to report a failure.
+/// Prints to standard error, above the bars; there is nowhere left to report a failure.
 pub(super) fn complain(text: &[u8]) {
-    drop(io::stderr().lock().write_all(text));
+    let write = || drop(io::stderr().lock().write_all(text));
+    match &*on_screen() {
+        Some(bars) => bars.suspend(write),
+        None => write(),
+    }
+}
+
+/// Prints what is worth knowing, but no error, to standard error.
+pub(super) fn remark(text: &[u8]) {
+    if !is_quiet() {
+        complain(text);
+    }
 }
 
 /// A closed pipe is no error.
@@ -92,8 +124,37 @@ pub(super) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
+/// The bars on standard error.
+static ON_SCREEN: Mutex<Option<MultiProgress>> = Mutex::new(None);
+
+fn on_screen() -> MutexGuard<'static, Option<MultiProgress>> {
+    ON_SCREEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Whether bars are of use: on a terminal, unless nobody wants to see them.
+pub(super) fn wants_bars() -> bool {
+    io::stderr().is_terminal() && !is_quiet()
+}
+
+/// A place for bars on standard error. Until [`clear_bars`] everything else is written above them, and an interrupt takes
+/// them away.
+pub(super) fn show_bars() -> MultiProgress {
+    output::clean_up_when_interrupted();
+    on_screen().get_or_insert_with(MultiProgress::new).clone()
+}
+
+/// Takes the bars away.
+pub(super) fn clear_bars() {
+    if let Some(bars) = on_screen().take() {
+        drop(bars.clear());
+    }
+}
+
 /// How long a command may take before a bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// How often a bar moves by itself.
+const TICK: Duration = Duration::from_millis(200);
 
 /// A bar on standard error, when that is a terminal and the command takes longer than a second.
 pub(super) struct Bar {
@@ -105,7 +166,28 @@ pub(super) struct Bar {
 impl Bar {
     /// A bar over so many steps.
     pub(super) fn new(steps: u32) -> Self {
-        Self { steps: u64::from(steps), begun: io::stderr().is_terminal().then(Instant::now), shown: None }
+        Self { steps: u64::from(steps), begun: wants_bars().then(Instant::now), shown: None }
+    }
+
+    /// A bar over so many runs of a program, each of which may take long: shown at once, with the time that has passed.
+    pub(super) fn of_runs(runs: u64) -> Self {
+        let bar = |runs| {
+            let bar = show_bars().add(ProgressBar::new(runs));
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed}: run {pos} of {len}, {wide_msg}") {
+                bar.set_style(style);
+            }
+            bar.enable_steady_tick(TICK);
+            bar
+        };
+        Self { steps: runs, begun: None, shown: wants_bars().then(|| bar(runs)) }
+    }
+
+    /// A run begins.
+    pub(super) fn next_run(&self, name: &str) {
+        if let Some(bar) = &self.shown {
+            bar.inc(1);
+            bar.set_message(name.to_owned());
+        }
     }
 
     /// So many steps are done.
@@ -113,7 +195,7 @@ impl Bar {
         if let Some(bar) = &self.shown {
             bar.set_position(u64::from(step));
         } else if self.begun.is_some_and(|begun| begun.elapsed() >= PATIENCE) {
-            let bar = ProgressBar::with_draw_target(Some(self.steps), ProgressDrawTarget::stderr());
+            let bar = show_bars().add(ProgressBar::new(self.steps));
             if let Ok(style) = ProgressStyle::with_template("{wide_bar} step {pos} of {len}, {eta} left") {
                 bar.set_style(style);
             }
@@ -127,6 +209,7 @@ impl Drop for Bar {
     fn drop(&mut self) {
         if let Some(bar) = &self.shown {
             bar.finish_and_clear();
+            clear_bars();
         }
     }
 }

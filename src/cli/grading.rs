@@ -1,5 +1,5 @@
 //! Arguments of the commands that run programs, as typed.
-use super::arguments::Rules;
+use super::arguments::{Rules, at_least_one};
 use crate::suite::config;
 use clap::{Args, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf};
@@ -39,7 +39,7 @@ pub(super) struct Grade {
     #[arg(long, value_name = "FORMAT[=FILE]")]
     pub(super) format: Vec<String>,
     /// Runs at one time. One per core by default.
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
     pub(super) jobs: Option<NonZeroUsize>,
     /// Only scenes of these names, such as 'GeometricTests/*' or 'ball-*'; may be given several times.
     #[arg(long, value_name = "GLOB")]

@@ -12,6 +12,7 @@ mod pictures;
 mod scenes;
 mod selection;
 
+use crate::report::grade::plain;
 use clap::Parser;
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 
@@ -47,7 +48,8 @@ pub fn main() -> ExitCode {
         return original::main(&[program.as_bytes(), b" original"].concat(), &original.words);
     }
     let code = commands::run(&arguments.command).unwrap_or_else(|error| {
-        console::complain(format!("error: {error:#}\n").as_bytes());
+        // Names of files are a stranger's words, too.
+        console::complain(plain(&format!("error: {error:#}\n")).as_bytes());
         exit::FAULT
     });
     ExitCode::from(code)

@@ -249,8 +249,9 @@ fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     PENDING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on SIGINT and SIGTERM remove the temporary files and end the program.
-fn clean_up_when_interrupted() {
+/// From now on SIGINT and SIGTERM remove the temporary files and the bars, and end the program. A command that handles them
+/// itself has said so before, and then this does nothing.
+pub(super) fn clean_up_when_interrupted() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
         let installed = ctrlc::set_handler(|| {
@@ -259,6 +260,7 @@ fn clean_up_when_interrupted() {
             for path in pending.iter() {
                 drop(fs::remove_file(path));
             }
+            console::clear_bars();
             std::process::exit(exit::INTERRUPTED.into());
         });
         // Without a handler an interrupt leaves a hidden file behind, which is better than not working at all.

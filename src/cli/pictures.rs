@@ -1,4 +1,5 @@
 //! Arguments of the commands that draw and look closely, as typed.
+use super::arguments::at_least_one;
 use crate::render::Size;
 use clap::{Args, ValueEnum};
 use std::{num::NonZeroU32, path::PathBuf};
@@ -51,7 +52,7 @@ pub(super) struct Render {
     #[arg(long, value_name = "N", default_value_t = 25)]
     pub(super) fps: u16,
     /// Draw every Nth step only.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one::<NonZeroU32>)]
     pub(super) every: Option<NonZeroU32>,
     /// One picture: the state after this step; 0 is the start.
     #[arg(long, value_name = "N", conflicts_with = "every")]

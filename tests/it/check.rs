@@ -523,3 +523,67 @@ fn checked_json(workspace: &Workspace, options: &[&str]) -> Value {
     assert!(errors.is_empty(), "{errors:#?}\n{value:#}");
     value
 }
+
+#[test]
+fn github_is_told_in_annotations() {
+    let workspace = Workspace::with_trace(DRIFT);
+    let check = |trace: &str| workspace.run(["check", "scene.xml", trace, "--format", "github"]);
+    let right = check("trace.bin");
+    assert_eq!((right.code, right.out()), (Some(0), String::new()), "{}", right.shown());
+    workspace.write("wrong, 100%.bin", wrong_drift());
+    let wrong = check("wrong, 100%.bin");
+    assert_eq!((wrong.code, wrong.out().lines().count()), (Some(1), 1), "{}", wrong.shown());
+    let line = "::error title=wrong%2C 100%25.bin%3A wrong answer::4 of 4 steps are wrong, the first is step 1; step 1: particle 0";
+    assert!(wrong.out().starts_with(line), "{}", wrong.shown());
+    workspace.write("cut.bin", &workspace.read("trace.bin")[..150]);
+    assert!(
+        check("cut.bin").out().contains("the trace can't be followed any further at "),
+        "{}",
+        check("cut.bin").shown()
+    );
+}
+
+#[test]
+fn json_says_what_the_text_says() {
+    let trailing = [&wrong_drift()[..], b"more"].concat();
+    for trace in [trace_of(DRIFT), wrong_drift(), trailing, trace_of(DRIFT)[..150].to_vec()] {
+        let (text, json) = reports(DRIFT, &trace);
+        let text = text.out();
+        let lists = ["advice", "commands", "notes"].into_iter().flat_map(|list| json[list].as_array().expect(list));
+        for words in lists.chain([&json["summary"]]) {
+            assert!(text.contains(words.as_str().expect("words")), "{words} is not in {text}");
+        }
+        for heading in ["What to look at", "Notes"] {
+            let list = if heading == "Notes" { "notes" } else { "advice" };
+            assert_eq!(text.contains(heading), !json[list].as_array().expect(list).is_empty(), "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_detection_that_is_not_written_yet_is_asked_about() {
+    let empty = changed(BOUNCE, |frames| frames.iter_mut().for_each(|frame| frame.polynomials.clear()));
+    let (text, _) = reports(BOUNCE, &empty);
+    assert!(text.out().contains("about no pair; is it written yet?"), "{}", text.shown());
+}
+
+#[test]
+fn the_commands_that_look_closer_work_as_they_stand() {
+    let workspace = Workspace::new();
+    workspace.write("my scene.xml", BOUNCE);
+    workspace.write("it's mine.bin", changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0)));
+    let run = workspace.run(["check", "my scene.xml", "it's mine.bin", "--format", "json"]);
+    let json: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let commands: Vec<_> = json["commands"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+    assert!(commands[0].starts_with("fosssim-oracle detect ") && commands.len() == 3, "{commands:?}");
+    let program = env!("CARGO_BIN_EXE_fosssim-oracle");
+    for command in commands {
+        let line = command.replacen("fosssim-oracle", program, 1);
+        let mut shell = std::process::Command::new("sh");
+        let run = finish(shell.args(["-c", &line]).current_dir(workspace.path("")));
+        assert_eq!(run.code, Some(0), "{command}: {}", run.shown());
+    }
+    assert!(workspace.exists("step1.svg"));
+    workspace.write("right.bin", trace_of(BOUNCE));
+    assert!(!workspace.run(["check", "my scene.xml", "right.bin"]).out().contains("Look closer"));
+}

@@ -1,6 +1,6 @@
 //! The summary of a simulation.
 use super::{
-    number::count,
+    number::{count, counted},
     style::{Look, Style},
     table::{Align, Table},
     view::{SCHEMA, pair_kind},
@@ -55,16 +55,16 @@ impl Summary<'_> {
         table.row(["impulses".into(), count(counts.impulses).into(), "".into()]);
         let zones = if counts.failsafes > 0 {
             format!(
-                "in {} steps, largest zone of {} particles",
-                count(counts.geometric_steps),
-                count(counts.largest_zone)
+                "in {}, largest zone of {}",
+                counted(counts.geometric_steps, "step"),
+                counted(counts.largest_zone, "particle")
             )
         } else {
             String::new()
         };
         table.row(["rigid failsafes".into(), count(counts.failsafes).into(), zones.into()]);
         table.row(["polynomials".into(), count(counts.polynomials).into(), "".into()]);
-        let records = format!("in {} records", count(self.written.records));
+        let records = format!("in {}", counted(self.written.records, "record"));
         table.row(["bytes".into(), count(self.written.bytes).into(), records.into()]);
         if let Some(searches) = self.audited {
             let excluded = format!("{} excluded by a certificate", count(searches.excluded));

@@ -113,6 +113,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let text = match arguments.format {
         CheckFormat::Text => check.text(style),
         CheckFormat::Json => check.json(),
+        CheckFormat::Github => check.github(),
         CheckFormat::Html => {
             let fair = outcome.fair.is_some();
             let focus = focus(&outcome);

@@ -11,6 +11,7 @@ use crate::{
     report::{
         describe::step_error,
         detect::{Detect as Report, Place},
+        number::counted,
         style::Style,
     },
     sim::{Detection, Observer, Pair, PairMotion, Pass, RootSearch, Simulation, Stage, State},
@@ -82,7 +83,8 @@ fn of_scene(arguments: &Detect, name: &Path) -> Result<()> {
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
     let steps = scene.scene.steps();
     if step == 0 || step > steps {
-        bail!("the scene {} has {steps} steps, counted from 1; there is no step {step}", scene.name);
+        let steps = counted(steps.into(), "step");
+        bail!("the scene {} has {steps}, counted from 1; there is no step {step}", scene.name);
     }
     let pair = pair::of_scene(word, &scene.scene).with_context(|| format!("the pair {word}"))?;
     let mut inputs: Vec<_> = scene.identity.into_iter().collect();

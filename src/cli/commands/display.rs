@@ -1,5 +1,6 @@
 //! How a grading goes, on standard error: bars on a terminal, otherwise a line per finished submission.
 use crate::{
+    cli::console,
     report::grade::{no_points, one_line, score},
     suite::{
         batch::{Event, Submission},
@@ -7,7 +8,7 @@ use crate::{
     },
 };
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
-use std::{collections::BTreeMap, io::IsTerminal};
+use std::collections::BTreeMap;
 
 /// The display of one grading; it goes away when dropped.
 pub(super) struct Display<'a> {
@@ -26,8 +27,8 @@ struct Bars {
 impl<'a> Display<'a> {
     /// A display for these submissions.
     pub(super) fn new(plan: &'a Plan, submissions: &'a [Submission]) -> Self {
-        let bars = std::io::stderr().is_terminal().then(|| {
-            let all = MultiProgress::new();
+        let bars = console::wants_bars().then(|| {
+            let all = console::show_bars();
             let runs = submissions.len() * plan.scenes().count();
             let overall = all.add(ProgressBar::new(runs as u64));
             if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len} runs, {eta} left") {
@@ -75,7 +76,7 @@ impl<'a> Display<'a> {
                 );
                 match &self.bars {
                     Some(bars) => drop(bars.all.println(line)),
-                    None => crate::cli::console::complain(format!("{line}\n").as_bytes()),
+                    None => console::remark(format!("{line}\n").as_bytes()),
                 }
             }
         }
@@ -97,7 +98,7 @@ impl Drop for Display<'_> {
     fn drop(&mut self) {
         if let Some(bars) = &self.bars {
             bars.overall.finish_and_clear();
-            drop(bars.all.clear());
+            console::clear_bars();
         }
     }
 }

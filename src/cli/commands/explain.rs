@@ -36,7 +36,10 @@ const PATIENCE: usize = 2;
 pub(super) fn run(arguments: &Explain) -> Result<u8> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
     let diagnosis = match (&arguments.program, &arguments.inputs[..]) {
-        (Some(program), scenes) => program_on_probes(program, scenes, arguments)?,
+        (Some(program), scenes) => match program_on_probes(program, scenes, arguments)? {
+            Some(diagnosis) => diagnosis,
+            None => return Ok(exit::INTERRUPTED),
+        },
         (None, [scene, trace]) => {
             Diagnosis { cases: vec![trace_on_scene(scene, trace, arguments)?], common: Vec::new() }
         }
@@ -81,8 +84,9 @@ fn case(name: String, trace: String, scene: &Scene, bytes: &[u8], note: Option<S
     Case { scene: name, trace, accepted, note, first, explanations: hints.cut(explanations) }
 }
 
-/// Runs a program on scenes that make every term of every formula visible, and on those that are named.
-fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) -> Result<Diagnosis> {
+/// Runs a program on scenes that make every term of every formula visible, and on those that are named. Nothing when it
+/// was interrupted.
+fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) -> Result<Option<Diagnosis>> {
     let program = std::path::absolute(program).unwrap_or_else(|_| program.to_owned());
     let tasks = tasks(scenes)?;
     let cancellation = cancelled_by_signals();
@@ -102,7 +106,9 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
     };
     let mut cases = Vec::new();
     let mut late = 0;
+    let bar = console::Bar::of_runs(tasks.len() as u64);
     for task in &tasks {
+        bar.next_run(&task.name);
         if late == PATIENCE {
             let note = Some(format!("not run: the program took too long {PATIENCE} times before"));
             let shown = program.display().to_string();
@@ -110,10 +116,10 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
             cases.push(Case { scene: task.name.clone(), trace: shown, accepted, note, first, explanations });
             continue;
         }
-        if cancellation.is_cancelled() {
-            bail!("stopped");
-        }
         let (trace, outcome) = runner.collect(&program, task, LONGEST).map_err(anyhow::Error::msg)?;
+        if cancellation.is_cancelled() {
+            return Ok(None);
+        }
         if let Ended::CouldNotStart(problem) = &outcome.ended {
             bail!("{}: {problem}", program.display());
         }
@@ -122,8 +128,9 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
         let shown = program.display().to_string();
         cases.push(case(task.name.clone(), shown, &task.scene, &trace, note, arguments.hints.into()));
     }
+    drop(bar);
     let common = settled(&cases, &tasks);
-    Ok(Diagnosis { cases, common })
+    Ok(Some(Diagnosis { cases, common }))
 }
 
 /// The likely mistakes of the wrong traces together, without those that right traces of the same program speak against.

@@ -136,6 +136,7 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                 let first = *first.get_or_insert_with(Instant::now);
                 if signalled.is_cancelled() {
                     if first.elapsed() > Duration::from_secs(1) {
+                        console::clear_bars();
                         std::process::exit(exit::INTERRUPTED.into());
                     }
                     return;

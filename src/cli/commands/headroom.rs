@@ -17,8 +17,8 @@ use std::path::{Path, PathBuf};
 const DEFAULT_SUITE: &str = "t2m2";
 
 pub(super) fn run(scenes: &[PathBuf], arguments: &Check) -> Result<u8> {
-    if arguments.format == CheckFormat::Html {
-        bail!("there is no HTML report of check --self, which has no trace to show; use --format text or json");
+    if matches!(arguments.format, CheckFormat::Html | CheckFormat::Github) {
+        bail!("check --self has no trace to show; use --format text or json");
     }
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
     let scenes = if scenes.is_empty() { built_in()? } else { files(scenes)? };

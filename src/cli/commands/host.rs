@@ -5,7 +5,10 @@ use crate::{
         console, exit,
         grading::{Demo, Selftest},
     },
-    report::grade::{Format, rehearse},
+    report::{
+        grade::{Format, rehearse},
+        number::counted,
+    },
     sandbox::{self, selftest},
     suite::{
         Verdict,
@@ -132,8 +135,9 @@ pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {
         let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
     }
     let broken = table.broken().count();
+    let held = counted(table.held() as u64, "promise");
     let untested = table.promises.len() - table.held() - broken;
-    let _ = writeln!(text, "\n{} promises held, {broken} not held, {untested} not tested here", table.held());
+    let _ = writeln!(text, "\n{held} held, {broken} not held, {untested} not tested here");
     console::report(&text)?;
     Ok(if broken == 0 && table.held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }

@@ -18,7 +18,10 @@ mod submissions;
 mod suite;
 mod trace;
 
-use super::arguments::{Command, Trace};
+use super::{
+    arguments::{Command, Trace},
+    console,
+};
 use anyhow::Result;
 
 /// Runs a command and returns its exit code.
@@ -26,6 +29,7 @@ use anyhow::Result;
 /// # Errors
 /// What keeps it from running: wrong usage, bad input, or our own fault.
 pub(super) fn run(command: &Command) -> Result<u8> {
+    console::be_quiet(is_quiet(command));
     match command {
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Check(arguments) => check::run(arguments),
@@ -46,5 +50,16 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Man(arguments) => shell::manual(arguments),
         // Never gets here: it has its own way of ending.
         Command::Original(_) => Ok(super::exit::FAULT),
+    }
+}
+
+fn is_quiet(command: &Command) -> bool {
+    match command {
+        Command::Simulate(arguments) => arguments.quiet.quiet,
+        Command::Check(arguments) => arguments.quiet.quiet,
+        Command::Explain(arguments) => arguments.quiet.quiet,
+        Command::Trace(Trace::Diff(arguments)) => arguments.quiet.quiet,
+        Command::Record(arguments) => arguments.quiet.quiet,
+        _ => false,
     }
 }

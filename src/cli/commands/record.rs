@@ -122,7 +122,7 @@ fn check(recordings: &[Recording], old: &dyn Old) -> Result<u8> {
         return Ok(exit::ACCEPTED);
     }
     console::print(text.as_bytes())?;
-    console::complain(b"the recordings differ; if that is meant, run `fosssim-oracle record` and look at the change\n");
+    console::remark(b"the recordings differ; if that is meant, run `fosssim-oracle record` and look at the change\n");
     Ok(exit::NOT_ACCEPTED)
 }
 

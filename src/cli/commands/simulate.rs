@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Simulate) -> Result<u8> {
     drop(bar);
     let (output, written) = recorder.finish().context("the trace could not be written")?;
     output.finish()?;
-    let name = arguments.output.as_ref().map(|name| name.display().to_string());
+    let name = arguments.output.as_ref().map(|name| input::shown(name));
     let searches = simulation.search_counts();
     let audited = arguments.audit.then_some(searches);
     let summary = Summary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };
@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Simulate) -> Result<u8> {
         Format::Json => summary.json(),
     };
     if to_stdout {
-        console::complain(text.as_bytes());
+        console::remark(text.as_bytes());
     } else {
         console::show(&text, arguments.format)?;
     }

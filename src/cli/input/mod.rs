@@ -10,7 +10,7 @@ mod trace;
 pub(super) use scene::{SceneInput, scene};
 pub(super) use trace::{TraceInput, trace};
 
-use crate::{scene::LARGEST_SCENE, suite::library};
+use crate::{report::grade::one_line, scene::LARGEST_SCENE, suite::library};
 use anyhow::{Result, bail};
 use std::{
     fs::{File, Metadata, OpenOptions},
@@ -30,6 +30,11 @@ impl Identity {
     pub(super) fn of(metadata: &Metadata) -> Self {
         Self(metadata.dev(), metadata.ino())
     }
+}
+
+/// A file's name as typed, fit for printing: a stranger's file may be called by codes that a terminal obeys.
+pub(super) fn shown(name: &Path) -> String {
+    one_line(&name.display().to_string())
 }
 
 /// Reads at most [`LARGEST_SCENE`] bytes of an open file.
@@ -54,9 +59,19 @@ fn no_asset(what: &str, name: &str) -> String {
     format!("no embedded {what} is called `{name}`; there are, for example, {}", known.join(", "))
 }
 
+/// A file that is not there, but would be what comes with the program, had it `asset:` before its name.
+fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
+    let known = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
+    match known.filter(|known| error.kind() == io::ErrorKind::NotFound && library::names().any(|name| name == *known)) {
+        Some(known) => anyhow::anyhow!("there is no such file; the scene that comes with the program is asset:{known}"),
+        None => error.into(),
+    }
+}
+
 /// Opens a file without waiting for a pipe's other end. Directories are refused.
 pub(super) fn open(name: &Path) -> Result<(File, Metadata)> {
-    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name)?;
+    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name);
+    let file = file.map_err(|error| or_asset(name, error))?;
     let metadata = file.metadata()?;
     if metadata.is_dir() {
         bail!("it is a directory; name a file inside");

@@ -1,5 +1,5 @@
 //! Scenes as inputs: strict reading, all problems at once.
-use super::{Identity, asset, no_asset, open, read_limited, trace::ZSTD_MAGIC};
+use super::{Identity, asset, no_asset, open, read_limited, shown, trace::ZSTD_MAGIC};
 use crate::{
     cli::console,
     report::problems,
@@ -25,7 +25,10 @@ pub(in crate::cli) struct SceneInput {
 /// # Errors
 /// When it can't be read, or has errors: all of them, with their places.
 pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
-    let shown = name.display().to_string();
+    let shown = shown(name);
+    if name == Path::new("-") {
+        bail!("a scene is read from a file; only a trace may come from standard input");
+    }
     let (bytes, identity) = match asset(name) {
         Some(asset) => {
             let scene = library::scene(asset).with_context(|| no_asset("scene", asset))?;
@@ -40,7 +43,7 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         Ok(Loaded { scene, warnings, .. }) => {
             // Embedded scenes are as they are meant to be.
             if identity.is_some() {
-                console::complain(problems::warnings(&shown, &bytes, &warnings).as_bytes());
+                console::remark(problems::warnings(&shown, &bytes, &warnings).as_bytes());
             }
             Ok(SceneInput { name: shown, scene, identity })
         }

@@ -1,5 +1,5 @@
 //! Traces as inputs: streams, decompressed on the way.
-use super::{Identity, asset, no_asset, open, patient};
+use super::{Identity, asset, no_asset, open, patient, shown};
 use crate::{cli::output::has_extension, suite::library};
 use anyhow::{Context, Result, bail};
 use std::{
@@ -47,7 +47,7 @@ impl Failure {
 /// # Errors
 /// When it can't be opened. Damage shows only while it is read.
 pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
-    let shown = name.display().to_string();
+    let shown = shown(name);
     let failure = Failure::default();
     let watched = |reader| Watched { reader, failure: failure.clone() };
     let (reader, length, identity): (Box<dyn Read + Send>, _, _) = if let Some(asset) = asset(name) {
@@ -57,6 +57,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
         (reader.context("cannot read the trace from standard input")?.0, None, None)
     } else {
+        refuse_scene(name, &shown)?;
         let context = || format!("cannot read the trace {shown}");
         let (file, metadata) = open(name).with_context(context)?;
         let plain = metadata.is_file().then_some(metadata.len());
@@ -66,6 +67,21 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         (reader, plain.filter(|_| !packed), Some(Identity::of(&metadata)))
     };
     Ok(TraceInput { name: shown, reader, length, identity, failure })
+}
+
+/// A scene in the place of the trace is a slip of whoever types, and no wrong trace: refused where name and content agree.
+fn refuse_scene(name: &Path, shown: &str) -> Result<()> {
+    if has_extension(name, "xml")
+        && let Ok((file, metadata)) = open(name)
+        && metadata.is_file()
+    {
+        let mut start = Vec::new();
+        let is_read = file.take(8).read_to_end(&mut start).is_ok();
+        if is_read && (start.starts_with(b"<?xml") || start.starts_with(b"<scene")) {
+            bail!("{shown} is a scene and no trace: SCENE comes first, then TRACE");
+        }
+    }
+    Ok(())
 }
 
 /// Remembers what the operating system said when reading failed.

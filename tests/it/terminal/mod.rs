@@ -1,4 +1,5 @@
 //! The terminal: what people type, see and complete.
+mod bars;
 mod colours;
 mod completion;
 mod scenes;

@@ -42,6 +42,91 @@ fn a_trace_in_the_place_of_the_scene_is_told_in_one_line() {
 }
 
 #[test]
+fn a_scene_in_the_place_of_the_trace_is_told_in_one_line() {
+    let workspace = Workspace::with_trace(DRIFT);
+    for command in [&["check", "scene.xml", "scene.xml"][..], &["trace", "diff", "scene.xml", "trace.bin", "scene.xml"]]
+    {
+        let run = workspace.run(command);
+        assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
+        assert!(run.err().contains("scene.xml is a scene and no trace"), "{}", run.err());
+    }
+    // Whatever else has such a name is a trace, if a bad one.
+    workspace.write("odd.xml", "no scene");
+    assert_eq!(workspace.run(["check", "scene.xml", "odd.xml"]).code, Some(1));
+}
+
+#[test]
+fn what_comes_with_the_program_is_found_under_its_full_name() {
+    let workspace = Workspace::with_trace(DRIFT);
+    for name in ["SimpleTests/one-ball-into-two", "SimpleTests/one-ball-into-two.xml"] {
+        let run = workspace.run(["check", name, "trace.bin"]);
+        assert_eq!(run.code, Some(2), "{}", run.shown());
+        assert!(run.err().contains("comes with the program is asset:SimpleTests/one-ball-into-two\n"), "{}", run.err());
+    }
+}
+
+#[test]
+fn a_step_that_is_no_number_is_told_in_plain_words() {
+    let workspace = Workspace::with_trace(DRIFT);
+    for command in [&["check"][..], &["trace", "show"]] {
+        for step in ["-1", "x", "1.5", "99999999999"] {
+            let run = workspace.run(command.iter().chain(&["scene.xml", "trace.bin", "--step", step]));
+            assert_eq!(run.code, Some(2), "{}", run.shown());
+            assert!(run.err().contains("steps are counted from 1"), "{}", run.err());
+        }
+    }
+}
+
+#[test]
+fn names_of_files_give_the_terminal_no_orders() {
+    let workspace = Workspace::with_trace(DRIFT);
+    let name = "a\u{1b}[31m\nb.bin";
+    workspace.write(name, workspace.read("trace.bin"));
+    let run = workspace.run(["check", "scene.xml", name]);
+    assert_eq!(run.code, Some(0), "{}", run.shown());
+    assert!(run.out().contains("  trace a\\x1b[31m b.bin\n"), "{}", run.out());
+    let run = workspace.run(["check", "scene.xml", "gone\u{1b}[31m.bin"]);
+    assert!(run.err().contains("gone\\x1b[31m.bin"), "{}", run.err());
+}
+
+#[test]
+fn counts_and_scenes_that_make_no_sense_are_told_in_plain_words() {
+    let workspace = Workspace::with_trace(DRIFT);
+    for (words, says) in [
+        (&["check", "scene.xml", "trace.bin", "--threads", "0"][..], "it is a whole number, 1 or more"),
+        (&["render", "scene.xml", "--output", "x.gif", "--every", "0"], "it is a whole number, 1 or more"),
+        (&["grade", "x", "--jobs", "many"], "it is a whole number, 1 or more"),
+        (&["check", "-", "trace.bin"], "a scene is read from a file"),
+        (&["render", "scene.xml", "--format", "gif", "--output", "/dev/full"], "cannot write /dev/full: "),
+    ] {
+        let run = workspace.run(words);
+        assert_eq!(run.code, Some(2), "{}", run.shown());
+        assert!(run.err().contains(says), "{}", run.err());
+    }
+}
+
+#[test]
+fn quiet_leaves_only_errors_and_the_exit_code() {
+    let workspace = Workspace::with_trace(DRIFT);
+    workspace.write("short.bin", &workspace.read("trace.bin")[..50]);
+    for (command, code) in [
+        (&["check", "scene.xml", "trace.bin", "-q"][..], 0),
+        (&["check", "scene.xml", "short.bin", "--quiet", "--format", "json"], 1),
+        (&["explain", "-q", "scene.xml", "short.bin"], 1),
+        (&["trace", "diff", "-q", "scene.xml", "trace.bin", "short.bin"], 1),
+        (&["simulate", "-q", "scene.xml", "--output", "again.bin"], 0),
+        (&["check", "scene.xml", "short.bin", "-q", "--output", "report.txt"], 1),
+    ] {
+        let run = workspace.run(command);
+        assert_eq!((run.code, run.out(), run.err()), (Some(code), String::new(), String::new()), "{command:?}");
+    }
+    assert_eq!(workspace.read("again.bin"), workspace.read("trace.bin"));
+    assert!(String::from_utf8(workspace.read("report.txt")).expect("text").starts_with("BAD TRACE"));
+    let run = workspace.run(["check", "-q", "nowhere.xml", "trace.bin"]);
+    assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
+}
+
+#[test]
 fn the_course_script_says_in_a_sentence_that_a_program_is_missing() {
     let workspace = Workspace::new();
     workspace.write("scenes/bounce.xml", BOUNCE);

@@ -3,6 +3,7 @@
 //! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both say the
 //! same and depend on nothing but the outcome.
 
+mod closer;
 mod divergence;
 mod fair;
 mod fair_view;
@@ -15,12 +16,13 @@ pub use text::stopped;
 
 use super::{
     describe::step_error,
-    explain::ExplanationView,
+    explain::{self, ExplanationView},
+    grade::annotation,
     style::Style,
     view::{CHECK_SCHEMA, FindingView, Number},
 };
 use fair_view::{CauseView, CountedView, FairView};
-use fosssim_judge::{Book, Kind, Outcome, Overall, Rules, Ruling, Stop, Unreadable};
+use fosssim_judge::{Book, Kind, Outcome, Overall, Rules, Ruling, Stop, Unreadable, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -74,6 +76,25 @@ impl Check<'_> {
         text::render(self, style)
     }
 
+    /// Annotations for GitHub Actions: the verdict with the likely mistakes, if it is not accepted, and where the rule books
+    /// differ.
+    #[must_use]
+    pub fn github(&self) -> String {
+        let mut text = String::new();
+        let title = format!("{}: {}", self.trace, self.verdict());
+        if !self.accepted() {
+            let place = self.outcome.stop.as_ref().map(|stop| stopped(stop, self.outcome));
+            let first = text::first(self).map(|first| first.to_string());
+            let likely = explain::sentence(self.explanations).filter(|_| !text::is_other_scene(self));
+            let words: Vec<String> = [Some(text::headline(self)), place, first, likely].into_iter().flatten().collect();
+            text += &annotation("error", &title, &words.join("; "));
+        }
+        if let Some(cause) = cause(self.outcome) {
+            text += &annotation("warning", &title, &format!("the rule books differ: {cause}"));
+        }
+        text
+    }
+
     /// The report for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self) -> String {
@@ -96,6 +117,7 @@ impl Check<'_> {
             rules: self.rules.name(),
             official: self.book().name(),
             verdict: self.verdict(),
+            summary: text::headline(self),
             parity: Parity {
                 overall: match outcome.overall {
                     Overall::Passed => "passed",
@@ -117,6 +139,9 @@ impl Check<'_> {
                 .iter()
                 .map(|first| CountedView { count: account.counts.get(first.kind()), first: finding(first) })
                 .collect(),
+            advice: text::first(self).map_or(&[], text::advice),
+            commands: closer::commands(self),
+            notes: text::notes(self),
             explanations: self.explanations.iter().map(ExplanationView::from).collect(),
             steps: outcome.steps,
             steps_judged: outcome.steps_judged,
@@ -171,11 +196,15 @@ struct View<'a> {
     rules: &'static str,
     official: &'static str,
     verdict: &'static str,
+    summary: String,
     parity: Parity,
     fair: Option<FairView>,
     difference: Option<CauseView>,
     first_divergence: Option<FindingView>,
     findings: Vec<CountedView>,
+    advice: &'static [&'static str],
+    commands: Vec<String>,
+    notes: Vec<String>,
     explanations: Vec<ExplanationView>,
     steps: u32,
     steps_judged: u32,

@@ -135,6 +135,11 @@ pub(super) fn only_these(check: &Check<'_>) -> bool {
     matches!(check.steps.shown, Shown::These(_))
 }
 
+/// Whether all wrong steps are asked for.
+pub(super) fn all(check: &Check<'_>) -> bool {
+    check.steps.shown == Shown::All
+}
+
 /// The section about single steps; nothing when none was asked for, or none is wrong.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = steps_of(check);

@@ -3,11 +3,11 @@ use super::{
     super::{
         describe::step_error,
         explain,
-        number::{count, general},
+        number::{count, counted, general},
         style::{Look, Style},
         table::{Align, Cell, Table},
     },
-    Check, divergence, fair, steps,
+    Check, closer, divergence, fair, steps,
 };
 use fosssim_judge::{Account, Book, Detail, Finding, Outcome, Overall, Ruling, Stop, Unreadable, share};
 use fosssim_mistakes::diagnose::Explanation;
@@ -20,7 +20,6 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         parts.extend(steps::render(check, style));
         return parts.join("\n");
     }
-    let is_other_scene = check.explanations.iter().any(Explanation::is_other_scene);
     parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
     parts.push(residuals(outcome, style));
     parts.extend(fair::render(outcome, style));
@@ -29,19 +28,36 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     if !account.examples.is_empty() && check.book() == Book::Parity {
         parts.push(findings(account, style));
     }
-    // What the official book has nothing against is worth a look where the other one has.
-    let other = outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
-    // Where the trace is another scene's, nothing that differs is a mistake.
-    if let (Some(first), false) = (account.first_divergence.or(other), is_other_scene) {
-        parts.push(divergence::render(first, outcome.steps, style));
-        parts.push(advice(first, style));
+    if let Some(first) = first(check) {
+        // It comes again where all are shown.
+        if !steps::all(check) {
+            parts.push(divergence::render(first, outcome.steps, style));
+        }
+        let lines: String = advice(first).iter().map(|line| format!("  - {line}\n")).collect();
+        parts.push(format!("{}\n{lines}", style.paint(Look::Strong, "What to look at")));
     }
-    if !is_other_scene {
+    if !is_other_scene(check) {
         parts.extend(explanations(check, style));
         parts.extend(steps::render(check, style));
     }
-    parts.extend(notes(check, style));
+    parts.extend(noted(check, style));
+    let commands: String = closer::commands(check).iter().map(|command| format!("  $ {command}\n")).collect();
+    if !commands.is_empty() {
+        parts.push(format!("{}\n{commands}", style.paint(Look::Strong, "Look closer")));
+    }
     parts.join("\n")
+}
+
+/// Where the trace is another scene's, nothing that differs is a mistake.
+pub(super) fn is_other_scene(check: &Check<'_>) -> bool {
+    check.explanations.iter().any(Explanation::is_other_scene)
+}
+
+/// The first finding that is worth a look: of the official book, or of the other one where the official has nothing.
+pub(super) fn first<'a>(check: &Check<'a>) -> Option<&'a Finding> {
+    let other = check.outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
+    let first = check.outcome.account(check.book()).first_divergence.or(other);
+    first.filter(|_| !is_other_scene(check))
 }
 
 /// What the program is likely to get wrong, before general advice is of use.
@@ -77,7 +93,10 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
         }
         Overall::None => {
             let judged = count(u64::from(outcome.steps_judged));
-            format!("judged {judged} of {steps} steps, then the trace could not be followed")
+            format!(
+                "judged {judged} of {}, then the trace could not be followed",
+                counted(outcome.steps.into(), "step")
+            )
         }
     };
     match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {
@@ -210,8 +229,8 @@ fn findings(account: Account<'_>, style: Style) -> String {
 }
 
 /// What to look at, by the kind of the first finding: what comes later often follows from it.
-fn advice(finding: &Finding, style: Style) -> String {
-    let words: &[&str] = match finding.detail {
+pub(super) fn advice(finding: &Finding) -> &'static [&'static str] {
+    match finding.detail {
         _ if finding.step == 0 => &["the first record: the scene's own positions and velocities, before any step"],
         Detail::MissedCollision { .. } => &[
             "the detection of this pair: the trace's own state at the start of the step leads to this impact",
@@ -224,6 +243,10 @@ fn advice(finding: &Finding, style: Style) -> String {
         Detail::WrongNormal { .. } => &[
             "the contact normal: from the first object to the second, at the time of impact, not normalised",
             "is it taken from the positions at that time, and not from those at the end of the step?",
+        ],
+        Detail::PolynomialCount { actual: 0, .. } => &[
+            "the detection: in this step it asks the course's root finder about no pair; is it written yet?",
+            "it is to ask about every pair in every pass, also about pairs that are far apart",
         ],
         Detail::PolynomialCount { expected, actual, .. } | Detail::PassCount { expected, actual, .. }
             if actual > expected =>
@@ -275,15 +298,17 @@ fn advice(finding: &Finding, style: Style) -> String {
         Detail::MixedForms { .. } => {
             &["the approach polynomial: one of its two accepted forms is to be used throughout"]
         }
-    };
-    let mut text = style.paint(Look::Strong, "What to look at") + "\n";
-    for line in words {
-        text += &format!("  - {line}\n");
     }
-    text
 }
 
-fn notes(check: &Check<'_>, style: Style) -> Option<String> {
+fn noted(check: &Check<'_>, style: Style) -> Option<String> {
+    let notes = notes(check);
+    let lines: String = notes.iter().map(|note| format!("  - {note}\n")).collect();
+    (!notes.is_empty()).then(|| format!("{}\n{lines}", style.paint(Look::Strong, "Notes")))
+}
+
+/// What else is worth knowing.
+pub(super) fn notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();
     if let Some(damage) = &outcome.damage {
@@ -312,6 +337,5 @@ fn notes(check: &Check<'_>, style: Style) -> Option<String> {
              {disagreements} disagreements"
         ));
     }
-    let lines: String = notes.iter().map(|note| format!("  - {note}\n")).collect();
-    (!notes.is_empty()).then(|| format!("{}\n{lines}", style.paint(Look::Strong, "Notes")))
+    notes
 }

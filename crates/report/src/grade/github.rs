@@ -43,6 +43,11 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
     text
 }
 
+/// One annotation: `error` or `warning`, its title and its words.
+pub(crate) fn annotation(level: &str, title: &str, words: &str) -> String {
+    format!("::{level} title={}::{}\n", property(title), data(words))
+}
+
 /// What follows `::` in a workflow command.
 fn data(text: &str) -> String {
     one_line(text).replace('%', "%25")

@@ -85,6 +85,7 @@ impl Format {
 
 pub use class::class;
 pub use csv_table::submissions as csv_of_submissions;
+pub(crate) use github::annotation;
 pub use json::line as json_line;
 pub use text::{Advice, Shown, Text, changes, score, table as text_table};
 

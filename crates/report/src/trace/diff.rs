@@ -1,7 +1,7 @@
 //! Two traces side by side, the first difference first.
 use super::{
     super::{
-        number::{count, exact},
+        number::{count, counted, exact},
         style::{Look, Style},
         table::{Align, Table},
         view::{CollisionView, Number, SCHEMA},
@@ -31,9 +31,10 @@ pub fn same(comparison: &Comparison) -> bool {
 /// For people.
 #[must_use]
 pub fn diff_text(names: &Names<'_>, comparison: &Comparison, style: Style) -> String {
-    let records = count(comparison.frames);
+    let records = counted(comparison.frames, "record");
+    let verb = if comparison.frames == 1 { "is" } else { "are" };
     if same(comparison) {
-        let mut text = format!("{}: {records} records are the same bit for bit\n", style.paint(Look::Good, "SAME"));
+        let mut text = format!("{}: {records} {verb} the same bit for bit\n", style.paint(Look::Good, "SAME"));
         if let Ok(trailing @ 1..) = comparison.left {
             text += &format!("the bytes behind the last record ({} each) were not compared\n", count(trailing));
         }
@@ -41,12 +42,12 @@ pub fn diff_text(names: &Names<'_>, comparison: &Comparison, style: Style) -> St
     }
     let head = style.paint(Look::Bad, "DIFFERENT");
     let mut text = match &comparison.first {
-        None => format!("{head}: the {records} records that both have are the same bit for bit\n"),
+        None => format!("{head}: the {records} that both have {verb} the same bit for bit\n"),
         Some(first) => {
             let mid = if first.mid { ", mid record" } else { "" };
             let differing = count(comparison.differing);
             let mut text = format!(
-                "{head}: {differing} of {records} records, the first in step {} (frame {}{mid})\n",
+                "{head}: {differing} of {records}, the first in step {} (frame {}{mid})\n",
                 first.step, first.frame
             );
             let mut table = Table::new([Align::Left, Align::Right, Align::Right]);
@@ -61,7 +62,10 @@ pub fn diff_text(names: &Names<'_>, comparison: &Comparison, style: Style) -> St
     for (name, end) in [(names.left, &comparison.left), (names.right, &comparison.right)] {
         match end {
             Ok(0) => {}
-            Ok(trailing) => text += &format!("{name}: {} bytes follow the last record\n", count(*trailing)),
+            Ok(trailing) => {
+                let follow = if *trailing == 1 { "follows" } else { "follow" };
+                text += &format!("{name}: {} {follow} the last record\n", counted(*trailing, "byte"));
+            }
             Err(error) => text += &format!("{name}: {error}\n"),
         }
     }

@@ -16,6 +16,7 @@ use crate::{
         shape::Shape,
         svg,
     },
+    report::number::counted,
     scene::Scene,
 };
 use anyhow::{Context, Result, bail};
@@ -57,8 +58,11 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
     let options = Options { size: arguments.size, label: !arguments.no_label };
     let mut reel = Reel::new(&scene.scene, main, overlay, options, picks);
     let to_stdout = matches!(target, Target::Stream(_)) && arguments.output == Path::new("-");
-    let place = arguments.output.display().to_string();
-    let words = target.draw(form, &mut reel, rate)?;
+    let place = input::shown(&arguments.output);
+    let words = target.draw(form, &mut reel, rate).map_err(|error| match error.is::<std::io::Error>() {
+        true => error.context(format!("cannot write {place}")),
+        false => error,
+    })?;
     for line in &stopped {
         console::complain(line.as_bytes());
     }
@@ -143,7 +147,7 @@ fn picks(arguments: &Render, form: Form, scene: &Scene) -> Result<Picks> {
     let last = scene.steps();
     if let Some(step) = arguments.step {
         if step > last {
-            bail!("the scene has {last} steps; there is no step {step}");
+            bail!("the scene has {}; there is no step {step}", counted(last.into(), "step"));
         }
         // Paths are the traces of what came before.
         let first = if scene.display.paths.is_empty() { step } else { 0 };
@@ -163,7 +167,8 @@ fn picks(arguments: &Render, form: Form, scene: &Scene) -> Result<Picks> {
         bail!("these would be {pictures} pictures; more than {MOST_PICTURES} are not drawn, add --every {least}");
     }
     if pictures == 0 {
-        bail!("no step is drawn: the scene has {last} steps, and every {every}th is asked for");
+        let steps = counted(last.into(), "step");
+        bail!("no step is drawn: the scene has {steps}, and every {every}th is asked for");
     }
     Ok(picks)
 }
@@ -252,17 +257,20 @@ impl Target {
     /// Draws everything, and says in words what it was.
     fn draw(self, form: Form, reel: &mut Reel, rate: Rate) -> Result<String> {
         let (pictures, size) = (reel.main.pictures, reel.size());
-        let steps = format!("steps {} to {}", reel.picks.step(1), reel.picks.step(pictures));
+        let steps = match (reel.picks.step(1), reel.picks.step(pictures)) {
+            (first, last) if first == last => format!("step {first}"),
+            (first, last) => format!("steps {first} to {last}"),
+        };
+        let counted_pictures = counted(pictures.into(), "picture");
         let every = match reel.picks.every {
             1 => String::new(),
             every => format!(", every {every}th"),
         };
         let film = |bytes: u64| {
             let seconds = short(f64::from(pictures) / f64::from(rate.per_second()));
-            let bytes =
-                if bytes > 0 { format!(", {} bytes", crate::report::number::count(bytes)) } else { String::new() };
+            let bytes = if bytes > 0 { format!(", {}", counted(bytes, "byte")) } else { String::new() };
             let per_second = rate.per_second();
-            format!("{pictures} pictures of {size}: {steps}{every}, {per_second} per second, {seconds} s{bytes},")
+            format!("{counted_pictures} of {size}: {steps}{every}, {per_second} per second, {seconds} s{bytes},")
         };
         match (self, form) {
             (Self::Folder(folder), Form::Folder(kind)) => {
@@ -282,7 +290,11 @@ impl Target {
                         format!("{} also holds older pictures, from {} on\n", folder.name(), names(pictures + 1));
                     console::complain(line.as_bytes());
                 }
-                Ok(format!("{pictures} pictures of {size}: {steps}{every}, {} to {},", names(1), names(pictures)))
+                let files = match pictures {
+                    1 => names(1),
+                    _ => format!("{} to {}", names(1), names(pictures)),
+                };
+                Ok(format!("{counted_pictures} of {size}: {steps}{every}, {files},"))
             }
             (Self::Stream(mut output), Form::One(kind)) => {
                 reel.single = true;
