@@ -123,18 +123,19 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         };
         list.iter().filter_map(settle).collect()
     };
-    let mut open: Vec<Vec<Explanation>> = traces.into_iter().map(kept).collect();
+    let mut open: Vec<Vec<Explanation>> = traces.into_iter().map(kept).filter(|list| !list.is_empty()).collect();
+    let mut covered = vec![false; open.len()];
     let mut found: Vec<Explanation> = unfinished(&open).into_iter().collect();
     let empty: Vec<String> = found.iter().flat_map(|one| one.same_as.clone()).collect();
-    leave_open(&mut open, &empty);
+    leave_open(&mut open, &mut covered, &empty);
     while found.len() < MOST {
-        open.retain(|list| !list.is_empty());
         let Some(next) = common(open.iter().map(Vec::as_slice)) else { break };
-        if !found.is_empty() && !next.is_complete() {
-            break;
+        if found.is_empty() || (next.is_complete() && is_supported(&open, &covered, &next.key)) {
+            leave_open(&mut open, &mut covered, std::slice::from_ref(&next.key));
+            found.push(next);
+        } else {
+            open.iter_mut().for_each(|list| list.retain(|one| one.key != next.key));
         }
-        leave_open(&mut open, std::slice::from_ref(&next.key));
-        found.push(next);
     }
     for one in &mut found {
         if one.key == Explanation::UNFINISHED && one.same_as.len() == 1 {
@@ -153,12 +154,11 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
     let mut refuted: Vec<String> = Vec::new();
     loop {
         let likely = several(traces.iter().copied(), &refuted);
-        let speaks_against = |one: &&Explanation| {
-            let is_new = !refuted.contains(&one.key);
-            is_new && right.iter().any(|scene| shows(scene, &one.key))
-        };
-        match likely.iter().find(speaks_against) {
-            Some(one) => refuted.push(one.key.clone()),
+        // What is not written yet stands for its stages.
+        let stages = likely.iter().filter(|one| one.key == Explanation::UNFINISHED).flat_map(|one| &one.same_as);
+        let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
+        match keys.find(|key| right.iter().any(|scene| shows(scene, key))).cloned() {
+            Some(key) => refuted.push(key),
             None => return refuted,
         }
     }
@@ -167,11 +167,27 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
 /// So many mistakes of a program are told.
 const MOST: usize = 3;
 
+/// Whether enough of what is left names this further mistake: a trace that nothing explains yet, or two others, where there
+/// are several. That polynomials are missing follows from what was found before.
+fn is_supported(open: &[Vec<Explanation>], covered: &[bool], key: &str) -> bool {
+    let naming = |wanted: bool| {
+        let of_sort = open.iter().zip(covered).filter(|(_, covered)| **covered == wanted);
+        of_sort.filter(|(list, _)| names_completely(list, key)).count()
+    };
+    key != "missing-polynomials" && (naming(false) > 0 || naming(true) >= open.len().min(2))
+}
+
+/// Whether a trace's explanations name a mistake, told or as not to be told apart, that reproduces everything.
+fn names_completely(list: &[Explanation], key: &str) -> bool {
+    list.iter().any(|one| one.is_complete() && (one.key == key || one.same_as.iter().any(|other| other == key)))
+}
+
 /// Leaves what these keys don't explain: of a trace that one of them explains only what is complete besides.
-fn leave_open(open: &mut [Vec<Explanation>], keys: &[String]) {
+fn leave_open(open: &mut [Vec<Explanation>], covered: &mut [bool], keys: &[String]) {
     let names = |one: &Explanation| keys.iter().any(|key| one.key == *key || one.same_as.contains(key));
-    for list in open {
+    for (list, covered) in open.iter_mut().zip(covered) {
         if list.iter().any(names) {
+            *covered = true;
             list.retain(|one| !names(one) && one.is_complete());
         }
     }
@@ -180,8 +196,14 @@ fn leave_open(open: &mut [Vec<Explanation>], keys: &[String]) {
 /// All stages that are told to be empty, as one explanation; their keys are in [`Explanation::same_as`].
 fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
     let told: Vec<&Explanation> = traces.iter().flatten().filter(|one| one.is_complete()).collect();
-    let rows: Vec<&Row> =
-        CATALOGUE.iter().filter(|row| is_empty_stage(row) && told.iter().any(|one| one.key == row.id)).collect();
+    let naming = |key: &str| traces.iter().filter(|list| names_completely(list, key)).count();
+    // What a trace can't tell from an empty stage may explain more traces than that.
+    let is_likeliest = |row: &&Row| {
+        let rivals = told.iter().filter(|one| one.key == row.id).flat_map(|one| &one.same_as);
+        rivals.map(|rival| naming(rival)).max().unwrap_or(0) <= naming(row.id)
+    };
+    let is_told = |row: &&Row| is_empty_stage(row) && told.iter().any(|one| one.key == row.id);
+    let rows: Vec<&Row> = CATALOGUE.iter().filter(is_told).filter(is_likeliest).collect();
     let of_rows = || told.iter().filter(|one| rows.iter().any(|row| row.id == one.key));
     (!rows.is_empty()).then(|| Explanation {
         key: Explanation::UNFINISHED.to_owned(),

@@ -18,3 +18,6 @@ pub use explain::{common, explain, refuted, several};
 pub use explanation::{Example, ExampleValue, Explanation};
 pub use known::{known, shows};
 pub use probe::probe_scenes;
+
+#[cfg(test)]
+mod tests;
