@@ -6,6 +6,7 @@ use fosssim_model::{
     trace::Layout,
 };
 
+#[expect(clippy::disallowed_methods, reason = "the scenes that come with the program")]
 fn asset(name: &str) -> Scene {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").join(name);
     original::read(&std::fs::read(path).expect("a scene")).expect("a scene").scene

@@ -182,12 +182,12 @@ fn listed(words: &[&str], last: &str) -> String {
 }
 
 /// What to say of a key that does not belong here.
-fn unknown(key: &Cow<'_, str>, keys: &[Key], place: &str) -> String {
+fn unknown(key: &str, keys: &[Key], place: &str) -> String {
     let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
     let here = keys.iter().map(|Key(name, ..)| *name);
     let hint = match closest(key, here.clone()) {
         Some(name) => format!("did you mean `{name}`?"),
-        None => match PLACES.iter().find(|(_, other)| names(*other).any(|name| name == key.as_ref())) {
+        None => match PLACES.iter().find(|(_, other)| names(other).any(|name| name == key)) {
             Some((other, _)) => format!("it belongs into {other}"),
             None => format!("there are {}", here.collect::<Vec<_>>().join(", ")),
         },

@@ -25,7 +25,7 @@ pub(super) fn is_name(path: &Path) -> bool {
 fn is_named(name: &OsStr) -> bool {
     let begins =
         |own: &&str| name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()));
-    NAMES.iter().any(|own| begins(&own))
+    NAMES.iter().any(begins)
 }
 
 /// The same as [`files`], looked up once: for a supervisor, which lives as long as one run and loses sight of most folders.

@@ -58,6 +58,9 @@ pub struct BatchOptions {
     pub recorded: bool,
 }
 
+/// Where to put the trace of a submission's scene.
+pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> PathBuf + Sync + 'a;
+
 /// Everything that the submissions of one grading have in common.
 #[derive(Clone, Copy)]
 pub struct Batch<'a> {
@@ -72,7 +75,7 @@ pub struct Batch<'a> {
     /// The folder for traces on which the grader itself failed; made when it is needed.
     pub faults: &'a Path,
     /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
-    pub traces: Option<&'a (dyn Fn(&Submission, &SceneTask) -> PathBuf + Sync)>,
+    pub traces: Option<&'a TraceFile<'a>>,
     /// Shows a result in the forms in which it will be reported, for nobody to see ([`Runner::rehearse`]).
     pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
 }

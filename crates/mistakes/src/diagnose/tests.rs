@@ -90,7 +90,6 @@ fn of_several_mistakes_some_are_named_and_no_other() {
     let count = |what: Said| said.iter().filter(|(said, _)| *said == what).count();
     let (all, some, nothing, wrong) = (count(Said::All), count(Said::Some), count(Said::Nothing), count(Said::Wrong));
     let lines: Vec<&String> = said.iter().filter(|(said, _)| *said != Said::All).map(|(_, line)| line).collect();
-    eprintln!("of {}: {all} all, {some} some, {nothing} nothing, {wrong} wrong\n{lines:#?}", said.len());
-    assert_eq!(wrong, 0, "{lines:#?}");
+    assert_eq!(wrong, 0, "of {}: {all} all, {some} some, {nothing} nothing, {wrong} wrong\n{lines:#?}", said.len());
     assert!(10 * (all + some) >= 8 * said.len(), "{lines:#?}");
 }
