@@ -156,7 +156,7 @@ test("hostile names are text, and a damaged trace has its page", async () => {
   page.on("dialog", () => assert.fail("a dialog"));
   assert.equal(await page.locator("img").count(), 0);
   assert.match(await page.locator(".names").innerText(), /<img src=x onerror=alert\(1\)>/);
-  assert.match(await page.locator(".names").innerText(), /\\u\{202e\}/);
+  assert.ok(!(await page.content()).includes("\u202e"), "nothing turns the direction of writing");
   assert.deepEqual(complaints, []);
   await close();
 });
