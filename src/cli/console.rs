@@ -9,7 +9,7 @@ use crate::{
     report::{style::Style, wrap},
 };
 use anyhow::{Context, Result};
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
     io::{self, IsTerminal, Write},
     sync::{
@@ -147,6 +147,9 @@ pub(super) fn show_bars() -> MultiProgress {
 pub(super) fn clear_bars() {
     if let Some(bars) = on_screen().take() {
         drop(bars.clear());
+        // Another thread may have drawn meanwhile; from here on none can, and what it drew is taken away.
+        bars.set_draw_target(ProgressDrawTarget::hidden());
+        drop(io::stderr().lock().write_all(b"\r\x1b[2K"));
     }
 }
 
