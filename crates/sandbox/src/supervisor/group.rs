@@ -223,12 +223,8 @@ impl Part {
     }
 
     fn try_in(kind: Kind, place: &Path) -> io::Result<Self> {
-        // In process namespaces, others may have our number.
-        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
-        let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
-        std::fs::create_dir(&path)?;
-        let mut part = File::open(&path).map(|folder| Self { kind, path, folder, limits: Vec::new() })?;
-        part.folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
+        let (path, folder) = claim(place)?;
+        let mut part = Self { kind, path, folder, limits: Vec::new() };
         // Only a group that can be entered and, in version 2, ended is of use.
         if kind == Kind::Unified {
             part.open(c"cgroup.kill", libc::O_WRONLY)?;
@@ -278,11 +274,29 @@ fn value_of(text: &str, key: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' ')?.trim().parse().ok())
 }
 
-/// Removes empty groups of supervisors that were killed: those that can be locked.
+/// Makes a folder and locks it, so that nobody who cleans up takes it away.
+///
+/// # Errors
+///
+/// `NotFound` when it was taken away before it was locked.
+fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
+    // In process namespaces, others may have our number.
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+    let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
+    std::fs::create_dir(&path)?;
+    let folder = File::open(&path)?;
+    folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
+    // Whoever takes it away holds the lock meanwhile: what is there now stays.
+    path.symlink_metadata()?;
+    Ok((path, folder))
+}
+
+/// Removes empty groups of supervisors that were killed: those that can be locked, and as long as they are.
 fn sweep(place: &Path) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
-        if ours && File::open(entry.path()).is_ok_and(|folder| folder.try_lock().is_ok()) {
+        let Some(folder) = ours.then(|| File::open(entry.path()).ok()).flatten() else { continue };
+        if folder.try_lock().is_ok() {
             // One with somebody in it stays.
             let _ = std::fs::remove_dir(entry.path());
         }
@@ -369,6 +383,34 @@ mod tests {
         let mut names: Vec<_> = std::fs::read_dir(place.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();
         assert_eq!(names, ["fosssim-oracle-2-2", "other"]);
+    }
+
+    #[test]
+    fn who_sweeps_never_takes_what_was_just_claimed() {
+        const CLAIMS: usize = 4000;
+        let place = tempfile::tempdir().unwrap();
+        let done = std::sync::atomic::AtomicBool::new(false);
+        let (mut held, mut lost) = (Vec::new(), 0);
+        std::thread::scope(|scope| {
+            for _ in 0..3 {
+                scope.spawn(|| {
+                    while !done.load(std::sync::atomic::Ordering::Relaxed) {
+                        sweep(place.path());
+                    }
+                });
+            }
+            for _ in 0..CLAIMS {
+                match claim(place.path()) {
+                    Ok((path, folder)) => held.push((path, folder)),
+                    Err(error) => assert_eq!(error.kind(), io::ErrorKind::NotFound, "{error}"),
+                }
+                if held.len() == 8 {
+                    lost += held.drain(..).filter(|(path, _)| std::fs::remove_dir(path).is_err()).count();
+                }
+            }
+            done.store(true, std::sync::atomic::Ordering::Relaxed);
+        });
+        assert_eq!(lost, 0);
     }
 
     #[test]
