@@ -55,6 +55,7 @@ pub(super) enum Command {
     Demo(Demo),
     Doctor(Doctor),
     Selftest(Selftest),
+    Serve(Serve),
     Original(Original),
     Completions(Completions),
     Man(Man),
@@ -342,6 +343,20 @@ Example:
 pub(super) struct Original {
     /// The original's own flags; original --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "FLAGS")]
+    pub(super) words: Vec<OsString>,
+}
+
+/// Runs a course's grading server: the program fosssim-server, which stands beside this one
+#[derive(Debug, Args)]
+#[command(
+    disable_help_flag = true,
+    after_help = "\
+Example:
+  fosssim-oracle serve --data course --listen 127.0.0.1:8080"
+)]
+pub(super) struct Serve {
+    /// The server's own options; serve --help lists them.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     pub(super) words: Vec<OsString>,
 }
 

@@ -29,6 +29,7 @@ mod samples;
 mod sandbox;
 mod scenes_corpus;
 mod scenes_props;
+mod serve;
 mod simulate;
 mod summaries;
 mod terminal;

@@ -1,11 +1,15 @@
 //! The service: a course's grading server that loses nothing, on SQLite out of the box and on PostgreSQL with any number
 //! of workers. docs/service.md tells how it works.
 
+pub mod access;
+pub mod archive;
 pub mod cli;
 pub mod db;
 pub mod ledger;
+pub mod problem;
 pub mod queue;
 mod secret;
 pub mod store;
 pub mod task;
+pub mod web;
 pub mod worker;

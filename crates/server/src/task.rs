@@ -12,6 +12,9 @@ pub struct Task {
     /// The rule books, when the suite is not to decide: `parity`, `fair` or `both`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rules: Option<String>,
+    /// How much the reports tell, when the suite is not to decide: `none`, `where`, `what` or `full`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hints: Option<String>,
     /// The program's name within a folder of sources.
     pub program: String,
     /// After so many seconds the grading is stopped, and what it has so far counts.

@@ -12,6 +12,7 @@ mod last_run;
 mod record;
 mod render;
 mod scene;
+mod serve;
 mod shell;
 mod simulate;
 mod submissions;
@@ -46,6 +47,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Demo(arguments) => host::demo(arguments),
         Command::Doctor(_) => host::doctor(),
         Command::Selftest(arguments) => host::selftest(arguments),
+        Command::Serve(arguments) => serve::run(arguments),
         Command::Completions(arguments) => shell::completions(arguments),
         Command::Man(arguments) => shell::manual(arguments),
         // Never gets here: it has its own way of ending.

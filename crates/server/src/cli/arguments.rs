@@ -1,7 +1,7 @@
 //! The command line as typed.
 use crate::db::Address;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::{net::SocketAddr, num::NonZeroUsize, path::PathBuf};
 
 /// The service of fosssim-oracle: takes submissions, grades them, keeps the grades.
 #[derive(Debug, Parser)]
@@ -24,7 +24,11 @@ pub(super) enum LogFormat {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
+    Serve(Serve),
     Worker(Worker),
+    AdminLink(AdminLink),
+    /// Prints the description of the API (OpenAPI).
+    Openapi,
 }
 
 /// Where everything is kept.
@@ -41,9 +45,6 @@ pub(super) struct Place {
 /// How workers work.
 #[derive(Debug, Args)]
 pub(super) struct Work {
-    /// Gradings at one time. One per core by default.
-    #[arg(long, value_name = "N")]
-    pub(super) slots: Option<NonZeroUsize>,
     /// Scenes of one grading at one time.
     #[arg(long, value_name = "N", default_value = "1")]
     pub(super) threads: NonZeroUsize,
@@ -58,6 +59,55 @@ pub(super) struct Work {
     pub(super) tries: u32,
 }
 
+/// Serves: takes submissions, shows grades, and grades with workers of its own.
+#[derive(Debug, Args)]
+pub(super) struct Serve {
+    #[command(flatten)]
+    pub(super) place: Place,
+    /// Where to listen. Only this machine by default: put a proxy with HTTPS in front for others.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", env = "FOSSSIM_LISTEN")]
+    pub(super) listen: SocketAddr,
+    /// The address that people know the server by, such as https://grades.example.org. With https, cookies are for HTTPS
+    /// only.
+    #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
+    pub(super) public_url: Option<String>,
+    /// Gradings at one time in this process; 0 leaves them to other workers. One per core by default.
+    #[arg(long, value_name = "N")]
+    pub(super) workers: Option<usize>,
+    /// Requests that an account may send in a minute.
+    #[arg(long, value_name = "N", default_value = "600", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) requests_per_minute: u32,
+    /// After so many seconds of silence a request is given up.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
+    pub(super) patience: u64,
+    #[command(flatten)]
+    pub(super) work: Work,
+}
+
+/// The scheme and host of an address that people type.
+fn public_url(text: &str) -> Result<String, String> {
+    let place = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
+    let host = place.map(|place| place.trim_end_matches('/')).unwrap_or_default();
+    if host.is_empty() || host.contains(['/', '?', '#', '@', ' ']) {
+        return Err("an address is https://HOST or http://HOST:PORT, without a path".to_owned());
+    }
+    Ok(text.trim_end_matches('/').to_owned())
+}
+
+/// Prints a link that signs an administrator in once: the way back in for who lost theirs.
+#[derive(Debug, Args)]
+pub(super) struct AdminLink {
+    #[command(flatten)]
+    pub(super) place: Place,
+    /// The administrator's login.
+    #[arg(default_value = "admin")]
+    pub(super) login: String,
+    /// The address that people know the server by.
+    #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url,
+        default_value = "http://127.0.0.1:8080")]
+    pub(super) public_url: String,
+}
+
 /// Grades what waits in the queue.
 #[derive(Debug, Args)]
 pub(super) struct Worker {
@@ -65,6 +115,15 @@ pub(super) struct Worker {
     pub(super) place: Place,
     #[command(flatten)]
     pub(super) work: Work,
+    /// Gradings at one time. One per core by default.
+    #[arg(long, value_name = "N")]
+    pub(super) slots: Option<NonZeroUsize>,
+    /// The server on another machine to work for, by its address; then this worker needs no database.
+    #[arg(long, value_name = "URL", requires = "token_file", conflicts_with = "database", value_parser = public_url)]
+    pub(super) server: Option<String>,
+    /// The file with the worker's token, which an administrator makes on the page "Administration".
+    #[arg(long, value_name = "FILE", requires = "server")]
+    pub(super) token_file: Option<PathBuf>,
     /// What this worker is called. Host and process by default.
     #[arg(long)]
     pub(super) name: Option<String>,

@@ -38,8 +38,21 @@ impl Folders {
         self.data.join("store")
     }
 
+    pub(super) fn incoming(&self) -> PathBuf {
+        self.data.join("incoming")
+    }
+
+    pub(super) fn backups(&self) -> PathBuf {
+        self.data.join("backups")
+    }
+
     pub(super) fn workers(&self) -> PathBuf {
         self.data.join("workers")
+    }
+
+    /// Workers of other servers: what they leave behind is no concern of a server that has the same folder.
+    pub(super) fn remote_workers(&self) -> PathBuf {
+        self.data.join("remote-workers")
     }
 
     pub(super) fn work(&self, worker: &str) -> PathBuf {

@@ -2,7 +2,9 @@
 
 mod arguments;
 mod folders;
+mod listen;
 mod logging;
+mod serve;
 mod worker;
 
 use anyhow::Result;
@@ -35,7 +37,13 @@ fn run(arguments: &Arguments) -> Result<()> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async {
         match &arguments.command {
+            Command::Serve(arguments) => serve::run(arguments).await,
             Command::Worker(arguments) => worker::run(arguments).await,
+            Command::AdminLink(arguments) => serve::admin_link(arguments).await,
+            Command::Openapi => {
+                print!("{}", crate::web::openapi());
+                Ok(())
+            }
         }
     })
 }

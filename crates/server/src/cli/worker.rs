@@ -10,9 +10,9 @@ use crate::{
     queue::{Bell, Policy},
     secret,
     store::Store,
-    worker::{self, Liveness, LocalDesk, Options, Program},
+    worker::{self, Desk, Liveness, LocalDesk, Options, Program, RemoteDesk},
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use std::{
     num::NonZeroUsize,
     path::{Path, PathBuf},
@@ -22,6 +22,9 @@ use tokio_util::sync::CancellationToken;
 
 pub(super) async fn run(arguments: &Worker) -> Result<()> {
     let stop = until_signalled()?;
+    if let (Some(server), Some(file)) = (&arguments.server, &arguments.token_file) {
+        return work_for(server, file, arguments, stop).await;
+    }
     let folders = Folders::open(&arguments.place)?;
     let address = folders.database(&arguments.place);
     let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
@@ -41,9 +44,50 @@ pub(super) async fn run(arguments: &Worker) -> Result<()> {
         policy: policy(&arguments.work),
         grader: grader(arguments.work.grader.as_deref())?,
     };
-    local.work(&arguments.work, arguments.name.as_deref(), stop).await?;
+    local.work(&arguments.work, arguments.slots, arguments.name.as_deref(), stop).await?;
     database.close().await;
     Ok(())
+}
+
+/// Works for a server on another machine.
+async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: CancellationToken) -> Result<()> {
+    let token = std::fs::read_to_string(token_file)
+        .with_context(|| format!("cannot read the token in {}", token_file.display()))?;
+    let token = token.trim();
+    // The text is not repeated: it may be another secret.
+    if !token.starts_with("fsw_") || !token.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_') {
+        bail!("{} holds no worker's token (fsw_...)", token_file.display());
+    }
+    let grader = grader(arguments.work.grader.as_deref())?;
+    let folders = Folders::open(&arguments.place)?;
+    let name = unique_name(arguments.name.as_deref());
+    // Jobs of workers that died here; the server gives them to others when their leases run out.
+    let alive = Liveness::begin(&folders.remote_workers(), &name).context("cannot show that this worker is alive")?;
+    for dead in worker::dead_workers(&folders.remote_workers())? {
+        drop(std::fs::remove_dir_all(folders.work(&dead)));
+        worker::forget(&folders.remote_workers(), &dead);
+    }
+    let desk = RemoteDesk::new(server, token, &name);
+    desk.tick(slots(arguments.slots)).await.map_err(|error| anyhow!("{server}: {error}"))?;
+    let folder = folders.work(&name);
+    tracing::info!(worker = name, server, slots = slots(arguments.slots), grader = %grader.display(), "working");
+    let options = Options { slots: slots(arguments.slots), folder: folder.clone() };
+    worker::work(desk, Program::new(grader, arguments.work.threads.get()), options, stop).await;
+    drop(std::fs::remove_dir_all(folder));
+    drop(alive);
+    tracing::info!(worker = name, "stopped");
+    Ok(())
+}
+
+/// Two workers of one name are two workers: what tells them apart comes from the process.
+fn unique_name(name: Option<&str>) -> String {
+    let name = plain(name.map_or_else(host, str::to_owned).as_str());
+    format!("{name}.{}.{}", std::process::id(), &secret::random_hex()[..6])
+}
+
+/// The slots that were asked for, or one per core.
+fn slots(slots: Option<NonZeroUsize>) -> usize {
+    slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
 /// The queue's patience as the arguments have it.
@@ -76,17 +120,17 @@ pub(super) struct Local {
 
 impl Local {
     /// Works until `stop` is cancelled.
-    pub(super) async fn work(&self, work: &Work, name: Option<&str>, stop: CancellationToken) -> Result<()> {
-        // Two workers of one name are two workers: what tells them apart comes from the process.
-        let name = format!(
-            "{}.{}.{}",
-            plain(name.map_or_else(host, str::to_owned).as_str()),
-            std::process::id(),
-            &secret::random_hex()[..6]
-        );
+    pub(super) async fn work(
+        &self,
+        work: &Work,
+        slots: Option<NonZeroUsize>,
+        name: Option<&str>,
+        stop: CancellationToken,
+    ) -> Result<()> {
+        let name = unique_name(name);
         let alive = Liveness::begin(&self.folders.workers(), &name).context("cannot show that this worker is alive")?;
         self.take_over().await?;
-        let slots = work.slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+        let slots = self::slots(slots);
         tracing::info!(worker = name, slots, grader = %self.grader.display(), "working");
         let desk =
             LocalDesk::new(self.database.clone(), self.store.clone(), self.bell.clone(), self.policy, name.clone());

@@ -7,6 +7,7 @@ mod grader;
 mod liveness;
 mod local;
 mod program;
+mod remote;
 mod slots;
 
 pub use desk::{Answer, Desk, DeskError, Job};
@@ -14,4 +15,5 @@ pub use grader::{Graded, Grader, GraderFault, NewFile};
 pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalDesk;
 pub use program::Program;
+pub use remote::RemoteDesk;
 pub use slots::{Options, work};

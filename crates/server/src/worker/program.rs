@@ -4,7 +4,10 @@ use super::{
     Graded, Grader, GraderFault, NewFile,
     child::{Child, End},
 };
-use crate::task::{Form, Suite, Task};
+use crate::{
+    archive::{self, Limits},
+    task::{Form, Suite, Task},
+};
 use serde::Deserialize;
 use std::{
     fs, io,
@@ -20,6 +23,9 @@ const GRACE: Duration = Duration::from_secs(20);
 
 /// How much of the grader's messages is kept for the administrator.
 const MESSAGE: usize = 2000;
+
+/// The schema of `grade.json` that is read here.
+const SCHEMA: u32 = 3;
 
 /// The reports that a grading writes: format, file, media type.
 const REPORTS: [(&str, &str, &str); 2] =
@@ -42,12 +48,18 @@ impl Program {
     fn command(&self, task: &Task, submission: &Path, folder: &Path) -> Command {
         let mut command = Command::new(&self.path);
         command.arg("grade").arg(submission).arg("--jobs").arg(self.threads.to_string());
+        if task.submission.form == Form::Sources {
+            command.arg("--single").arg("--program").arg(&task.program);
+        }
         match &task.suite {
             Suite::Named(name) => command.arg("--suite").arg(name),
             Suite::Archive(_) => command.arg("--suite").arg(folder.join("suite/suite.toml")),
         };
         if let Some(rules) = &task.rules {
             command.arg("--rules").arg(rules);
+        }
+        if let Some(hints) = &task.hints {
+            command.arg("--hints").arg(hints);
         }
         for (format, file, _) in REPORTS {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
@@ -72,10 +84,16 @@ impl Grader for Program {
         folder: &Path,
         stop: CancellationToken,
     ) -> Result<Graded, GraderFault> {
-        if task.submission.form != Form::Program || suite.is_some() {
-            return Err(GraderFault::Failed("only programs and named suites can be graded so far".to_owned()));
+        let program = match task.submission.form {
+            Form::Program => {
+                place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?
+            }
+            Form::Sources => unpack(submission, folder.join("submission")).await?,
+            Form::Traces => return Err(GraderFault::Failed("traces can't be graded yet".to_owned())),
+        };
+        if let Some(suite) = suite {
+            unpack(suite, folder.join("suite")).await?;
         }
-        let program = place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?;
         let messages = folder.join("messages.txt");
         let mut command = self.command(task, &program, folder);
         command.stderr(fs::File::create(&messages).map_err(cannot("write the messages"))?);
@@ -138,6 +156,28 @@ fn cannot(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
 
+/// Unpacks an archive into a new folder. It was looked through when it came, so that it can be.
+async fn unpack(archive: &Path, folder: PathBuf) -> Result<PathBuf, GraderFault> {
+    let archive = archive.to_owned();
+    let unpacking = tokio::task::spawn_blocking(move || {
+        fs::create_dir(&folder).map_err(|error| error.to_string())?;
+        archive::unpack(&archive, &folder, Limits::USUAL).map_err(|error| error.to_string())?;
+        Ok::<_, String>(only_folder(folder))
+    });
+    let unpacked = unpacking.await.map_err(|error| GraderFault::Failed(error.to_string()))?;
+    unpacked.map_err(|error| GraderFault::Failed(format!("cannot unpack an archive: {error}")))
+}
+
+/// The folder that holds everything: many archives have one at their top, and nothing else.
+fn only_folder(folder: PathBuf) -> PathBuf {
+    let Ok(entries) = fs::read_dir(&folder) else { return folder };
+    let mut entries = entries.flatten();
+    match (entries.next(), entries.next()) {
+        (Some(only), None) if only.path().is_dir() => only.path(),
+        _ => folder,
+    }
+}
+
 /// The submission under its own name, executable: reports and messages speak of it so.
 fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<PathBuf> {
     if name.is_empty() || name.starts_with('.') || name.contains(['/', '\0']) {
@@ -196,8 +236,8 @@ fn read_grade(file: &Path) -> Result<Graded, String> {
     let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
     let report: Report =
         serde_json::from_slice(&bytes).map_err(|error| format!("grade.json can't be read: {error}"))?;
-    if report.schema != 2 {
-        return Err(format!("grade.json has schema {}, this server reads 2", report.schema));
+    if report.schema != SCHEMA {
+        return Err(format!("grade.json has schema {}, this server reads {SCHEMA}", report.schema));
     }
     let [grade] = report.grades.as_slice() else {
         return Err(format!("grade.json holds {} grades instead of one", report.grades.len()));
@@ -220,4 +260,16 @@ fn read_grade(file: &Path) -> Result<Graded, String> {
         version: report.version,
         files: Vec::new(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    /// A grader of another schema would make every grading a judge error.
+    #[test]
+    fn grades_are_read_as_the_grader_writes_them() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../schemas/grade.schema.json");
+        let schema: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(file).expect("the schema")).expect("JSON");
+        assert_eq!(schema["properties"]["schema"]["const"], super::SCHEMA);
+    }
 }

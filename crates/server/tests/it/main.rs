@@ -5,4 +5,5 @@ mod migrations;
 mod queue;
 mod storm;
 mod support;
+mod web;
 mod worker;

@@ -71,6 +71,7 @@ fn a_job_that_may_kill_its_worker_runs_alone() {
                 submission: Input { form: Form::Program, name: name.to_owned(), artefact: artefact.clone() },
                 suite: Suite::Named("t2m2".to_owned()),
                 rules: None,
+                hints: None,
                 program: "FOSSSim".to_owned(),
                 seconds: 60,
             };

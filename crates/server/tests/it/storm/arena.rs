@@ -137,6 +137,7 @@ impl Arena {
             submission: Input { form: Form::Program, name: name.to_owned(), artefact },
             suite: Suite::Named("storm".to_owned()),
             rules: None,
+            hints: None,
             program: "FOSSSim".to_owned(),
             seconds: 600,
         };

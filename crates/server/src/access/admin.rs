@@ -1,0 +1,250 @@
+//! Administrators.
+use super::{
+    House, NewSecret, TokenInfo, identity,
+    person::{Account, token_info},
+    view::{self, Course, Deed, Event, Queue},
+};
+use crate::{
+    db::{DbError, Row, Transaction},
+    problem::Problem,
+    values,
+};
+
+/// Somebody who may do everything.
+pub struct Admin {
+    pub(super) account: Account,
+    pub(super) house: House,
+}
+
+impl Admin {
+    /// Who it is.
+    #[must_use]
+    pub fn account(&self) -> &Account {
+        &self.account
+    }
+
+    /// The house.
+    #[must_use]
+    pub fn house(&self) -> &House {
+        &self.house
+    }
+
+    async fn note(&self, transaction: &mut Transaction, kind: &'static str, text: &str) -> Result<(), DbError> {
+        let deed = Deed { kind, actor: self.account.id, course: None, assignment: None, submission: None, text };
+        view::note(transaction, &deed).await
+    }
+
+    /// Makes a course.
+    ///
+    /// # Errors
+    /// When there is one of this name.
+    pub async fn new_course(&self, slug: &str, title: &str) -> Result<Course, Problem> {
+        identity::check_slug("a course's name", slug)?;
+        identity::check_title("a title", title)?;
+        let mut transaction = self.house.0.database.begin().await?;
+        let made = transaction
+            .execute(
+                "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now}) ON CONFLICT (slug) DO NOTHING",
+                values![slug, title],
+            )
+            .await?;
+        if made == 0 {
+            return Err(Problem::conflict("there is a course of this name", "give it another name"));
+        }
+        self.note(&mut transaction, "course", &format!("{slug} ({title})")).await?;
+        transaction.commit().await?;
+        Ok(Course { slug: slug.to_owned(), title: title.to_owned() })
+    }
+
+    /// All accounts.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn accounts(&self) -> Result<Vec<Account>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let rows = transaction
+            .rows("SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL ORDER BY login", values![])
+            .await?;
+        Ok(rows.iter().map(Account::read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Makes an account, or changes whether it may do everything, and returns a link that signs in once.
+    ///
+    /// # Errors
+    /// When a name is none.
+    pub async fn set_account(&self, login: &str, name: &str, is_admin: bool) -> Result<NewSecret, Problem> {
+        identity::check_slug("a login", login)?;
+        identity::check_title("a name", name)?;
+        if login == self.account.login && !is_admin {
+            return Err(Problem::conflict("this is your own account", "ask another administrator"));
+        }
+        let mut transaction = self.house.0.database.begin().await?;
+        let was = transaction
+            .row("SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}", values![login])
+            .await?;
+        let was = was.as_ref().map(Account::read).transpose()?;
+        let row = transaction
+            .one(
+                "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
+                 ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin RETURNING id",
+                values![login, name, is_admin],
+            )
+            .await?;
+        let account = row.int("id")?;
+        if was.is_some_and(|was| was.is_admin != is_admin) {
+            identity::end_all(&mut transaction, account, true).await?;
+        }
+        let link = identity::new_link(&mut transaction, account, Some(self.account.id)).await?;
+        let text = format!("{login}{}; a link to sign in", if is_admin { " is an administrator" } else { "" });
+        self.note(&mut transaction, "account", &text).await?;
+        transaction.commit().await?;
+        Ok(link)
+    }
+
+    /// Shuts an account: it can't sign in any more, and what it handed in stays.
+    ///
+    /// # Errors
+    /// When there is none, or it is one's own.
+    pub async fn disable_account(&self, login: &str) -> Result<(), Problem> {
+        if login == self.account.login {
+            return Err(Problem::conflict("this is your own account", "ask another administrator"));
+        }
+        let mut transaction = self.house.0.database.begin().await?;
+        let row = transaction
+            .row(
+                "UPDATE account SET disabled_at = {now} WHERE login = ? AND disabled_at IS NULL RETURNING id",
+                values![login],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::not_found("account")) };
+        identity::end_all(&mut transaction, row.int("id")?, true).await?;
+        self.note(&mut transaction, "account", &format!("{login} is shut")).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// The tokens of workers.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn worker_tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT id, name, created_at FROM token WHERE account IS NULL AND revoked_at IS NULL ORDER BY id",
+                values![],
+            )
+            .await?;
+        Ok(rows.iter().map(token_info).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Makes a token for workers.
+    ///
+    /// # Errors
+    /// When its name is none.
+    pub async fn new_worker_token(&self, name: &str) -> Result<(TokenInfo, NewSecret), Problem> {
+        identity::check_slug("a worker's name", name)?;
+        let mut transaction = self.house.0.database.begin().await?;
+        let (id, secret) = identity::new_token(&mut transaction, None, name, Some(self.account.id)).await?;
+        let row: Row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
+        let info = token_info(&row)?;
+        self.note(&mut transaction, "worker token", &format!("{name} ({id})")).await?;
+        transaction.commit().await?;
+        Ok((info, secret))
+    }
+
+    /// Revokes a token of workers.
+    ///
+    /// # Errors
+    /// When there is none of this number.
+    pub async fn revoke_worker_token(&self, id: i64) -> Result<(), Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let revoked = transaction
+            .execute(
+                "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL",
+                values![id],
+            )
+            .await?;
+        if revoked == 0 {
+            return Err(Problem::not_found("token"));
+        }
+        self.note(&mut transaction, "worker token", &format!("{id} is revoked")).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// The queue and the workers.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn queue(&self) -> Result<Queue, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        Ok(view::queue(&mut transaction, &self.house).await?)
+    }
+
+    /// Everything that happened before the event of this number, latest first.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
+                 LEFT JOIN account ON account.id = event.actor
+                 WHERE event.id < ? ORDER BY event.id DESC LIMIT 200",
+                values![before.unwrap_or(i64::MAX)],
+            )
+            .await?;
+        Ok(rows.iter().map(view::read_event).collect::<Result<_, DbError>>()?)
+    }
+}
+
+impl House {
+    /// The link of a fresh server: signs its first administrator in. Nothing once there is one who has signed in.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn first_link(&self) -> Result<Option<NewSecret>, Problem> {
+        let mut transaction = self.0.database.begin().await?;
+        transaction
+            .execute(
+                "INSERT INTO account (login, name, is_admin, created_at) VALUES ('admin', 'Administrator', 1, {now})
+                 ON CONFLICT (login) DO NOTHING",
+                values![],
+            )
+            .await?;
+        let known = transaction
+            .row(
+                "SELECT account.id FROM account JOIN sign_in_link ON sign_in_link.account = account.id
+                 WHERE account.is_admin = 1 AND sign_in_link.used_at IS NOT NULL",
+                values![],
+            )
+            .await?;
+        if known.is_some() {
+            return Ok(None);
+        }
+        let account = transaction
+            .one("SELECT id FROM account WHERE login = 'admin' AND is_admin = 1", values![])
+            .await?
+            .int("id")?;
+        let link = identity::new_link(&mut transaction, account, None).await?;
+        transaction.commit().await?;
+        Ok(Some(link))
+    }
+
+    /// A new link for an administrator, for whoever can run programs on the server: the way back in.
+    ///
+    /// # Errors
+    /// When there is no such administrator.
+    pub async fn admin_link(&self, login: &str) -> Result<NewSecret, Problem> {
+        let mut transaction = self.0.database.begin().await?;
+        let row = transaction
+            .row("SELECT id FROM account WHERE login = ? AND is_admin = 1 AND disabled_at IS NULL", values![login])
+            .await?;
+        let Some(row) = row else { return Err(Problem::not_found("administrator")) };
+        let link = identity::new_link(&mut transaction, row.int("id")?, None).await?;
+        transaction.commit().await?;
+        Ok(link)
+    }
+}

@@ -1,0 +1,216 @@
+//! Tokens, sessions and links that sign in. Each is 256 random bits; the database has the digest only.
+use crate::{
+    db::{DbError, Transaction},
+    problem::Problem,
+    secret::{hex, random_hex},
+    values,
+};
+use sha2::{Digest as _, Sha256};
+use std::fmt;
+
+use super::person::Account;
+
+/// How long a session lasts after it was last seen.
+const SESSION: i64 = 14 * 24 * 3600 * 1000;
+
+/// How long a link that signs in is good for.
+const LINK: i64 = 7 * 24 * 3600 * 1000;
+
+/// A session that was not seen for so long is noted again.
+const SEEN_EVERY: i64 = 3600 * 1000;
+
+/// What tokens of people and of workers begin with: whoever finds one knows what it is, and so do scanners.
+pub(super) const PERSON: &str = "fso_";
+pub(super) const WORKER: &str = "fsw_";
+
+/// A secret that was just made: shown once.
+#[derive(Clone, PartialEq, Eq)]
+pub struct NewSecret(String);
+
+impl NewSecret {
+    pub(super) fn new(prefix: &str) -> Self {
+        Self(format!("{prefix}{}{}", random_hex(), random_hex()))
+    }
+
+    /// The secret itself, for the one it belongs to.
+    #[must_use]
+    pub fn reveal(&self) -> &str {
+        &self.0
+    }
+
+    pub(super) fn digest(&self) -> String {
+        digest(&self.0)
+    }
+}
+
+impl fmt::Debug for NewSecret {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("NewSecret(...)")
+    }
+}
+
+/// A new session: goes into a cookie.
+#[derive(Debug, Clone)]
+pub struct Session(pub(super) NewSecret);
+
+impl Session {
+    /// What the cookie holds.
+    #[must_use]
+    pub fn secret(&self) -> &str {
+        self.0.reveal()
+    }
+}
+
+/// What the database keeps of a secret. Random as it is, nobody finds it by trying.
+pub(super) fn digest(secret: &str) -> String {
+    hex(&Sha256::digest(secret))
+}
+
+/// Whose token it is.
+pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str) -> Result<Account, Problem> {
+    let row = transaction
+        .row(
+            "SELECT account.id, account.login, account.name, account.is_admin FROM token
+             JOIN account ON account.id = token.account
+             WHERE token.digest = ? AND token.revoked_at IS NULL AND account.disabled_at IS NULL",
+            values![digest(token)],
+        )
+        .await?;
+    match row {
+        Some(row) => Ok(Account::read(&row)?),
+        None => Err(Problem::unknown_secret("token")),
+    }
+}
+
+/// Whose session it is, and whether it is to be noted as seen.
+pub(super) async fn account_of_session(
+    transaction: &mut Transaction,
+    session: &str,
+) -> Result<Option<(Account, bool)>, Problem> {
+    let row = transaction
+        .row(
+            "SELECT account.id, account.login, account.name, account.is_admin, session.seen_at, {now} AS now
+             FROM session JOIN account ON account.id = session.account
+             WHERE session.digest = ? AND session.expires_at > {now} AND account.disabled_at IS NULL",
+            values![digest(session)],
+        )
+        .await?;
+    let Some(row) = row else { return Ok(None) };
+    let stale = row.int("now")? - row.int("seen_at")? > SEEN_EVERY;
+    Ok(Some((Account::read(&row)?, stale)))
+}
+
+/// Lets a session last from now on.
+pub(super) async fn session_seen(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?",
+            values![SESSION, digest(session)],
+        )
+        .await?;
+    Ok(())
+}
+
+/// Begins a session.
+pub(super) async fn begin_session(transaction: &mut Transaction, account: i64) -> Result<Session, DbError> {
+    let secret = NewSecret::new("");
+    transaction.execute("DELETE FROM session WHERE expires_at < {now}", values![]).await?;
+    transaction
+        .execute(
+            "INSERT INTO session (digest, account, created_at, seen_at, expires_at)
+             VALUES (?, ?, {now}, {now}, {now} + ?)",
+            values![secret.digest(), account, SESSION],
+        )
+        .await?;
+    Ok(Session(secret))
+}
+
+/// Ends a session.
+pub(super) async fn end_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
+    transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await?;
+    Ok(())
+}
+
+/// Makes a link that signs in once; earlier ones of the account that were not used are void.
+pub(super) async fn new_link(
+    transaction: &mut Transaction,
+    account: i64,
+    by: Option<i64>,
+) -> Result<NewSecret, DbError> {
+    let secret = NewSecret::new("");
+    transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
+    transaction
+        .execute(
+            "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at)
+             VALUES (?, ?, ?, {now}, {now} + ?)",
+            values![secret.digest(), account, by, LINK],
+        )
+        .await?;
+    Ok(secret)
+}
+
+/// Uses up a link, and says whose it was.
+pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Result<Option<i64>, DbError> {
+    let row = transaction
+        .row(
+            "UPDATE sign_in_link SET used_at = {now} WHERE digest = ? AND used_at IS NULL AND expires_at > {now}
+             RETURNING account",
+            values![digest(link)],
+        )
+        .await?;
+    let Some(row) = row else { return Ok(None) };
+    let account = row.int("account")?;
+    let able = transaction.row("SELECT id FROM account WHERE id = ? AND disabled_at IS NULL", values![account]).await?;
+    Ok(able.map(|_| account))
+}
+
+/// Somebody may do more from now on: whoever signed in for them before is to do so again.
+pub(super) async fn end_all(transaction: &mut Transaction, account: i64, tokens: bool) -> Result<(), DbError> {
+    transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await?;
+    transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
+    if tokens {
+        transaction
+            .execute("UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL", values![account])
+            .await?;
+    }
+    Ok(())
+}
+
+/// Makes a token.
+pub(super) async fn new_token(
+    transaction: &mut Transaction,
+    account: Option<i64>,
+    name: &str,
+    by: Option<i64>,
+) -> Result<(i64, NewSecret), DbError> {
+    let secret = NewSecret::new(if account.is_some() { PERSON } else { WORKER });
+    let row = transaction
+        .one(
+            "INSERT INTO token (account, name, digest, created_by, created_at) VALUES (?, ?, ?, ?, {now}) RETURNING id",
+            values![account, name, secret.digest(), by],
+        )
+        .await?;
+    Ok((row.int("id")?, secret))
+}
+
+/// A name that people gave to something: shown in pages, logs and tables.
+pub(super) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
+    let length = text.chars().count();
+    if !(1..=200).contains(&length) || text.chars().any(char::is_control) || text.trim() != text {
+        return Err(Problem::invalid(format!(
+            "{what} is 1 to 200 characters long, without control characters and spaces at its ends"
+        )));
+    }
+    Ok(())
+}
+
+/// A name that stands in addresses.
+pub(super) fn check_slug(what: &str, text: &str) -> Result<(), Problem> {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.');
+    if !(1..=60).contains(&text.len()) || !text.chars().all(plain) || text.starts_with(['-', '.', '_']) {
+        return Err(Problem::invalid(format!(
+            "{what} is 1 to 60 small letters, digits, dots, dashes and underscores, and begins with a letter or digit"
+        )));
+    }
+    Ok(())
+}

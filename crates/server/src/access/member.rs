@@ -1,0 +1,167 @@
+//! A member of a course: a student, or staff who tries something out. They see their own submissions; staff sees all.
+use super::{
+    House,
+    person::Account,
+    view::{self, Assignment, Course, Event, FileInfo, History, Submission},
+};
+use crate::{
+    db::{DbError, Transaction},
+    problem::Problem,
+    store::Digest,
+    values,
+};
+
+/// A member of a course.
+pub struct Member {
+    pub(super) account: Account,
+    pub(super) course: i64,
+    pub(super) slug: String,
+    pub(super) title: String,
+    pub(super) is_staff: bool,
+    pub(super) house: House,
+}
+
+impl Member {
+    /// Who it is.
+    #[must_use]
+    pub fn account(&self) -> &Account {
+        &self.account
+    }
+
+    /// The course.
+    #[must_use]
+    pub fn course(&self) -> Course {
+        Course { slug: self.slug.clone(), title: self.title.clone() }
+    }
+
+    /// Whether they are of its staff.
+    #[must_use]
+    pub fn is_staff(&self) -> bool {
+        self.is_staff
+    }
+
+    /// The house.
+    #[must_use]
+    pub fn house(&self) -> &House {
+        &self.house
+    }
+
+    /// The assignments that they may see.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn assignments(&self) -> Result<Vec<Assignment>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT id, slug, title, visible, settings FROM assignment
+                 WHERE course = ? AND (visible = 1 OR ? = 1) ORDER BY id",
+                values![self.course, self.is_staff],
+            )
+            .await?;
+        rows.iter().map(view::read_assignment).collect()
+    }
+
+    /// One of them.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        self.find_assignment(&mut transaction, slug).await
+    }
+
+    pub(super) async fn find_assignment(
+        &self,
+        transaction: &mut Transaction,
+        slug: &str,
+    ) -> Result<Assignment, Problem> {
+        let row = transaction
+            .row(
+                "SELECT id, slug, title, visible, settings FROM assignment
+                 WHERE course = ? AND slug = ? AND (visible = 1 OR ? = 1)",
+                values![self.course, slug, self.is_staff],
+            )
+            .await?;
+        row.as_ref().map_or_else(|| Err(Problem::not_found("assignment")), view::read_assignment)
+    }
+
+    /// Their own submissions to an assignment, newest first.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, assignment).await?;
+        Ok(view::submissions_of(&mut transaction, assignment.id, self.account.id).await?)
+    }
+
+    pub(super) async fn find_submission(&self, transaction: &mut Transaction, id: i64) -> Result<Submission, Problem> {
+        let found = view::submission(transaction, &self.house, self.course, id).await?;
+        found
+            .filter(|submission| self.is_staff || submission.account == self.account.id)
+            .ok_or_else(|| Problem::not_found("submission"))
+    }
+
+    /// A submission: one of their own, or any of the course for staff.
+    ///
+    /// # Errors
+    /// When they may see none of this number.
+    pub async fn submission(&self, id: i64) -> Result<Submission, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        self.find_submission(&mut transaction, id).await
+    }
+
+    /// How its grade came to be.
+    ///
+    /// # Errors
+    /// When they may see none of this number.
+    pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        self.find_submission(&mut transaction, id).await?;
+        Ok(view::history(&mut transaction, id).await?)
+    }
+
+    /// What happened to it after the event of this number.
+    ///
+    /// # Errors
+    /// When they may see none of this number.
+    pub async fn events(&self, id: i64, after: i64) -> Result<(Submission, Vec<Event>), Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let submission = self.find_submission(&mut transaction, id).await?;
+        Ok((submission, view::events_of(&mut transaction, id, after).await?))
+    }
+
+    /// One of the reports on it.
+    ///
+    /// # Errors
+    /// When there is none of this name.
+    pub async fn report(&self, id: i64, name: &str) -> Result<(FileInfo, Vec<u8>), Problem> {
+        let submission = self.submission(id).await?;
+        let file = submission
+            .grade
+            .and_then(|grade| grade.files.into_iter().find(|file| file.name == name))
+            .ok_or_else(|| Problem::not_found("report"))?;
+        let bytes = self.house.bytes(&file.digest, file.size).await?;
+        Ok((file, bytes))
+    }
+
+    /// What was handed in.
+    ///
+    /// # Errors
+    /// When they may see none of this number.
+    pub async fn upload(&self, id: i64) -> Result<(Submission, Vec<u8>), Problem> {
+        let submission = self.submission(id).await?;
+        let bytes = self.house.bytes(&submission.digest, submission.size).await?;
+        Ok((submission, bytes))
+    }
+}
+
+impl House {
+    /// The bytes of an artefact that the database names.
+    async fn bytes(&self, digest: &str, size: i64) -> Result<Vec<u8>, Problem> {
+        let digest: Digest =
+            digest.parse().map_err(|_| Problem::from(DbError::Other("a digest is none".to_owned())))?;
+        Ok(self.0.store.bytes(&digest, u64::try_from(size).unwrap_or(0)).await?)
+    }
+}

@@ -1,0 +1,113 @@
+//! Who may do what. Requests get their hands on the database through one of these only, and each offers what its role
+//! allows and nothing else: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with their own
+//! submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. A handler says whom it
+//! serves by the type it takes, and one that forgets to has nothing to read from.
+
+mod admin;
+mod identity;
+mod member;
+mod person;
+mod regrade;
+mod remote;
+mod request;
+mod settings;
+mod staff;
+mod submit;
+mod throttle;
+mod view;
+mod visitor;
+
+pub use admin::Admin;
+pub use identity::{NewSecret, Session};
+pub use member::Member;
+pub use person::{Account, CourseOf, Person, TokenInfo};
+pub use regrade::{Change, Regrade, RegradeState};
+pub use remote::{Claimed, Remote};
+pub use request::{Secrets, cookie_name};
+pub use settings::{Settings, is_file_name};
+pub use staff::{MemberInfo, Staff, Standing};
+pub use submit::{Accepted, Upload};
+pub use view::{Assignment, Course, Event, FileInfo, Graded, History, Queue, QueueWorker, Submission};
+pub use visitor::{Metrics, Visitor};
+
+use crate::{
+    db::Database,
+    queue::{Bell, Ear, Policy},
+    store::Store,
+};
+use std::{path::PathBuf, sync::Arc, time::Duration};
+use tokio_util::sync::CancellationToken;
+
+/// What the service stands on. Its parts are for this room alone.
+#[derive(Debug, Clone)]
+pub struct House(Arc<Parts>);
+
+/// What a house is built from.
+#[derive(Debug)]
+pub struct Parts {
+    /// The database.
+    pub database: Database,
+    /// The store of artefacts.
+    pub store: Store,
+    /// Rings when something happens.
+    pub bell: Bell,
+    /// The queue's patience.
+    pub policy: Policy,
+    /// Where uploads wait until they are stored.
+    pub incoming: PathBuf,
+    /// The address that people know the service by.
+    pub public: String,
+    /// How long a body may pause.
+    pub patience: Duration,
+    /// Requests of one account in a minute.
+    pub requests_per_minute: u32,
+    /// Counts these requests.
+    pub throttle: Throttle,
+    /// Cancelled when the server is to end: whoever waits for something to happen stops waiting.
+    pub closing: CancellationToken,
+}
+
+pub use throttle::Throttle;
+
+impl House {
+    /// A house from its parts.
+    #[must_use]
+    pub fn new(parts: Parts) -> Self {
+        Self(Arc::new(parts))
+    }
+
+    /// The address that people know the service by.
+    #[must_use]
+    pub fn public(&self) -> &str {
+        &self.0.public
+    }
+
+    /// Whether people come by HTTPS.
+    #[must_use]
+    pub fn is_secure(&self) -> bool {
+        self.0.public.starts_with("https://")
+    }
+
+    /// How long a body may pause.
+    #[must_use]
+    pub fn patience(&self) -> Duration {
+        self.0.patience
+    }
+
+    /// Where uploads wait until they are stored.
+    #[must_use]
+    pub fn incoming(&self) -> &std::path::Path {
+        &self.0.incoming
+    }
+
+    /// Waits until the server is to end.
+    pub async fn closing(&self) {
+        self.0.closing.cancelled().await;
+    }
+
+    /// Hears whatever happens.
+    #[must_use]
+    pub fn ear(&self) -> Ear {
+        self.0.bell.ear()
+    }
+}

@@ -1,0 +1,147 @@
+//! Somebody who is signed in.
+use super::{House, NewSecret, identity, view::Course};
+use crate::{
+    db::{DbError, Row},
+    problem::Problem,
+    values,
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// Somebody's account.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Account {
+    /// Its number.
+    #[serde(skip)]
+    pub(crate) id: i64,
+    /// What it is called in addresses and tables.
+    pub login: String,
+    /// What its owner is called.
+    pub name: String,
+    /// Whether it may do everything.
+    pub is_admin: bool,
+}
+
+impl Account {
+    pub(super) fn read(row: &Row) -> Result<Self, DbError> {
+        Ok(Self {
+            id: row.int("id")?,
+            login: row.text("login")?,
+            name: row.text("name")?,
+            is_admin: row.flag("is_admin")?,
+        })
+    }
+}
+
+/// A course, and what somebody is in it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct CourseOf {
+    /// The course.
+    #[serde(flatten)]
+    pub course: Course,
+    /// `student`, `staff`, or `admin`.
+    pub role: String,
+}
+
+/// A token, without its secret.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct TokenInfo {
+    /// Its number.
+    pub id: i64,
+    /// What it is called.
+    pub name: String,
+    /// When it was made, in milliseconds since 1970.
+    pub created_at: i64,
+}
+
+/// Somebody who is signed in.
+pub struct Person {
+    pub(super) account: Account,
+    pub(super) house: House,
+}
+
+impl Person {
+    /// Who it is.
+    #[must_use]
+    pub fn account(&self) -> &Account {
+        &self.account
+    }
+
+    /// The courses that they may see.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn courses(&self) -> Result<Vec<CourseOf>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let all: i64 = self.account.is_admin.into();
+        let rows = transaction
+            .rows(
+                "SELECT course.slug, course.title, coalesce(member.role, 'admin') AS role FROM course
+                 LEFT JOIN member ON member.course = course.id AND member.account = ?
+                 WHERE member.role IS NOT NULL OR ? = 1 ORDER BY course.slug",
+                values![self.account.id, all],
+            )
+            .await?;
+        let read = |row: &Row| {
+            let course = Course { slug: row.text("slug")?, title: row.text("title")? };
+            Ok(CourseOf { course, role: row.text("role")? })
+        };
+        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Their tokens.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT id, name, created_at FROM token WHERE account = ? AND revoked_at IS NULL ORDER BY id",
+                values![self.account.id],
+            )
+            .await?;
+        Ok(rows.iter().map(token_info).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Makes a token.
+    ///
+    /// # Errors
+    /// When its name is none, or there are too many.
+    pub async fn new_token(&self, name: &str) -> Result<(TokenInfo, NewSecret), Problem> {
+        identity::check_title("a token's name", name)?;
+        let mut transaction = self.house.0.database.begin().await?;
+        let count = transaction
+            .one("SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL", values![self.account.id])
+            .await?;
+        if count.int("n")? >= 50 {
+            return Err(Problem::conflict("an account has at most 50 tokens", "revoke those that nobody uses"));
+        }
+        let (id, secret) =
+            identity::new_token(&mut transaction, Some(self.account.id), name, Some(self.account.id)).await?;
+        let row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
+        let info = token_info(&row)?;
+        transaction.commit().await?;
+        Ok((info, secret))
+    }
+
+    /// Revokes one of their tokens.
+    ///
+    /// # Errors
+    /// When they have none of this number.
+    pub async fn revoke_token(&self, id: i64) -> Result<(), Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let revoked = transaction
+            .execute(
+                "UPDATE token SET revoked_at = {now} WHERE id = ? AND account = ? AND revoked_at IS NULL",
+                values![id, self.account.id],
+            )
+            .await?;
+        transaction.commit().await?;
+        if revoked == 0 { Err(Problem::not_found("token")) } else { Ok(()) }
+    }
+}
+
+pub(super) fn token_info(row: &Row) -> Result<TokenInfo, DbError> {
+    Ok(TokenInfo { id: row.int("id")?, name: row.text("name")?, created_at: row.int("created_at")? })
+}

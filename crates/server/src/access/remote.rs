@@ -1,0 +1,245 @@
+//! A worker on another machine. It runs hostile programs, so it may be theirs one day: it can claim jobs, read what belongs
+//! to those that it holds, and say what became of them. It sees no course, no student and no other submission.
+use super::House;
+use crate::{
+    problem::Problem,
+    queue::Lease,
+    secret,
+    store::{Artefact, Digest},
+    task::{Outcome, Suite, Task},
+    values,
+    worker::{Answer, Desk, DeskError, LocalDesk},
+};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use utoipa::ToSchema;
+
+/// A worker with a token.
+pub struct Remote {
+    house: House,
+    worker: String,
+}
+
+/// A job for a worker.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Claimed {
+    /// What to show from now on.
+    #[schema(value_type = Object)]
+    pub lease: Lease,
+    /// How often to renew it, in milliseconds.
+    pub renew_every: u64,
+    /// What to do.
+    #[schema(value_type = Object)]
+    pub task: Task,
+    /// Whether nothing else may run beside it.
+    pub alone: bool,
+}
+
+/// The reports that workers may bring, and what they hold: not theirs to say.
+const FILES: [(&str, &str); 3] = [
+    ("grade.json", "application/json"),
+    ("report.txt", "text/plain; charset=utf-8"),
+    ("report.html", "text/html; charset=utf-8"),
+];
+
+/// The largest report.
+const MAX_FILE: u64 = 256 << 20;
+
+impl From<DeskError> for Problem {
+    fn from(error: DeskError) -> Self {
+        match error {
+            DeskError::Away(error) => {
+                tracing::warn!(error, "a worker was not answered");
+                Self::unavailable("the database or the store does not answer")
+            }
+            DeskError::Refused(error) => Self::invalid(error),
+        }
+    }
+}
+
+impl Remote {
+    pub(super) fn new(house: House, token: &str, name: &str) -> Self {
+        let plain: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || "-_.".contains(*c)).take(80).collect();
+        Self { house, worker: format!("{token}/{plain}") }
+    }
+
+    fn desk(&self) -> LocalDesk {
+        let parts = &self.house.0;
+        LocalDesk::new(
+            parts.database.clone(),
+            parts.store.clone(),
+            parts.bell.clone(),
+            parts.policy,
+            self.worker.clone(),
+        )
+    }
+
+    /// The house.
+    #[must_use]
+    pub fn house(&self) -> &House {
+        &self.house
+    }
+
+    /// How often it is to say that it is alive, in milliseconds.
+    #[must_use]
+    pub fn tick_every(&self) -> u64 {
+        u64::try_from(self.house.0.policy.tick_every().as_millis()).unwrap_or(u64::MAX)
+    }
+
+    /// The next job, if there is one.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn claim(&self) -> Result<Option<Claimed>, Problem> {
+        let job = self.desk().claim().await?;
+        Ok(job.map(|job| Claimed {
+            lease: job.lease,
+            renew_every: u64::try_from(job.renew_every.as_millis()).unwrap_or(u64::MAX),
+            task: job.task,
+            alone: job.alone,
+        }))
+    }
+
+    /// Says that it is alive, with so many slots.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn tick(&self, slots: usize) -> Result<(), Problem> {
+        Ok(self.desk().tick(slots.min(10_000)).await?)
+    }
+
+    /// Extends a lease.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn renew(&self, lease: &Lease) -> Result<bool, Problem> {
+        Ok(self.desk().renew(lease).await? == Answer::Held)
+    }
+
+    /// Gives a job back.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn release(&self, lease: &Lease) -> Result<bool, Problem> {
+        Ok(self.desk().release(lease).await? == Answer::Held)
+    }
+
+    /// Says that a try came to nothing.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn fail(&self, lease: &Lease, fault: &str) -> Result<bool, Problem> {
+        Ok(self.desk().fail(lease, &plain(fault, 2000)).await? == Answer::Held)
+    }
+
+    /// Brings a result. It is looked at as what a stranger says: of files it may name those that it stored for this job.
+    ///
+    /// # Errors
+    /// When it makes no sense.
+    pub async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<bool, Problem> {
+        let outcome = self.checked(lease, outcome).await?;
+        Ok(self.desk().finish(lease, &outcome).await? == Answer::Held)
+    }
+
+    async fn checked(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {
+        let short = |code: &str| (1..=4).contains(&code.len()) && code.bytes().all(|c| c.is_ascii_uppercase());
+        if !short(&outcome.code) || outcome.code == crate::task::JUDGE_ERROR {
+            return Err(Problem::invalid("the verdict's code is none"));
+        }
+        for number in [&outcome.points, &outcome.max_points, &Some(outcome.seconds.clone())].into_iter().flatten() {
+            let is_number = number.parse::<f64>().is_ok_and(f64::is_finite)
+                && number.len() <= 40
+                && number.bytes().all(|c| c.is_ascii_digit() || b"+-.eE".contains(&c));
+            if !is_number {
+                return Err(Problem::invalid("points and seconds are numbers"));
+            }
+        }
+        let mut outcome = outcome.clone();
+        outcome.verdict = plain(&outcome.verdict, 200);
+        outcome.summary = plain(&outcome.summary, 2000);
+        outcome.version = plain(&outcome.version, 60);
+        let mut transaction = self.house.0.database.read().await?;
+        let mut names = std::collections::BTreeSet::new();
+        for file in &mut outcome.files {
+            let Some((_, media_type)) = FILES.iter().find(|(name, _)| *name == file.name) else {
+                return Err(Problem::invalid(format!("no report is called {}", plain(&file.name, 60))));
+            };
+            if !names.insert(file.name.clone()) {
+                return Err(Problem::invalid("a report is there twice"));
+            }
+            file.media_type = (*media_type).to_owned();
+            let stored = transaction
+                .row(
+                    "SELECT size FROM job_file WHERE job = ? AND attempt = ? AND digest = ?",
+                    values![lease.job, lease.attempt, file.artefact.digest.as_str()],
+                )
+                .await?;
+            let Some(stored) = stored else {
+                return Err(Problem::invalid("a report was not stored for this job"));
+            };
+            file.artefact.size = u64::try_from(stored.int("size")?).unwrap_or(0);
+        }
+        Ok(outcome)
+    }
+
+    /// The task of a job that the worker holds right now.
+    async fn held(&self, lease: &Lease) -> Result<Task, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let row = transaction
+            .row(
+                "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'",
+                values![lease.job, lease.attempt, &lease.key],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::not_found("job of yours")) };
+        serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
+    }
+
+    /// An artefact of a job that it holds, as a file of the server's own.
+    ///
+    /// # Errors
+    /// When the job is not its own (any more), or the artefact is not the job's.
+    pub async fn artefact(&self, lease: &Lease, digest: &Digest) -> Result<tempfile::TempPath, Problem> {
+        let task = self.held(lease).await?;
+        let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
+        if task.submission.artefact.digest != *digest && !suite {
+            return Err(Problem::not_found("artefact of this job"));
+        }
+        let file = self.house.0.incoming.join(secret::random_hex());
+        self.house.0.store.fetch(digest, &file).await?;
+        Ok(tempfile::TempPath::try_from_path(file)?)
+    }
+
+    /// Stores a report of a job that it holds.
+    ///
+    /// # Errors
+    /// When the job is not its own (any more), or the store fails.
+    pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artefact, Problem> {
+        self.held(lease).await?;
+        let artefact = self.house.0.store.put_file(file).await?;
+        let mut transaction = self.house.0.database.begin().await?;
+        let size = i64::try_from(artefact.size).unwrap_or(i64::MAX);
+        transaction
+            .execute(
+                "INSERT INTO job_file (job, attempt, digest, size) VALUES (?, ?, ?, ?)
+                 ON CONFLICT (job, attempt, digest) DO NOTHING",
+                values![lease.job, lease.attempt, artefact.digest.as_str(), size],
+            )
+            .await?;
+        transaction.commit().await?;
+        Ok(artefact)
+    }
+
+    /// Whether it holds the job: before anything is received for it.
+    ///
+    /// # Errors
+    /// When it does not.
+    pub async fn check_held(&self, lease: &Lease) -> Result<u64, Problem> {
+        self.held(lease).await.map(|_| MAX_FILE)
+    }
+}
+
+/// Words of a stranger: one line, not too long, without orders to terminals.
+fn plain(text: &str, most: usize) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()
+}

@@ -1,0 +1,172 @@
+//! Who asks, told from a request.
+use super::{Admin, House, Member, Person, Remote, Staff, Visitor, identity, person::Account};
+use crate::{problem::Problem, values};
+use axum::{
+    extract::{FromRequestParts, RawPathParams},
+    http::{HeaderMap, header, request::Parts},
+};
+use std::time::Instant;
+
+/// What a request shows.
+#[derive(Clone, Default)]
+pub struct Secrets {
+    /// From `Authorization: Bearer`.
+    pub bearer: Option<String>,
+    /// From the session's cookie.
+    pub session: Option<String>,
+}
+
+/// The session's cookie: by HTTPS one that no other host and no script can set or read.
+#[must_use]
+pub fn cookie_name(secure: bool) -> &'static str {
+    if secure { "__Host-fosssim" } else { "fosssim" }
+}
+
+impl Secrets {
+    /// The secrets in a request's headers.
+    #[must_use]
+    pub fn of(headers: &HeaderMap, secure: bool) -> Self {
+        let text = |name| headers.get(name).and_then(|value: &header::HeaderValue| value.to_str().ok());
+        let bearer = text(header::AUTHORIZATION)
+            .and_then(|value| value.split_once(' '))
+            .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
+            .map(|(_, token)| token.trim().to_owned());
+        let session = headers
+            .get_all(header::COOKIE)
+            .iter()
+            .filter_map(|value| value.to_str().ok())
+            .flat_map(|value| value.split(';'))
+            .filter_map(|pair| pair.trim().split_once('='))
+            .find(|(name, _)| *name == cookie_name(secure))
+            .map(|(_, value)| value.to_owned());
+        Self { bearer, session }
+    }
+}
+
+impl House {
+    /// Who shows these secrets.
+    async fn account(&self, secrets: &Secrets) -> Result<Account, Problem> {
+        let account = match secrets {
+            Secrets { bearer: Some(token), .. } => {
+                let mut transaction = self.0.database.read().await?;
+                identity::account_of_token(&mut transaction, token).await?
+            }
+            Secrets { session: Some(session), .. } => {
+                let mut transaction = self.0.database.read().await?;
+                let found = identity::account_of_session(&mut transaction, session).await?;
+                drop(transaction);
+                let (account, stale) = found.ok_or_else(|| Problem::unknown_secret("session"))?;
+                if stale {
+                    let mut transaction = self.0.database.begin().await?;
+                    identity::session_seen(&mut transaction, session).await?;
+                    transaction.commit().await?;
+                }
+                account
+            }
+            _ => return Err(Problem::not_signed_in()),
+        };
+        if !self.0.throttle.pass(account.id, self.0.requests_per_minute, Instant::now()) {
+            let most = self.0.requests_per_minute;
+            return Err(Problem::too_many(format!("an account may send {most} requests in a minute")));
+        }
+        Ok(account)
+    }
+}
+
+impl FromRequestParts<House> for Visitor {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let secrets = Secrets::of(&parts.headers, house.is_secure());
+        Ok(Self { house: house.clone(), session: secrets.session })
+    }
+}
+
+impl FromRequestParts<House> for Person {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let secrets = Secrets::of(&parts.headers, house.is_secure());
+        Ok(Self { account: house.account(&secrets).await?, house: house.clone() })
+    }
+}
+
+impl FromRequestParts<House> for Member {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let person = Person::from_request_parts(parts, house).await?;
+        let params = RawPathParams::from_request_parts(parts, house).await;
+        let slug = params
+            .ok()
+            .and_then(|params| params.iter().find(|(name, _)| *name == "course").map(|(_, slug)| slug.to_owned()));
+        let Some(slug) = slug else { return Err(Problem::not_found("course")) };
+        let mut transaction = house.0.database.read().await?;
+        let row = transaction
+            .row(
+                "SELECT course.id, course.slug, course.title, member.role FROM course
+                 LEFT JOIN member ON member.course = course.id AND member.account = ?
+                 WHERE course.slug = ?",
+                values![person.account.id, slug],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::not_found("course")) };
+        let role = row.maybe_text("role")?;
+        // Whoever is not of the course does not learn that it exists.
+        if role.is_none() && !person.account.is_admin {
+            return Err(Problem::not_found("course"));
+        }
+        Ok(Self {
+            is_staff: person.account.is_admin || role.as_deref() == Some("staff"),
+            course: row.int("id")?,
+            slug: row.text("slug")?,
+            title: row.text("title")?,
+            account: person.account,
+            house: person.house,
+        })
+    }
+}
+
+impl FromRequestParts<House> for Staff {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let member = Member::from_request_parts(parts, house).await?;
+        if !member.is_staff {
+            return Err(Problem::not_allowed("this is for the course's staff"));
+        }
+        Ok(Self(member))
+    }
+}
+
+impl FromRequestParts<House> for Admin {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let person = Person::from_request_parts(parts, house).await?;
+        if !person.account.is_admin {
+            return Err(Problem::not_allowed("this is for administrators"));
+        }
+        Ok(Self { account: person.account, house: person.house })
+    }
+}
+
+impl FromRequestParts<House> for Remote {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let Some(token) = Secrets::of(&parts.headers, house.is_secure()).bearer else {
+            return Err(Problem::not_signed_in());
+        };
+        let mut transaction = house.0.database.read().await?;
+        let row = transaction
+            .row(
+                "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL",
+                values![identity::digest(&token)],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::unknown_secret("worker token")) };
+        let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
+        Ok(Self::new(house.clone(), &row.text("name")?, name))
+    }
+}

@@ -1,0 +1,129 @@
+//! What an assignment asks for.
+use crate::{
+    problem::Problem,
+    store::Digest,
+    task::{Form, Suite},
+};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// How an assignment is graded, and what may be handed in.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// A suite that comes with the program, `t2m2` for example; one that was uploaded goes before it.
+    pub suite: String,
+    /// The digest of an archive with a `suite.toml`; uploaded by its own request.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub suite_archive: Option<String>,
+    /// The rule books: `parity`, `fair` or `both`; without it the suite decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rules: Option<String>,
+    /// How much reports tell: `none`, `where`, `what` or `full`; without it the suite decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hints: Option<String>,
+    /// What may be handed in: `program`, `sources`.
+    pub forms: Vec<String>,
+    /// The program's name in a folder of sources.
+    pub program: String,
+    /// After so many seconds a grading is stopped, and what it has so far counts. At most an hour.
+    pub seconds: u64,
+    /// The largest upload, in bytes. At most a gigabyte.
+    pub max_bytes: u64,
+    /// Submissions per student in all; 0 for as many as they like.
+    pub attempts: u32,
+    /// Submissions per student within an hour; 0 for as many as they like.
+    pub per_hour: u32,
+    /// No uploads of students after this moment: milliseconds since 1970.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub due_at: Option<i64>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            suite: "t2m2".to_owned(),
+            suite_archive: None,
+            rules: None,
+            hints: None,
+            forms: vec!["program".to_owned()],
+            program: "FOSSSim".to_owned(),
+            seconds: 600,
+            max_bytes: 64 << 20,
+            attempts: 0,
+            per_hour: 20,
+            due_at: None,
+        }
+    }
+}
+
+impl Settings {
+    /// Reads settings as the database has them.
+    ///
+    /// # Errors
+    /// When another version of the program wrote them.
+    pub fn read(text: &str) -> Result<Self, Problem> {
+        serde_json::from_str(text).map_err(|error| {
+            tracing::error!(%error, "the settings of an assignment can't be read");
+            Problem::fault()
+        })
+    }
+
+    /// As the database keeps them.
+    #[must_use]
+    pub fn text(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// Whether they make sense.
+    ///
+    /// # Errors
+    /// What does not.
+    pub fn check(&self) -> Result<(), Problem> {
+        let one_of = |name: &str, value: &Option<String>, known: &[&str]| match value {
+            Some(value) if !known.contains(&value.as_str()) => {
+                Err(Problem::invalid(format!("{name} is one of {}", known.join(", "))))
+            }
+            _ => Ok(()),
+        };
+        one_of("rules", &self.rules, &["parity", "fair", "both"])?;
+        one_of("hints", &self.hints, &["none", "where", "what", "full"])?;
+        one_of("suite", &Some(self.suite.clone()), &["t2m2", "earlier"])?;
+        if let Some(archive) = &self.suite_archive {
+            archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
+        }
+        if self.forms.is_empty() || self.forms.iter().any(|form| !matches!(form.as_str(), "program" | "sources")) {
+            return Err(Problem::invalid("forms is a list of program and sources"));
+        }
+        if !is_file_name(&self.program) {
+            return Err(Problem::invalid("program is a plain file name"));
+        }
+        if !(1..=3600).contains(&self.seconds) {
+            return Err(Problem::invalid("seconds is between 1 and 3600"));
+        }
+        if !(1..=1 << 30).contains(&self.max_bytes) {
+            return Err(Problem::invalid("max_bytes is between 1 and 1073741824"));
+        }
+        Ok(())
+    }
+
+    /// Whether this may be handed in.
+    #[must_use]
+    pub fn takes(&self, form: Form) -> bool {
+        self.forms.iter().any(|name| name == form.name())
+    }
+
+    pub(super) fn suite(&self) -> Suite {
+        match self.suite_archive.as_ref().and_then(|digest| digest.parse().ok()) {
+            Some(digest) => Suite::Archive(digest),
+            None => Suite::Named(self.suite.clone()),
+        }
+    }
+}
+
+/// A name that is one file in a folder, on every system, and looks the same in every message.
+#[must_use]
+pub fn is_file_name(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    (1..=100).contains(&name.len()) && name.chars().all(plain) && !name.starts_with(['.', '-'])
+}

@@ -1,0 +1,295 @@
+//! The staff of a course.
+use super::{
+    Member, NewSecret, Settings, identity,
+    person::Account,
+    view::{self, Assignment, Deed, Event, Queue, Submission},
+};
+use crate::{
+    db::{DbError, Row, Transaction},
+    problem::Problem,
+    values,
+};
+use serde::Serialize;
+use std::{collections::BTreeMap, path::Path};
+use utoipa::ToSchema;
+
+/// Somebody of a course's staff.
+pub struct Staff(pub(super) Member);
+
+/// A member of a course.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct MemberInfo {
+    /// What their account is called.
+    pub login: String,
+    /// What they are called.
+    pub name: String,
+    /// `student` or `staff`.
+    pub role: String,
+}
+
+/// How a student stands in an assignment.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Standing {
+    /// What their account is called.
+    pub login: String,
+    /// What they are called.
+    pub name: String,
+    /// How often they handed in.
+    pub submissions: usize,
+    /// The submission that counts: the one with the most points, the later one of equals; the last one while none has
+    /// points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub counts: Option<Submission>,
+}
+
+impl Staff {
+    /// The same person as a member.
+    #[must_use]
+    pub fn member(&self) -> &Member {
+        &self.0
+    }
+
+    pub(super) fn deed<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Deed<'a> {
+        Deed { kind, actor: self.0.account.id, course: Some(self.0.course), assignment, submission: None, text }
+    }
+
+    /// The course's members.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn members(&self) -> Result<Vec<MemberInfo>, Problem> {
+        let mut transaction = self.0.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT account.login, account.name, member.role FROM member
+                 JOIN account ON account.id = member.account WHERE member.course = ? ORDER BY account.login",
+                values![self.0.course],
+            )
+            .await?;
+        let read =
+            |row: &Row| Ok(MemberInfo { login: row.text("login")?, name: row.text("name")?, role: row.text("role")? });
+        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Makes somebody a member, or changes what they are; makes the account when there is none. A new account gets a link
+    /// that signs in once. Whoever may do more from now on has to sign in again.
+    ///
+    /// # Errors
+    /// When a name is none.
+    pub async fn set_member(&self, login: &str, name: &str, role: &str) -> Result<Option<NewSecret>, Problem> {
+        identity::check_slug("a login", login)?;
+        identity::check_title("a name", name)?;
+        if !matches!(role, "student" | "staff") {
+            return Err(Problem::invalid("a role is student or staff"));
+        }
+        let mut transaction = self.0.house.0.database.begin().await?;
+        let found = transaction
+            .row("SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}", values![login])
+            .await?;
+        let mut link = None;
+        let account = match found {
+            Some(row) => Account::read(&row)?.id,
+            None => {
+                let row = transaction
+                    .one(
+                        "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now}) RETURNING id",
+                        values![login, name],
+                    )
+                    .await?;
+                let account = row.int("id")?;
+                link = Some(identity::new_link(&mut transaction, account, Some(self.0.account.id)).await?);
+                account
+            }
+        };
+        let was = transaction
+            .row("SELECT role FROM member WHERE course = ? AND account = ?", values![self.0.course, account])
+            .await?;
+        let was = was.map(|row| row.text("role")).transpose()?;
+        if was.as_deref() != Some(role) {
+            transaction
+                .execute(
+                    "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
+                     ON CONFLICT (course, account) DO UPDATE SET role = excluded.role",
+                    values![self.0.course, account, role],
+                )
+                .await?;
+            if link.is_none() && account != self.0.account.id {
+                identity::end_all(&mut transaction, account, role == "staff").await?;
+            }
+            view::note(&mut transaction, &self.deed("member", None, &format!("{login} is {role}"))).await?;
+        }
+        transaction.commit().await?;
+        Ok(link)
+    }
+
+    /// Takes somebody out of the course; what they handed in stays.
+    ///
+    /// # Errors
+    /// When they are no member.
+    pub async fn remove_member(&self, login: &str) -> Result<(), Problem> {
+        let mut transaction = self.0.house.0.database.begin().await?;
+        let removed = transaction
+            .execute(
+                "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)",
+                values![self.0.course, login],
+            )
+            .await?;
+        if removed == 0 {
+            return Err(Problem::not_found("member"));
+        }
+        view::note(&mut transaction, &self.deed("member", None, &format!("{login} is out"))).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// A new link that signs a student in once. Only for accounts that are this course's students and nothing else: whoever
+    /// could sign in as somebody could do what they may do.
+    ///
+    /// # Errors
+    /// When the account is more than that, or no member.
+    pub async fn new_link(&self, login: &str) -> Result<NewSecret, Problem> {
+        let mut transaction = self.0.house.0.database.begin().await?;
+        let row = transaction
+            .row(
+                "SELECT account.id, account.is_admin, member.role,
+                    (SELECT count(*) FROM member AS other WHERE other.account = account.id) AS courses
+                 FROM account JOIN member ON member.account = account.id
+                 WHERE account.login = ? AND member.course = ? AND account.disabled_at IS NULL",
+                values![login, self.0.course],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::not_found("member")) };
+        if row.flag("is_admin")? || row.int("courses")? != 1 || row.text("role")? != "student" {
+            return Err(Problem::not_allowed("this account is more than a student of this course"));
+        }
+        let link = identity::new_link(&mut transaction, row.int("id")?, Some(self.0.account.id)).await?;
+        view::note(&mut transaction, &self.deed("link", None, &format!("a new link for {login}"))).await?;
+        transaction.commit().await?;
+        Ok(link)
+    }
+
+    /// Makes an assignment, or changes it.
+    ///
+    /// # Errors
+    /// When something in it makes no sense.
+    pub async fn set_assignment(
+        &self,
+        slug: &str,
+        title: &str,
+        visible: bool,
+        settings: &Settings,
+    ) -> Result<Assignment, Problem> {
+        identity::check_slug("an assignment's name", slug)?;
+        identity::check_title("a title", title)?;
+        settings.check()?;
+        if let Some(digest) = settings.suite_archive.as_ref().and_then(|digest| digest.parse().ok())
+            && !self.0.house.0.store.has(&digest).await?
+        {
+            return Err(Problem::invalid("suite_archive: nothing of this digest was uploaded"));
+        }
+        let mut transaction = self.0.house.0.database.begin().await?;
+        let row = transaction
+            .one(
+                "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
+                 VALUES (?, ?, ?, ?, ?, {now})
+                 ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
+                    settings = excluded.settings
+                 RETURNING id, slug, title, visible, settings",
+                values![self.0.course, slug, title, visible, settings.text()],
+            )
+            .await?;
+        let assignment = view::read_assignment(&row)?;
+        let text = format!("{slug} ({title}), {}: {}", if visible { "visible" } else { "hidden" }, settings.text());
+        view::note(&mut transaction, &self.deed("assignment", Some(assignment.id), &text)).await?;
+        transaction.commit().await?;
+        Ok(assignment)
+    }
+
+    /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.
+    ///
+    /// # Errors
+    /// When there is no such assignment, or the store fails.
+    pub async fn set_suite(&self, slug: &str, archive: &Path) -> Result<Assignment, Problem> {
+        let assignment = self.0.assignment(slug).await?;
+        let artefact = self.0.house.0.store.put_file(archive).await?;
+        let settings = Settings { suite_archive: Some(artefact.digest.to_string()), ..assignment.settings };
+        self.set_assignment(slug, &assignment.title, assignment.visible, &settings).await
+    }
+
+    /// How all students stand in an assignment.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn standings(&self, assignment: &str) -> Result<Vec<Standing>, Problem> {
+        let mut transaction = self.0.house.0.database.read().await?;
+        let assignment = self.0.find_assignment(&mut transaction, assignment).await?;
+        let rows = transaction
+            .rows(
+                "SELECT account.login, account.name FROM member JOIN account ON account.id = member.account
+                 WHERE member.course = ? AND member.role = 'student'",
+                values![self.0.course],
+            )
+            .await?;
+        let mut standings = BTreeMap::new();
+        let empty = |login: String, name: String| Standing { login, name, submissions: 0, counts: None };
+        for row in rows {
+            let (login, name) = (row.text("login")?, row.text("name")?);
+            standings.insert(login.clone(), empty(login, name));
+        }
+        for submission in view::submissions_to(&mut transaction, assignment.id).await? {
+            let standing = standings
+                .entry(submission.login.clone())
+                .or_insert_with(|| empty(submission.login.clone(), submission.name.clone()));
+            standing.submissions += 1;
+            let points = |submission: &Submission| {
+                let points = submission.grade.as_ref()?.points.as_ref()?;
+                points.parse::<f64>().ok()
+            };
+            let best = standing.counts.as_ref().and_then(points);
+            if best.is_none() || points(&submission) >= best {
+                standing.counts = Some(submission);
+            }
+        }
+        Ok(standings.into_values().collect())
+    }
+
+    /// All submissions to an assignment, oldest first.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn all_submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
+        let mut transaction = self.0.house.0.database.read().await?;
+        let assignment = self.0.find_assignment(&mut transaction, assignment).await?;
+        Ok(view::submissions_to(&mut transaction, assignment.id).await?)
+    }
+
+    /// What happened in the course before the event of this number, latest first; with `None` up to now.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
+        let mut transaction = self.0.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
+                 LEFT JOIN account ON account.id = event.actor
+                 WHERE event.course = ? AND event.id < ? ORDER BY event.id DESC LIMIT 200",
+                values![self.0.course, before.unwrap_or(i64::MAX)],
+            )
+            .await?;
+        Ok(rows.iter().map(view::read_event).collect::<Result<_, DbError>>()?)
+    }
+
+    /// The queue and the workers.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn queue(&self) -> Result<Queue, Problem> {
+        let mut transaction = self.0.house.0.database.read().await?;
+        Ok(view::queue(&mut transaction, &self.0.house).await?)
+    }
+
+    pub(super) async fn begin(&self) -> Result<Transaction, Problem> {
+        Ok(self.0.house.0.database.begin().await?)
+    }
+}

@@ -1,0 +1,196 @@
+//! Handing in: the submission, its job and the event are written in one transaction, after its bytes are safely stored.
+use super::{
+    Member,
+    view::{self, Assignment, Deed, Submission},
+};
+use crate::{
+    db::Transaction,
+    problem::Problem,
+    queue::{self, Bell, Lane, NewJob, Turn},
+    store::Artefact,
+    task::{Form, Input, Task},
+    values,
+};
+use std::path::Path;
+
+const HOUR: i64 = 3600 * 1000;
+
+/// What is handed in.
+#[derive(Debug, Clone)]
+pub struct Upload<'a> {
+    /// What kind of thing it is.
+    pub form: Form,
+    /// What it is called: a plain file name.
+    pub name: &'a str,
+    /// Where its bytes lie.
+    pub file: &'a Path,
+    /// What the sender calls this upload: sent twice, it is one submission.
+    pub key: Option<&'a str>,
+}
+
+/// What became of it.
+#[derive(Debug, Clone)]
+pub struct Accepted {
+    /// The submission.
+    pub submission: Submission,
+    /// Whether it had been handed in before, by the same key.
+    pub repeated: bool,
+}
+
+impl Member {
+    /// Hands in.
+    ///
+    /// # Errors
+    /// When the assignment does not take it (any more), or the server can't. Then nothing was handed in, or the same key
+    /// finds it.
+    pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<Accepted, Problem> {
+        let assignment = self.assignment(assignment).await?;
+        let forms = assignment.settings.forms.join(" or ");
+        if !assignment.settings.takes(upload.form) {
+            return Err(Problem::unusable(format!("this assignment takes {forms}")));
+        }
+        let artefact = self.house.0.store.put_file(upload.file).await?;
+        let mut transaction = self.house.0.database.begin().await?;
+        // One after another for each student: numbers are given out here, and limits counted.
+        transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
+        if let Some(key) = upload.key
+            && let Some(submission) = self.by_key(&mut transaction, key, &assignment, &artefact).await?
+        {
+            return Ok(Accepted { submission, repeated: true });
+        }
+        if !self.is_staff {
+            self.check_limits(&mut transaction, &assignment).await?;
+        }
+        let submission = self.write(&mut transaction, &assignment, upload, &artefact).await?;
+        Bell::ring(&mut transaction).await?;
+        transaction.commit().await?;
+        self.house.0.bell.strike();
+        Ok(Accepted { submission: self.submission(submission).await?, repeated: false })
+    }
+
+    async fn by_key(
+        &self,
+        transaction: &mut Transaction,
+        key: &str,
+        assignment: &Assignment,
+        artefact: &Artefact,
+    ) -> Result<Option<Submission>, Problem> {
+        let row = transaction
+            .row(
+                "SELECT assignment, digest, submission FROM upload_key WHERE account = ? AND word = ?",
+                values![self.account.id, key],
+            )
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        if row.int("assignment")? != assignment.id || row.text("digest")? != artefact.digest.as_str() {
+            return Err(Problem::conflict(
+                "this key was used for another upload",
+                "give every upload a key of its own",
+            ));
+        }
+        Ok(Some(self.find_submission(transaction, row.int("submission")?).await?))
+    }
+
+    async fn check_limits(&self, transaction: &mut Transaction, assignment: &Assignment) -> Result<(), Problem> {
+        let settings = &assignment.settings;
+        // What the grader failed on costs nobody a try.
+        let row = transaction
+            .one(
+                "SELECT {now} AS now, count(*) AS n,
+                    count(CASE WHEN submission.created_at > {now} - ? THEN 1 END) AS recent
+                 FROM submission
+                 LEFT JOIN grade ON grade.submission = submission.id
+                 LEFT JOIN result ON result.id = grade.result
+                 WHERE submission.assignment = ? AND submission.account = ? AND coalesce(result.code, '') <> 'JE'",
+                values![HOUR, assignment.id, self.account.id],
+            )
+            .await?;
+        if settings.due_at.is_some_and(|due| row.int("now").is_ok_and(|now| now > due)) {
+            return Err(Problem::conflict("the assignment was due before", "ask the course's staff"));
+        }
+        if settings.attempts > 0 && row.int("n")? >= settings.attempts.into() {
+            return Err(Problem::conflict(
+                format!("all {} submissions to this assignment are used up", settings.attempts),
+                "ask the course's staff",
+            ));
+        }
+        if settings.per_hour > 0 && row.int("recent")? >= settings.per_hour.into() {
+            return Err(Problem::too_many(format!("at most {} submissions in an hour", settings.per_hour)));
+        }
+        Ok(())
+    }
+
+    async fn write(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        upload: &Upload<'_>,
+        artefact: &Artefact,
+    ) -> Result<i64, Problem> {
+        let input = Input { form: upload.form, name: upload.name.to_owned(), artefact: artefact.clone() };
+        let task = task(assignment, input);
+        let number = transaction
+            .one(
+                "SELECT coalesce(max(number), 0) + 1 AS number FROM submission WHERE assignment = ? AND account = ?",
+                values![assignment.id, self.account.id],
+            )
+            .await?
+            .int("number")?;
+        let submission = transaction
+            .one(
+                "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)
+                 VALUES (?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id",
+                values![
+                    assignment.id,
+                    self.account.id,
+                    number,
+                    upload.form.name(),
+                    upload.name,
+                    artefact.digest.as_str(),
+                    i64::try_from(artefact.size).unwrap_or(i64::MAX)
+                ],
+            )
+            .await?
+            .int("id")?;
+        let payload = serde_json::to_string(&task).map_err(|_| Problem::fault())?;
+        let job = NewJob {
+            lane: Lane::Grading,
+            submission: Some(submission),
+            campaign: None,
+            turn: Turn::Student(self.account.id),
+            payload: &payload,
+        };
+        queue::enqueue(transaction, &job).await?;
+        if let Some(key) = upload.key {
+            transaction
+                .execute(
+                    "INSERT INTO upload_key (account, word, assignment, digest, submission) VALUES (?, ?, ?, ?, ?)",
+                    values![self.account.id, key, assignment.id, artefact.digest.as_str(), submission],
+                )
+                .await?;
+        }
+        let deed = Deed {
+            kind: "submitted",
+            actor: self.account.id,
+            course: Some(self.course),
+            assignment: Some(assignment.id),
+            submission: Some(submission),
+            text: upload.name,
+        };
+        view::note(transaction, &deed).await?;
+        Ok(submission)
+    }
+}
+
+/// What a worker is to do about an input.
+pub(super) fn task(assignment: &Assignment, submission: Input) -> Task {
+    let settings = &assignment.settings;
+    Task {
+        submission,
+        suite: settings.suite(),
+        rules: settings.rules.clone(),
+        hints: settings.hints.clone(),
+        program: settings.program.clone(),
+        seconds: settings.seconds,
+    }
+}

@@ -1,0 +1,51 @@
+//! How many requests an account may make: a bucket of tokens for each that fills by itself. By account and not by address:
+//! a lecture hall behind one address is many people.
+use std::{
+    collections::HashMap,
+    sync::{Mutex, PoisonError},
+    time::Instant,
+};
+
+/// With more buckets than this those that are full are thrown away.
+const MANY: usize = 10_000;
+
+/// The buckets.
+#[derive(Debug, Default)]
+pub struct Throttle(Mutex<HashMap<i64, (f64, Instant)>>);
+
+impl Throttle {
+    /// Takes a token from an account's bucket, which holds at most those of a minute; whether there was one.
+    pub(super) fn pass(&self, account: i64, per_minute: u32, now: Instant) -> bool {
+        let most = f64::from(per_minute);
+        let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let level = |(level, at): (f64, Instant)| {
+            (level + now.saturating_duration_since(at).as_secs_f64() * most / 60.0).min(most)
+        };
+        if buckets.len() > MANY {
+            buckets.retain(|_, bucket| level(*bucket) < most);
+        }
+        let bucket = buckets.entry(account).or_insert((most, now));
+        let left = level(*bucket);
+        let passes = left >= 1.0;
+        *bucket = (if passes { left - 1.0 } else { left }, now);
+        passes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn a_bucket_empties_and_fills_for_each_account() {
+        let throttle = Throttle::default();
+        let start = Instant::now();
+        let passed = (0..20).filter(|_| throttle.pass(1, 12, start)).count();
+        assert_eq!(passed, 12);
+        assert!(throttle.pass(2, 12, start), "another account has its own");
+        assert!(!throttle.pass(1, 12, start + Duration::from_secs(4)));
+        assert!(throttle.pass(1, 12, start + Duration::from_secs(9)));
+        assert!(!throttle.pass(1, 12, start + Duration::from_secs(9)));
+    }
+}

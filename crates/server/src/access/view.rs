@@ -1,0 +1,429 @@
+//! What the service shows: the same to the API, to pages and to exports.
+use super::{House, Settings};
+use crate::{
+    db::{DbError, Row, Transaction, Value},
+    problem::Problem,
+    queue::{self, Lane},
+    values,
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// A course.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Course {
+    /// What it is called in addresses.
+    pub slug: String,
+    /// What it is called.
+    pub title: String,
+}
+
+/// An assignment.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Assignment {
+    #[serde(skip)]
+    pub(crate) id: i64,
+    /// What it is called in addresses.
+    pub slug: String,
+    /// What it is called.
+    pub title: String,
+    /// Whether students see it.
+    pub visible: bool,
+    /// How it is graded.
+    pub settings: Settings,
+}
+
+/// What was handed in, and what became of it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Submission {
+    /// Its number on this server.
+    pub id: i64,
+    /// The how-manieth of its owner in this assignment.
+    pub number: i64,
+    /// The assignment.
+    pub assignment: String,
+    /// The assignment's title.
+    pub title: String,
+    /// Whose it is.
+    pub login: String,
+    /// What they are called.
+    pub name: String,
+    /// `program`, `sources` or `traces`.
+    pub form: String,
+    /// What the file was called.
+    pub file_name: String,
+    /// Its SHA-256.
+    pub digest: String,
+    /// Its size in bytes.
+    pub size: i64,
+    /// When it came, in milliseconds since 1970.
+    pub created_at: i64,
+    /// What becomes of it: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
+    pub state: String,
+    /// How many jobs are graded before it, while it waits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ahead: Option<i64>,
+    /// In how many seconds its grade may be expected, while it waits and workers are there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expected_seconds: Option<u64>,
+    /// The result that counts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grade: Option<Graded>,
+    #[serde(skip)]
+    job: Option<i64>,
+    #[serde(skip)]
+    pub(super) account: i64,
+}
+
+/// A result.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Graded {
+    #[serde(skip)]
+    pub(crate) result: i64,
+    /// The verdict.
+    pub verdict: String,
+    /// The verdict in short; `JE` is the grader's fault and nobody's zero.
+    pub code: String,
+    /// Points, digit for digit as the grader wrote them.
+    pub points: Option<String>,
+    /// The most that could be had.
+    pub max_points: Option<String>,
+    /// A line about it.
+    pub summary: String,
+    /// The grader's version.
+    pub version: String,
+    /// How long it took, in seconds.
+    pub seconds: String,
+    /// When it was graded, in milliseconds since 1970.
+    pub created_at: i64,
+    /// Reports: empty in lists.
+    pub files: Vec<FileInfo>,
+}
+
+/// A report or log.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct FileInfo {
+    /// What it is called.
+    pub name: String,
+    /// What it holds.
+    pub media_type: String,
+    /// Its SHA-256.
+    pub digest: String,
+    /// Its size in bytes.
+    pub size: i64,
+}
+
+/// How a result came to count.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct History {
+    /// When, in milliseconds since 1970.
+    pub changed_at: i64,
+    /// Why, as students read it.
+    pub reason: String,
+    /// Who wanted it; nobody when the grader did.
+    pub by: Option<String>,
+    /// The verdict before.
+    pub old_code: Option<String>,
+    /// The points before.
+    pub old_points: Option<String>,
+    /// The verdict since.
+    pub new_code: String,
+    /// The points since.
+    pub new_points: Option<String>,
+    /// The grader's version.
+    pub version: String,
+    /// The complete task, from which it can be graded again: rules, suite, digests.
+    pub task: String,
+}
+
+/// Something that happened.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Event {
+    /// Its number, which only grows.
+    pub id: i64,
+    /// When, in milliseconds since 1970.
+    pub happened_at: i64,
+    /// What kind of thing.
+    pub kind: String,
+    /// Who did it; nobody when the service did.
+    pub actor: Option<String>,
+    /// The submission that it is about.
+    pub submission: Option<i64>,
+    /// In words.
+    pub text: String,
+}
+
+/// The queue and who works on it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Queue {
+    /// Waiting uploads.
+    pub waiting: i64,
+    /// Waiting jobs of regrades.
+    pub regrades: i64,
+    /// Running jobs.
+    pub running: i64,
+    /// Jobs that were given up, of which somebody should know.
+    pub buried: i64,
+    /// Workers that were seen lately.
+    pub workers: Vec<QueueWorker>,
+}
+
+/// A worker.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct QueueWorker {
+    /// What it is called.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// How many gradings it does at one time.
+    pub slots: i64,
+    /// How many it does now.
+    pub running: i64,
+    /// When it was last seen, in milliseconds since 1970.
+    pub seen_at: i64,
+}
+
+/// The columns of submissions; what follows says which.
+macro_rules! submissions {
+    ($rest:literal) => {
+        concat!(
+            "SELECT submission.id, submission.number, submission.form, submission.file_name, submission.digest,
+                submission.size, submission.created_at, submission.account, assignment.slug AS assignment,
+                assignment.title, account.login, account.name, job.id AS job, job.state, grade.result, result.verdict,
+                result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
+                result.created_at AS graded_at
+             FROM submission
+             JOIN assignment ON assignment.id = submission.assignment
+             JOIN account ON account.id = submission.account
+             LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL
+             LEFT JOIN grade ON grade.submission = submission.id
+             LEFT JOIN result ON result.id = grade.result
+             WHERE ",
+            $rest
+        )
+    };
+}
+
+fn read_submission(row: &Row) -> Result<Submission, DbError> {
+    let grade = match row.maybe_int("result")? {
+        None => None,
+        Some(result) => Some(Graded {
+            result,
+            verdict: row.text("verdict")?,
+            code: row.text("code")?,
+            points: row.maybe_text("points")?,
+            max_points: row.maybe_text("max_points")?,
+            summary: row.text("summary")?,
+            version: row.text("version")?,
+            seconds: row.text("seconds")?,
+            created_at: row.int("graded_at")?,
+            files: Vec::new(),
+        }),
+    };
+    Ok(Submission {
+        id: row.int("id")?,
+        number: row.int("number")?,
+        assignment: row.text("assignment")?,
+        title: row.text("title")?,
+        login: row.text("login")?,
+        name: row.text("name")?,
+        form: row.text("form")?,
+        file_name: row.text("file_name")?,
+        digest: row.text("digest")?,
+        size: row.int("size")?,
+        created_at: row.int("created_at")?,
+        state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
+        ahead: None,
+        expected_seconds: None,
+        grade,
+        job: row.maybe_int("job")?,
+        account: row.int("account")?,
+    })
+}
+
+async fn read_all(
+    transaction: &mut Transaction,
+    statement: &'static str,
+    values: &[Value],
+) -> Result<Vec<Submission>, DbError> {
+    transaction.rows(statement, values).await?.iter().map(read_submission).collect()
+}
+
+/// An account's submissions to an assignment, newest first.
+pub(super) async fn submissions_of(
+    transaction: &mut Transaction,
+    assignment: i64,
+    account: i64,
+) -> Result<Vec<Submission>, DbError> {
+    let statement = submissions!("submission.assignment = ? AND submission.account = ? ORDER BY submission.id DESC");
+    read_all(transaction, statement, values![assignment, account]).await
+}
+
+/// All submissions to an assignment, oldest first.
+pub(super) async fn submissions_to(transaction: &mut Transaction, assignment: i64) -> Result<Vec<Submission>, DbError> {
+    read_all(transaction, submissions!("submission.assignment = ? ORDER BY submission.id"), values![assignment]).await
+}
+
+/// A submission of a course with its place in the queue and its reports.
+pub(super) async fn submission(
+    transaction: &mut Transaction,
+    house: &House,
+    course: i64,
+    id: i64,
+) -> Result<Option<Submission>, DbError> {
+    let statement = submissions!("submission.id = ? AND assignment.course = ?");
+    let found = read_all(transaction, statement, values![id, course]).await?.into_iter().next();
+    let Some(mut submission) = found else { return Ok(None) };
+    if let Some(job) = submission.job
+        && let Some(place) = queue::place(transaction, &house.0.policy, Lane::Grading, job).await?
+    {
+        submission.ahead = Some(place.ahead);
+        submission.expected_seconds = place.expected.map(|expected| expected.as_secs().max(1));
+    }
+    if let Some(grade) = &mut submission.grade {
+        let rows = transaction
+            .rows(
+                "SELECT name, media_type, digest, size FROM result_file WHERE result = ? ORDER BY name",
+                values![grade.result],
+            )
+            .await?;
+        let read = |row: &Row| {
+            Ok(FileInfo {
+                name: row.text("name")?,
+                media_type: row.text("media_type")?,
+                digest: row.text("digest")?,
+                size: row.int("size")?,
+            })
+        };
+        grade.files = rows.iter().map(read).collect::<Result<_, DbError>>()?;
+    }
+    Ok(Some(submission))
+}
+
+pub(super) async fn history(transaction: &mut Transaction, submission: i64) -> Result<Vec<History>, DbError> {
+    let rows = transaction
+        .rows(
+            "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
+                old.points AS old_points, new.code AS new_code, new.points AS new_points, new.version, new.task
+             FROM grade_change
+             JOIN result AS new ON new.id = grade_change.new_result
+             LEFT JOIN result AS old ON old.id = grade_change.old_result
+             LEFT JOIN account ON account.id = grade_change.changed_by
+             WHERE grade_change.submission = ? ORDER BY grade_change.id",
+            values![submission],
+        )
+        .await?;
+    let read = |row: &Row| {
+        Ok(History {
+            changed_at: row.int("changed_at")?,
+            reason: row.text("reason")?,
+            by: row.maybe_text("login")?,
+            old_code: row.maybe_text("old_code")?,
+            old_points: row.maybe_text("old_points")?,
+            new_code: row.text("new_code")?,
+            new_points: row.maybe_text("new_points")?,
+            version: row.text("version")?,
+            task: row.text("task")?,
+        })
+    };
+    rows.iter().map(read).collect()
+}
+
+pub(super) fn read_event(row: &Row) -> Result<Event, DbError> {
+    Ok(Event {
+        id: row.int("id")?,
+        happened_at: row.int("happened_at")?,
+        kind: row.text("kind")?,
+        actor: row.maybe_text("login")?,
+        submission: row.maybe_int("submission")?,
+        text: row.text("text")?,
+    })
+}
+
+/// What happened to a submission after the event of this number.
+pub(super) async fn events_of(
+    transaction: &mut Transaction,
+    submission: i64,
+    after: i64,
+) -> Result<Vec<Event>, DbError> {
+    let rows = transaction
+        .rows(
+            "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
+             LEFT JOIN account ON account.id = event.actor
+             WHERE submission = ? AND event.id > ? ORDER BY event.id LIMIT 200",
+            values![submission, after],
+        )
+        .await?;
+    rows.iter().map(read_event).collect()
+}
+
+pub(super) fn read_assignment(row: &Row) -> Result<Assignment, Problem> {
+    Ok(Assignment {
+        id: row.int("id")?,
+        slug: row.text("slug")?,
+        title: row.text("title")?,
+        visible: row.flag("visible")?,
+        settings: Settings::read(&row.text("settings")?)?,
+    })
+}
+
+/// Something that somebody did.
+pub(super) struct Deed<'a> {
+    pub(super) kind: &'static str,
+    pub(super) actor: i64,
+    pub(super) course: Option<i64>,
+    pub(super) assignment: Option<i64>,
+    pub(super) submission: Option<i64>,
+    pub(super) text: &'a str,
+}
+
+/// Writes it into the audit log.
+pub(super) async fn note(transaction: &mut Transaction, deed: &Deed<'_>) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
+             VALUES ({now}, ?, ?, ?, ?, ?, ?)",
+            values![deed.kind, deed.actor, deed.course, deed.assignment, deed.submission, deed.text],
+        )
+        .await?;
+    Ok(())
+}
+
+/// The queue as everybody of the staff may see it.
+pub(super) async fn queue(transaction: &mut Transaction, house: &House) -> Result<Queue, DbError> {
+    let counts = transaction
+        .one(
+            "SELECT count(CASE WHEN state = 'waiting' AND campaign IS NULL THEN 1 END) AS waiting,
+                count(CASE WHEN state = 'waiting' AND campaign IS NOT NULL THEN 1 END) AS regrades,
+                count(CASE WHEN state = 'running' THEN 1 END) AS running,
+                count(CASE WHEN state = 'buried' THEN 1 END) AS buried
+             FROM job",
+            values![],
+        )
+        .await?;
+    let recent = i64::try_from(2 * house.0.policy.lease.as_millis()).unwrap_or(i64::MAX);
+    let rows = transaction
+        .rows(
+            "SELECT name, version, slots, seen_at,
+                (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
+             FROM worker WHERE seen_at > {now} - ? ORDER BY name",
+            values![recent],
+        )
+        .await?;
+    let read = |row: &Row| {
+        Ok(QueueWorker {
+            name: row.text("name")?,
+            version: row.text("version")?,
+            slots: row.int("slots")?,
+            running: row.int("running")?,
+            seen_at: row.int("seen_at")?,
+        })
+    };
+    Ok(Queue {
+        waiting: counts.int("waiting")?,
+        regrades: counts.int("regrades")?,
+        running: counts.int("running")?,
+        buried: counts.int("buried")?,
+        workers: rows.iter().map(read).collect::<Result<_, DbError>>()?,
+    })
+}

@@ -1,0 +1,125 @@
+//! Anybody.
+use super::{House, Session, identity};
+use crate::{db, problem::Problem, values};
+
+/// Somebody who need not be signed in.
+pub struct Visitor {
+    pub(super) house: House,
+    pub(super) session: Option<String>,
+}
+
+/// What may be counted without knowing anybody.
+#[derive(Debug, Clone, Default)]
+pub struct Metrics {
+    /// Jobs by state.
+    pub jobs: Vec<(String, i64)>,
+    /// How long the oldest waiting job has waited, in milliseconds.
+    pub oldest: i64,
+    /// Workers that were seen lately.
+    pub workers: i64,
+    /// Their slots.
+    pub slots: i64,
+    /// Events by kind, of those kinds that somebody should look at.
+    pub events: Vec<(String, i64)>,
+    /// Submissions in all.
+    pub submissions: i64,
+}
+
+impl Visitor {
+    /// The house.
+    #[must_use]
+    pub fn house(&self) -> &House {
+        &self.house
+    }
+
+    /// Signs in by a link, which is used up.
+    ///
+    /// # Errors
+    /// When it is unknown, used or too old.
+    pub async fn sign_in_by_link(&self, link: &str) -> Result<Session, Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let Some(account) = identity::use_link(&mut transaction, link).await? else {
+            return Err(Problem::unknown_secret("link"));
+        };
+        let session = identity::begin_session(&mut transaction, account).await?;
+        transaction.commit().await?;
+        Ok(session)
+    }
+
+    /// Signs in by a token of a person.
+    ///
+    /// # Errors
+    /// When it is unknown or revoked.
+    pub async fn sign_in_by_token(&self, token: &str) -> Result<Session, Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let account = identity::account_of_token(&mut transaction, token).await?;
+        let session = identity::begin_session(&mut transaction, account.id).await?;
+        transaction.commit().await?;
+        Ok(session)
+    }
+
+    /// Ends the session that the request shows.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn sign_out(&self) -> Result<(), Problem> {
+        if let Some(session) = &self.session {
+            let mut transaction = self.house.0.database.begin().await?;
+            identity::end_session(&mut transaction, session).await?;
+            transaction.commit().await?;
+        }
+        Ok(())
+    }
+
+    /// Whether requests can be served.
+    ///
+    /// # Errors
+    /// When they can't.
+    pub async fn ready(&self) -> Result<(), Problem> {
+        if db::version(&self.house.0.database).await? != db::LATEST {
+            return Err(Problem::unavailable("the tables are not those of this version"));
+        }
+        Ok(())
+    }
+
+    /// Numbers for a monitor.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn metrics(&self) -> Result<Metrics, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let mut metrics = Metrics::default();
+        for row in transaction.rows("SELECT state, count(*) AS n FROM job GROUP BY state", values![]).await? {
+            metrics.jobs.push((row.text("state")?, row.int("n")?));
+        }
+        let row = transaction
+            .one(
+                "SELECT coalesce({now} - min(enqueued_at), 0) AS oldest FROM job
+                 WHERE state = 'waiting' AND campaign IS NULL",
+                values![],
+            )
+            .await?;
+        metrics.oldest = row.int("oldest")?;
+        let recent = i64::try_from(2 * self.house.0.policy.lease.as_millis()).unwrap_or(i64::MAX);
+        let row = transaction
+            .one(
+                "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
+                 WHERE seen_at > {now} - ?",
+                values![recent],
+            )
+            .await?;
+        (metrics.workers, metrics.slots) = (row.int("n")?, row.int("slots")?);
+        let events = transaction
+            .rows(
+                "SELECT kind, count(*) AS n FROM event WHERE kind IN ('late answer', 'failed try', 'buried', 'graded')
+                 GROUP BY kind",
+                values![],
+            )
+            .await?;
+        for row in events {
+            metrics.events.push((row.text("kind")?, row.int("n")?));
+        }
+        metrics.submissions = transaction.one("SELECT count(*) AS n FROM submission", values![]).await?.int("n")?;
+        Ok(metrics)
+    }
+}

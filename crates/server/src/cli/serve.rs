@@ -1,0 +1,142 @@
+//! `serve`: the server, with workers of its own.
+use super::{
+    arguments::{AdminLink, Serve},
+    folders::Folders,
+    listen, until_signalled,
+    worker::{Local, grader, policy},
+};
+use crate::{
+    access::{House, Parts, Throttle},
+    db::{self, Address, Database},
+    queue::Bell,
+    store::Store,
+    web,
+};
+use anyhow::{Context, Result, anyhow};
+use std::{
+    io::Write as _,
+    num::NonZeroUsize,
+    path::PathBuf,
+    time::{Duration, SystemTime, UNIX_EPOCH},
+};
+use tokio_util::sync::CancellationToken;
+
+/// How long an upload that nobody finished may lie around.
+const FORGOTTEN: Duration = Duration::from_secs(24 * 3600);
+
+pub(super) async fn run(arguments: &Serve) -> Result<()> {
+    let stop = until_signalled()?;
+    let folders = Folders::open(&arguments.place)?;
+    let address = folders.database(&arguments.place);
+    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    bring_up_to_date(&database, &folders, &address).await?;
+    let store = Store::folder(&folders.store())?;
+    clear_incoming(&folders.incoming())?;
+    let bell = Bell::default();
+    tokio::spawn(bell.clone().listen(database.clone()));
+    let listener = tokio::net::TcpListener::bind(arguments.listen)
+        .await
+        .with_context(|| format!("cannot listen on {}", arguments.listen))?;
+    let local = format!("http://{}", listener.local_addr()?);
+    let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
+    let policy = policy(&arguments.work);
+    let patience = Duration::from_secs(arguments.patience);
+    let house = House::new(Parts {
+        database: database.clone(),
+        store: store.clone(),
+        bell: bell.clone(),
+        policy,
+        incoming: folders.incoming(),
+        public: public.clone(),
+        patience,
+        requests_per_minute: arguments.requests_per_minute,
+        throttle: Throttle::default(),
+        closing: stop.clone(),
+    });
+    let slots = match arguments.workers {
+        Some(workers) => NonZeroUsize::new(workers),
+        None => Some(std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
+    };
+    let working = match slots {
+        None => None,
+        Some(slots) => {
+            let grader = grader(arguments.work.grader.as_deref())?;
+            let local = Local { folders, database: database.clone(), store, bell, policy, grader };
+            let stop = stop.clone();
+            Some(async move { local.work(&arguments.work, Some(slots), None, stop).await })
+        }
+    };
+    let link = house.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
+    // On standard output, for people and scripts; the log is on standard error and holds no secrets.
+    let mut output = std::io::stdout();
+    writeln!(output, "Listening on {local}")?;
+    if let Some(link) = link {
+        writeln!(output, "Sign in as administrator, once, by {public}/welcome/{}", link.reveal())?;
+    }
+    output.flush()?;
+    let serving = listen::serve(listener, web::router(house), patience, stop.clone());
+    match working {
+        None => serving.await,
+        Some(working) => {
+            let ((), worked) = tokio::join!(serving, working);
+            worked?;
+        }
+    }
+    database.close().await;
+    tracing::info!("stopped");
+    Ok(())
+}
+
+/// Brings the tables up to date; a SQLite database that holds something is copied before.
+async fn bring_up_to_date(database: &Database, folders: &Folders, address: &Address) -> Result<()> {
+    let version = db::version(database).await?;
+    if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {
+        std::fs::create_dir_all(folders.backups())?;
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs());
+        let copy = folders.backups().join(format!("version-{version}-{now}.db"));
+        database.copy_to(&copy).await.context("the backup before the tables change")?;
+        tracing::info!(copy = %copy.display(), "the database was copied before its tables change");
+    }
+    let applied = db::migrate(database).await?;
+    if applied > 0 {
+        tracing::info!(version = db::LATEST, "the tables are up to date");
+    }
+    Ok(())
+}
+
+/// Makes the folder of uploads, and removes what a dead server left behind in it.
+fn clear_incoming(folder: &PathBuf) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    for entry in std::fs::read_dir(folder)?.flatten() {
+        let old = entry
+            .metadata()
+            .and_then(|data| data.modified())
+            .is_ok_and(|modified| SystemTime::now().duration_since(modified).is_ok_and(|age| age > FORGOTTEN));
+        if old {
+            drop(std::fs::remove_file(entry.path()));
+        }
+    }
+    Ok(())
+}
+
+pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
+    let folders = Folders::open(&arguments.place)?;
+    let address = folders.database(&arguments.place);
+    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    let house = House::new(Parts {
+        store: Store::folder(&folders.store())?,
+        bell: Bell::default(),
+        policy: crate::queue::Policy::default(),
+        incoming: folders.incoming(),
+        public: arguments.public_url.clone(),
+        patience: Duration::from_secs(30),
+        requests_per_minute: 1,
+        throttle: Throttle::default(),
+        closing: CancellationToken::new(),
+        database: database.clone(),
+    });
+    let link = house.admin_link(&arguments.login).await.map_err(|problem| anyhow!("{}", problem.detail))?;
+    println!("{}/welcome/{}", arguments.public_url, link.reveal());
+    database.close().await;
+    Ok(())
+}

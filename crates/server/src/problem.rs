@@ -1,0 +1,197 @@
+//! What goes wrong, as those who asked are told: what it is, and how to mend it (RFC 9457, problem+json).
+use crate::{db::DbError, store::StoreError};
+use axum::{
+    http::{HeaderValue, StatusCode, header},
+    response::{IntoResponse, Response},
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// Why a request was refused.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Problem {
+    /// A name that programs may go by.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// The same in words.
+    pub title: String,
+    /// The status of the answer.
+    pub status: u16,
+    /// What is wrong with this request.
+    pub detail: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+impl Problem {
+    fn new(status: StatusCode, kind: &str, title: &str, detail: impl Into<String>, remedy: &str) -> Self {
+        Self {
+            kind: format!("urn:fosssim:{kind}"),
+            title: title.to_owned(),
+            status: status.as_u16(),
+            detail: detail.into(),
+            remedy: remedy.to_owned(),
+        }
+    }
+
+    /// Nobody has said who asks.
+    #[must_use]
+    pub fn not_signed_in() -> Self {
+        Self::new(
+            StatusCode::UNAUTHORIZED,
+            "not-signed-in",
+            "Not signed in",
+            "this needs somebody who is signed in",
+            "sign in, or send a token: Authorization: Bearer fso_...",
+        )
+    }
+
+    /// The token, session or link is none of ours, or not any more.
+    #[must_use]
+    pub fn unknown_secret(what: &str) -> Self {
+        Self::new(
+            StatusCode::UNAUTHORIZED,
+            "unknown-secret",
+            "Not signed in",
+            format!("this {what} is unknown, used, too old or revoked"),
+            "ask for a new one",
+        )
+    }
+
+    /// Known, and not allowed.
+    #[must_use]
+    pub fn not_allowed(detail: impl Into<String>) -> Self {
+        let remedy = "ask somebody whose role allows it";
+        Self::new(StatusCode::FORBIDDEN, "not-allowed", "Not allowed", detail, remedy)
+    }
+
+    /// A request that another site may have made a browser send.
+    #[must_use]
+    pub fn cross_site() -> Self {
+        Self::new(
+            StatusCode::FORBIDDEN,
+            "cross-site",
+            "Sent from another site",
+            "the browser says that another site sent this, or nothing says who did",
+            "send it from this site's own pages, or with a token instead of a cookie",
+        )
+    }
+
+    /// There is no such thing, or none that whoever asks may know of.
+    #[must_use]
+    pub fn not_found(what: &str) -> Self {
+        let detail = format!("there is no such {what}, or you may not see it");
+        Self::new(StatusCode::NOT_FOUND, "not-found", "Not found", detail, "check the address")
+    }
+
+    /// Something in the request is not as it must be.
+    #[must_use]
+    pub fn invalid(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::BAD_REQUEST, "invalid", "Not understood", detail, "correct it and send it again")
+    }
+
+    /// It can't be done in the state that things are in.
+    #[must_use]
+    pub fn conflict(detail: impl Into<String>, remedy: &str) -> Self {
+        Self::new(StatusCode::CONFLICT, "conflict", "Not possible now", detail, remedy)
+    }
+
+    /// The upload is no submission.
+    #[must_use]
+    pub fn unusable(detail: impl Into<String>) -> Self {
+        let remedy = "mend the file and upload it again; nothing was counted";
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, "unusable-upload", "This can't be graded", detail, remedy)
+    }
+
+    /// More bytes than allowed.
+    #[must_use]
+    pub fn too_large(most: u64) -> Self {
+        let detail = format!("more than the {} bytes that are allowed", most);
+        let remedy = "send less: no build folders, no traces in an archive of sources";
+        Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too-large", "Too large", detail, remedy)
+    }
+
+    /// The body came too slowly.
+    #[must_use]
+    pub fn too_slow() -> Self {
+        let detail = "the rest of the request did not come in time";
+        Self::new(StatusCode::REQUEST_TIMEOUT, "too-slow", "Too slow", detail, "send it again")
+    }
+
+    /// Too many requests or submissions.
+    #[must_use]
+    pub fn too_many(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::TOO_MANY_REQUESTS, "too-many", "Too many", detail, "wait, and try again")
+    }
+
+    /// Our fault, and it may pass.
+    #[must_use]
+    pub fn unavailable(detail: impl Into<String>) -> Self {
+        let remedy = "try again in a moment; what was accepted is safe";
+        Self::new(StatusCode::SERVICE_UNAVAILABLE, "unavailable", "Not available", detail, remedy)
+    }
+
+    /// Our fault.
+    #[must_use]
+    pub fn fault() -> Self {
+        let remedy = "try again, and tell the administrator: the log says more";
+        Self::new(StatusCode::INTERNAL_SERVER_ERROR, "fault", "The server failed", "something went wrong here", remedy)
+    }
+
+    /// The status of the answer.
+    #[must_use]
+    pub fn status(&self) -> StatusCode {
+        StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
+    }
+}
+
+impl From<DbError> for Problem {
+    fn from(error: DbError) -> Self {
+        if error.is_transient() {
+            tracing::warn!(%error, "the database did not answer");
+            return Self::unavailable("the database does not answer");
+        }
+        tracing::error!(%error, "a statement failed");
+        Self::fault()
+    }
+}
+
+impl From<StoreError> for Problem {
+    fn from(error: StoreError) -> Self {
+        tracing::error!(%error, "the store failed");
+        match error {
+            StoreError::TooLarge(most) => Self::too_large(most),
+            StoreError::Missing(_) => Self::not_found("file"),
+            StoreError::Damaged(_) => Self::fault(),
+            StoreError::Failed(_) => Self::unavailable("the store of files does not work"),
+        }
+    }
+}
+
+impl From<std::io::Error> for Problem {
+    fn from(error: std::io::Error) -> Self {
+        tracing::error!(%error, "a file could not be used");
+        Self::unavailable("the server can't use its folder")
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let body = serde_json::to_vec(&self).unwrap_or_default();
+        let mut response = (self.status(), body).into_response();
+        let headers = response.headers_mut();
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
+        match self.status() {
+            StatusCode::UNAUTHORIZED => {
+                headers.insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+            }
+            StatusCode::SERVICE_UNAVAILABLE | StatusCode::TOO_MANY_REQUESTS => {
+                headers.insert(header::RETRY_AFTER, HeaderValue::from_static("5"));
+            }
+            _ => {}
+        }
+        // Pages show it in their own way.
+        response.extensions_mut().insert(self);
+        response
+    }
+}

@@ -1,0 +1,153 @@
+//! Accounts, tokens, and what administrators see.
+use super::super::input::{Asked, Body, Params};
+use crate::{
+    access::{Account, Admin, Event, NewSecret, Person, Queue, TokenInfo},
+    problem::Problem,
+};
+use axum::{Json, http::StatusCode};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A token with its secret, which is shown this once.
+#[derive(Serialize, ToSchema)]
+pub(super) struct NewToken {
+    #[serde(flatten)]
+    info: TokenInfo,
+    /// The secret itself.
+    token: String,
+}
+
+/// What a token is to be called.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TokenName {
+    name: String,
+}
+
+/// An account as it is to be.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AccountWish {
+    name: String,
+    #[serde(default)]
+    is_admin: bool,
+}
+
+/// A link that signs in once, good for a week.
+#[derive(Serialize, ToSchema)]
+pub(super) struct Link {
+    /// The link; nothing where the account was there before.
+    pub(super) link: Option<String>,
+}
+
+/// Where to look on from.
+#[derive(Deserialize)]
+pub(super) struct Before {
+    pub(super) before: Option<i64>,
+}
+
+/// A link as people open it.
+pub(super) fn link(house: &crate::access::House, secret: Option<NewSecret>) -> Link {
+    Link { link: secret.map(|secret| format!("{}/welcome/{}", house.public(), secret.reveal())) }
+}
+
+/// Who asks.
+#[utoipa::path(get, path = "/api/v1/me", tag = "accounts",
+    responses((status = 200, body = Account), (status = "default", body = Problem)))]
+pub(super) async fn me(person: Person) -> Json<Account> {
+    Json(person.account().clone())
+}
+
+/// One's own tokens.
+#[utoipa::path(get, path = "/api/v1/tokens", tag = "accounts",
+    responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem)))]
+pub(super) async fn tokens(person: Person) -> Result<Json<Vec<TokenInfo>>, Problem> {
+    Ok(Json(person.tokens().await?))
+}
+
+/// Makes a token for oneself.
+#[utoipa::path(post, path = "/api/v1/tokens", tag = "accounts", request_body = TokenName,
+    responses((status = 201, body = NewToken), (status = "default", body = Problem)))]
+pub(super) async fn new_token(
+    person: Person,
+    Body(wish): Body<TokenName>,
+) -> Result<(StatusCode, Json<NewToken>), Problem> {
+    let (info, secret) = person.new_token(&wish.name).await?;
+    Ok((StatusCode::CREATED, Json(NewToken { info, token: secret.reveal().to_owned() })))
+}
+
+/// Revokes one of one's own tokens.
+#[utoipa::path(delete, path = "/api/v1/tokens/{id}", tag = "accounts", params(("id" = i64, Path)),
+    responses((status = 204, description = "Revoked"), (status = "default", body = Problem)))]
+pub(super) async fn revoke_token(person: Person, Params(id): Params<i64>) -> Result<StatusCode, Problem> {
+    person.revoke_token(id).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// All accounts.
+#[utoipa::path(get, path = "/api/v1/accounts", tag = "administration",
+    responses((status = 200, body = Vec<Account>), (status = "default", body = Problem)))]
+pub(super) async fn accounts(admin: Admin) -> Result<Json<Vec<Account>>, Problem> {
+    Ok(Json(admin.accounts().await?))
+}
+
+/// Makes an account or changes it, and returns a link that signs in once.
+#[utoipa::path(put, path = "/api/v1/accounts/{login}", tag = "administration", params(("login" = String, Path)),
+    request_body = AccountWish, responses((status = 200, body = Link), (status = "default", body = Problem)))]
+pub(super) async fn set_account(
+    admin: Admin,
+    Params(login): Params<String>,
+    Body(wish): Body<AccountWish>,
+) -> Result<Json<Link>, Problem> {
+    let secret = admin.set_account(&login, &wish.name, wish.is_admin).await?;
+    Ok(Json(link(admin.house(), Some(secret))))
+}
+
+/// Shuts an account.
+#[utoipa::path(delete, path = "/api/v1/accounts/{login}", tag = "administration", params(("login" = String, Path)),
+    responses((status = 204, description = "Shut"), (status = "default", body = Problem)))]
+pub(super) async fn disable_account(admin: Admin, Params(login): Params<String>) -> Result<StatusCode, Problem> {
+    admin.disable_account(&login).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// The tokens of workers.
+#[utoipa::path(get, path = "/api/v1/worker-tokens", tag = "administration",
+    responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem)))]
+pub(super) async fn worker_tokens(admin: Admin) -> Result<Json<Vec<TokenInfo>>, Problem> {
+    Ok(Json(admin.worker_tokens().await?))
+}
+
+/// Makes a token for workers on other machines.
+#[utoipa::path(post, path = "/api/v1/worker-tokens", tag = "administration", request_body = TokenName,
+    responses((status = 201, body = NewToken), (status = "default", body = Problem)))]
+pub(super) async fn new_worker_token(
+    admin: Admin,
+    Body(wish): Body<TokenName>,
+) -> Result<(StatusCode, Json<NewToken>), Problem> {
+    let (info, secret) = admin.new_worker_token(&wish.name).await?;
+    Ok((StatusCode::CREATED, Json(NewToken { info, token: secret.reveal().to_owned() })))
+}
+
+/// Revokes a token of workers.
+#[utoipa::path(delete, path = "/api/v1/worker-tokens/{id}", tag = "administration", params(("id" = i64, Path)),
+    responses((status = 204, description = "Revoked"), (status = "default", body = Problem)))]
+pub(super) async fn revoke_worker_token(admin: Admin, Params(id): Params<i64>) -> Result<StatusCode, Problem> {
+    admin.revoke_worker_token(id).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// The queue and the workers.
+#[utoipa::path(get, path = "/api/v1/queue", tag = "administration",
+    responses((status = 200, body = Queue), (status = "default", body = Problem)))]
+pub(super) async fn queue(admin: Admin) -> Result<Json<Queue>, Problem> {
+    Ok(Json(admin.queue().await?))
+}
+
+/// Everything that happened, latest first, 200 at a time.
+#[utoipa::path(get, path = "/api/v1/audit", tag = "administration",
+    params(("before" = Option<i64>, Query, description = "Only events before this one")),
+    responses((status = 200, body = Vec<Event>), (status = "default", body = Problem)))]
+pub(super) async fn audit(admin: Admin, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
+    Ok(Json(admin.audit(asked.before).await?))
+}

@@ -1,0 +1,125 @@
+//! Assignments, and how a class stands in them.
+use super::super::{
+    input::{Asked, Body, Params},
+    upload,
+};
+use crate::{
+    access::{Assignment, Member, Settings, Staff, Standing},
+    archive::{self, Limits},
+    problem::Problem,
+};
+use axum::{
+    Json,
+    extract::Request,
+    http::header,
+    response::{IntoResponse, Response},
+};
+use serde::Deserialize;
+use utoipa::ToSchema;
+
+/// The largest archive of a suite.
+const SUITE: u64 = 64 << 20;
+
+/// An assignment as it is to be.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AssignmentWish {
+    title: String,
+    #[serde(default)]
+    visible: bool,
+    #[serde(default)]
+    settings: Settings,
+}
+
+/// How to write an export.
+#[derive(Deserialize)]
+pub(super) struct Format {
+    format: Option<String>,
+}
+
+/// The assignments of a course.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments", tag = "assignments",
+    params(("course" = String, Path)),
+    responses((status = 200, body = Vec<Assignment>), (status = "default", body = Problem)))]
+pub(super) async fn assignments(member: Member) -> Result<Json<Vec<Assignment>>, Problem> {
+    Ok(Json(member.assignments().await?))
+}
+
+/// An assignment.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path)),
+    responses((status = 200, body = Assignment), (status = "default", body = Problem)))]
+pub(super) async fn assignment(
+    member: Member,
+    Params((_, assignment)): Params<(String, String)>,
+) -> Result<Json<Assignment>, Problem> {
+    Ok(Json(member.assignment(&assignment).await?))
+}
+
+/// Makes an assignment or changes it. Submissions that are graded already stay as they are: that takes a regrade.
+#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path)), request_body = AssignmentWish,
+    responses((status = 200, body = Assignment), (status = "default", body = Problem)))]
+pub(super) async fn set_assignment(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+    Body(wish): Body<AssignmentWish>,
+) -> Result<Json<Assignment>, Problem> {
+    Ok(Json(staff.set_assignment(&assignment, &wish.title, wish.visible, &wish.settings).await?))
+}
+
+/// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite.
+#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path)),
+    request_body(content = Vec<u8>, content_type = "application/octet-stream"),
+    responses((status = 200, body = Assignment), (status = "default", body = Problem)))]
+pub(super) async fn set_suite(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+    request: Request,
+) -> Result<Json<Assignment>, Problem> {
+    let received = upload::receive(staff.member().house(), request, SUITE).await?;
+    let path = received.file.to_path_buf();
+    let looked = tokio::task::spawn_blocking(move || archive::look_through(&path, Limits::USUAL)).await;
+    let files = looked.map_err(|_| Problem::fault())?.map_err(|error| Problem::unusable(error.to_string()))?;
+    if !files.iter().any(|file| file.as_os_str() == "suite.toml") {
+        return Err(Problem::unusable("the archive has no suite.toml at its top"));
+    }
+    Ok(Json(staff.set_suite(&assignment, &received.file).await?))
+}
+
+/// How all students stand: which submission counts, and for what.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/class", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path)),
+    responses((status = 200, body = Vec<Standing>), (status = "default", body = Problem)))]
+pub(super) async fn standings(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+) -> Result<Json<Vec<Standing>>, Problem> {
+    Ok(Json(staff.standings(&assignment).await?))
+}
+
+/// The class's grades as a table (`csv`, one line per student) or all submissions as JSON lines (`jsonl`).
+#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/export", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path),
+        ("format" = Option<String>, Query, description = "csv (the default) or jsonl")),
+    responses((status = 200, description = "The grades"), (status = "default", body = Problem)))]
+pub(super) async fn export(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+    Asked(asked): Asked<Format>,
+) -> Result<Response, Problem> {
+    let (kind, text) = match asked.format.as_deref().unwrap_or("csv") {
+        "csv" => ("text/csv; charset=utf-8", super::export_csv(&staff.standings(&assignment).await?)?),
+        "jsonl" => {
+            let mut text = String::new();
+            for submission in staff.all_submissions(&assignment).await? {
+                text.push_str(&serde_json::to_string(&submission).map_err(|_| Problem::fault())?);
+                text.push('\n');
+            }
+            ("application/jsonl; charset=utf-8", text)
+        }
+        _ => return Err(Problem::invalid("format is csv or jsonl")),
+    };
+    Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, "attachment")], text).into_response())
+}

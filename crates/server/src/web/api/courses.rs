@@ -1,0 +1,99 @@
+//! Courses and their members.
+use super::{
+    super::input::{Asked, Body, Params},
+    accounts::{Before, Link, link},
+};
+use crate::{
+    access::{Admin, Course, CourseOf, Event, MemberInfo, Person, Staff},
+    problem::Problem,
+};
+use axum::{Json, http::StatusCode};
+use serde::Deserialize;
+use utoipa::ToSchema;
+
+/// A course as it is to be.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CourseWish {
+    slug: String,
+    title: String,
+}
+
+/// A member as they are to be.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MemberWish {
+    /// Used when the account is new.
+    name: String,
+    /// `student` or `staff`.
+    role: String,
+}
+
+/// The courses that one is in.
+#[utoipa::path(get, path = "/api/v1/courses", tag = "courses",
+    responses((status = 200, body = Vec<CourseOf>), (status = "default", body = Problem)))]
+pub(super) async fn courses(person: Person) -> Result<Json<Vec<CourseOf>>, Problem> {
+    Ok(Json(person.courses().await?))
+}
+
+/// Makes a course.
+#[utoipa::path(post, path = "/api/v1/courses", tag = "administration", request_body = CourseWish,
+    responses((status = 201, body = Course), (status = "default", body = Problem)))]
+pub(super) async fn new_course(
+    admin: Admin,
+    Body(wish): Body<CourseWish>,
+) -> Result<(StatusCode, Json<Course>), Problem> {
+    Ok((StatusCode::CREATED, Json(admin.new_course(&wish.slug, &wish.title).await?)))
+}
+
+/// The members of a course.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/members", tag = "courses", params(("course" = String, Path)),
+    responses((status = 200, body = Vec<MemberInfo>), (status = "default", body = Problem)))]
+pub(super) async fn members(staff: Staff) -> Result<Json<Vec<MemberInfo>>, Problem> {
+    Ok(Json(staff.members().await?))
+}
+
+/// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once.
+#[utoipa::path(put, path = "/api/v1/courses/{course}/members/{login}", tag = "courses",
+    params(("course" = String, Path), ("login" = String, Path)), request_body = MemberWish,
+    responses((status = 200, body = Link), (status = "default", body = Problem)))]
+pub(super) async fn set_member(
+    staff: Staff,
+    Params((_, login)): Params<(String, String)>,
+    Body(wish): Body<MemberWish>,
+) -> Result<Json<Link>, Problem> {
+    let secret = staff.set_member(&login, &wish.name, &wish.role).await?;
+    Ok(Json(link(staff.member().house(), secret)))
+}
+
+/// Takes somebody out of the course; what they handed in stays.
+#[utoipa::path(delete, path = "/api/v1/courses/{course}/members/{login}", tag = "courses",
+    params(("course" = String, Path), ("login" = String, Path)),
+    responses((status = 204, description = "They are out"), (status = "default", body = Problem)))]
+pub(super) async fn remove_member(
+    staff: Staff,
+    Params((_, login)): Params<(String, String)>,
+) -> Result<StatusCode, Problem> {
+    staff.remove_member(&login).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// A new link that signs a student of this course in once.
+#[utoipa::path(post, path = "/api/v1/courses/{course}/members/{login}/link", tag = "courses",
+    params(("course" = String, Path), ("login" = String, Path)),
+    responses((status = 200, body = Link), (status = "default", body = Problem)))]
+pub(super) async fn member_link(
+    staff: Staff,
+    Params((_, login)): Params<(String, String)>,
+) -> Result<Json<Link>, Problem> {
+    let secret = staff.new_link(&login).await?;
+    Ok(Json(link(staff.member().house(), Some(secret))))
+}
+
+/// What happened in the course, latest first, 200 at a time.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/audit", tag = "courses",
+    params(("course" = String, Path), ("before" = Option<i64>, Query, description = "Only events before this one")),
+    responses((status = 200, body = Vec<Event>), (status = "default", body = Problem)))]
+pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
+    Ok(Json(staff.audit(asked.before).await?))
+}

@@ -1,0 +1,61 @@
+//! The API. Each handler says by its first argument whom it serves.
+
+mod accounts;
+mod assignments;
+mod courses;
+mod operations;
+mod regrades;
+mod submissions;
+mod workers;
+
+pub use submissions::export_csv;
+pub(super) use submissions::{receive, report_response, upload_response};
+
+pub(crate) use workers::{Alive, Fault, Finished, Held, Manners};
+
+use crate::access::House;
+use utoipa_axum::{router::OpenApiRouter, routes};
+
+pub(super) fn routes() -> OpenApiRouter<House> {
+    OpenApiRouter::new()
+        .routes(routes!(operations::health))
+        .routes(routes!(operations::ready))
+        .routes(routes!(operations::metrics))
+        .routes(routes!(operations::openapi))
+        .routes(routes!(accounts::me))
+        .routes(routes!(accounts::tokens, accounts::new_token))
+        .routes(routes!(accounts::revoke_token))
+        .routes(routes!(accounts::accounts))
+        .routes(routes!(accounts::set_account, accounts::disable_account))
+        .routes(routes!(accounts::worker_tokens, accounts::new_worker_token))
+        .routes(routes!(accounts::revoke_worker_token))
+        .routes(routes!(accounts::queue))
+        .routes(routes!(accounts::audit))
+        .routes(routes!(courses::courses, courses::new_course))
+        .routes(routes!(courses::members))
+        .routes(routes!(courses::set_member, courses::remove_member))
+        .routes(routes!(courses::member_link))
+        .routes(routes!(courses::audit))
+        .routes(routes!(assignments::assignments))
+        .routes(routes!(assignments::assignment, assignments::set_assignment))
+        .routes(routes!(assignments::set_suite))
+        .routes(routes!(assignments::standings))
+        .routes(routes!(assignments::export))
+        .routes(routes!(submissions::own, submissions::submit))
+        .routes(routes!(submissions::submission))
+        .routes(routes!(submissions::history))
+        .routes(routes!(submissions::events))
+        .routes(routes!(submissions::report))
+        .routes(routes!(submissions::upload))
+        .routes(routes!(regrades::regrades, regrades::begin))
+        .routes(routes!(regrades::show))
+        .routes(routes!(regrades::apply))
+        .routes(routes!(regrades::discard))
+        .routes(routes!(workers::tick))
+        .routes(routes!(workers::claim))
+        .routes(routes!(workers::renew))
+        .routes(routes!(workers::release))
+        .routes(routes!(workers::fail))
+        .routes(routes!(workers::finish))
+        .routes(routes!(workers::artefact, workers::store))
+}

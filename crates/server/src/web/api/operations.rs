@@ -1,0 +1,66 @@
+//! For whoever runs the server.
+use crate::{access::Visitor, problem::Problem};
+use axum::{
+    http::header,
+    response::{IntoResponse, Response},
+};
+
+/// Whether the process is alive.
+#[utoipa::path(get, path = "/health", tag = "operations", responses((status = 200, description = "It is")))]
+pub(super) async fn health() -> &'static str {
+    "alive\n"
+}
+
+/// Whether requests can be served: the database answers, and its tables are of this version.
+#[utoipa::path(get, path = "/ready", tag = "operations",
+    responses((status = 200, description = "They can"), (status = "default", body = Problem)))]
+pub(super) async fn ready(visitor: Visitor) -> Result<&'static str, Problem> {
+    visitor.ready().await?;
+    Ok("ready\n")
+}
+
+/// This description.
+#[utoipa::path(get, path = "/api/openapi.json", tag = "operations",
+    responses((status = 200, description = "OpenAPI 3.1")))]
+pub(super) async fn openapi() -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], crate::web::openapi()).into_response()
+}
+
+fn line(text: &mut String, line: &str) {
+    text.push_str(line);
+    text.push('\n');
+}
+
+/// Numbers for Prometheus. They tell of nobody.
+#[utoipa::path(get, path = "/metrics", tag = "operations",
+    responses((status = 200, description = "Prometheus' text format"), (status = "default", body = Problem)))]
+pub(super) async fn metrics(visitor: Visitor) -> Result<Response, Problem> {
+    let metrics = visitor.metrics().await?;
+    let mut text = String::new();
+    let head = |text: &mut String, name: &str, kind: &str, help: &str| {
+        line(text, &format!("# HELP fosssim_{name} {help}\n# TYPE fosssim_{name} {kind}"));
+    };
+    head(&mut text, "jobs", "gauge", "Jobs by state.");
+    for state in ["waiting", "running", "done", "buried", "cancelled"] {
+        let count = metrics.jobs.iter().find(|(name, _)| name == state).map_or(0, |(_, count)| *count);
+        line(&mut text, &format!("fosssim_jobs{{state=\"{state}\"}} {count}"));
+    }
+    for (name, help, value) in [
+        ("oldest_waiting_milliseconds", "How long the oldest waiting upload has waited.", metrics.oldest),
+        ("workers", "Workers that were seen lately.", metrics.workers),
+        ("slots", "Their slots.", metrics.slots),
+    ] {
+        head(&mut text, name, "gauge", help);
+        line(&mut text, &format!("fosssim_{name} {value}"));
+    }
+    head(&mut text, "submissions_total", "counter", "Submissions.");
+    line(&mut text, &format!("fosssim_submissions_total {}", metrics.submissions));
+    head(&mut text, "events_total", "counter", "Results, and what went wrong with jobs.");
+    for (kind, label) in
+        [("graded", "graded"), ("failed try", "failed_try"), ("late answer", "late_answer"), ("buried", "buried")]
+    {
+        let count = metrics.events.iter().find(|(name, _)| name == kind).map_or(0, |(_, count)| *count);
+        line(&mut text, &format!("fosssim_events_total{{kind=\"{label}\"}} {count}"));
+    }
+    Ok(([(header::CONTENT_TYPE, "text/plain; version=0.0.4; charset=utf-8")], text).into_response())
+}

@@ -1,0 +1,76 @@
+//! Regrades: begun, looked at, applied or discarded.
+use super::super::input::{Body, Params};
+use crate::{
+    access::{Regrade, Settings, Staff},
+    problem::Problem,
+};
+use axum::{Json, http::StatusCode};
+use serde::Deserialize;
+use utoipa::ToSchema;
+
+/// What a regrade is to be.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RegradeWish {
+    /// Why, as students read it when it is applied.
+    reason: String,
+    /// By what; without it by the assignment's settings as they are.
+    settings: Option<Settings>,
+}
+
+/// The regrades of an assignment, latest first.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
+    params(("course" = String, Path), ("assignment" = String, Path)),
+    responses((status = 200, body = Vec<Regrade>), (status = "default", body = Problem)))]
+pub(super) async fn regrades(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+) -> Result<Json<Vec<Regrade>>, Problem> {
+    Ok(Json(staff.regrades(&assignment).await?))
+}
+
+/// Grades all submissions again, beside their grades. Nothing changes until it is applied.
+#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
+    params(("course" = String, Path), ("assignment" = String, Path)), request_body = RegradeWish,
+    responses((status = 201, body = Regrade), (status = "default", body = Problem)))]
+pub(super) async fn begin(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+    Body(wish): Body<RegradeWish>,
+) -> Result<(StatusCode, Json<Regrade>), Problem> {
+    let regrade = staff.regrade(&assignment, &wish.reason, wish.settings.as_ref()).await?;
+    Ok((StatusCode::CREATED, Json(regrade)))
+}
+
+/// What a regrade would change, or did, and why.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
+    params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
+    responses((status = 200, body = Regrade), (status = "default", body = Problem)))]
+pub(super) async fn show(
+    staff: Staff,
+    Params((_, assignment, id)): Params<(String, String, i64)>,
+) -> Result<Json<Regrade>, Problem> {
+    Ok(Json(staff.show_regrade(&assignment, id).await?))
+}
+
+/// Makes its results count, all in one step.
+#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply",
+    tag = "regrades", params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
+    responses((status = 200, body = Regrade), (status = "default", body = Problem)))]
+pub(super) async fn apply(
+    staff: Staff,
+    Params((_, assignment, id)): Params<(String, String, i64)>,
+) -> Result<Json<Regrade>, Problem> {
+    Ok(Json(staff.apply_regrade(&assignment, id).await?))
+}
+
+/// Gives it up; nothing changes.
+#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard",
+    tag = "regrades", params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
+    responses((status = 200, body = Regrade), (status = "default", body = Problem)))]
+pub(super) async fn discard(
+    staff: Staff,
+    Params((_, assignment, id)): Params<(String, String, i64)>,
+) -> Result<Json<Regrade>, Problem> {
+    Ok(Json(staff.discard_regrade(&assignment, id).await?))
+}

@@ -1,0 +1,202 @@
+//! Submissions.
+use super::super::{
+    input::{Asked, Params},
+    status, upload,
+};
+use crate::{
+    access::{FileInfo, History, Member, Standing, Submission, Upload},
+    problem::Problem,
+};
+use axum::{
+    Json,
+    extract::Request,
+    http::{HeaderMap, HeaderValue, StatusCode, header},
+    response::{IntoResponse, Response},
+};
+use serde::Deserialize;
+
+/// What is said about an upload that is the whole body.
+#[derive(Deserialize)]
+pub(super) struct About {
+    name: Option<String>,
+    form: Option<String>,
+}
+
+/// One's own submissions, newest first.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
+    params(("course" = String, Path), ("assignment" = String, Path)),
+    responses((status = 200, body = Vec<Submission>), (status = "default", body = Problem)))]
+pub(super) async fn own(
+    member: Member,
+    Params((_, assignment)): Params<(String, String)>,
+) -> Result<Json<Vec<Submission>>, Problem> {
+    Ok(Json(member.submissions(&assignment).await?))
+}
+
+/// Hands in: the body is the file, or a form (`multipart/form-data`) with a field `file`. With an `Idempotency-Key` the
+/// same upload sent twice is one submission: 201 the first time, 200 from then on.
+#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
+    params(("course" = String, Path), ("assignment" = String, Path),
+        ("name" = Option<String>, Query, description = "What the file is called"),
+        ("form" = Option<String>, Query, description = "program or sources; told from the file otherwise"),
+        ("Idempotency-Key" = Option<String>, Header, description = "A name of the sender's own for this upload")),
+    request_body(content = Vec<u8>, content_type = "application/octet-stream"),
+    responses((status = 201, body = Submission), (status = 200, body = Submission),
+        (status = "default", body = Problem)))]
+pub(super) async fn submit(
+    member: Member,
+    Params((_, assignment)): Params<(String, String)>,
+    Asked(about): Asked<About>,
+    headers: HeaderMap,
+    request: Request,
+) -> Result<Response, Problem> {
+    let key = match headers.get("idempotency-key") {
+        None => None,
+        Some(key) => Some(key.to_str().map_err(|_| Problem::invalid("Idempotency-Key is not ASCII"))?),
+    };
+    let (submission, repeated) =
+        receive(&member, &assignment, request, about.name.as_deref(), about.form.as_deref(), key).await?;
+    let status = if repeated { StatusCode::OK } else { StatusCode::CREATED };
+    let place = format!("/api/v1/courses/{}/submissions/{}", member.course().slug, submission.id);
+    Ok((status, [(header::LOCATION, place)], Json(submission)).into_response())
+}
+
+/// Receives an upload and hands it in.
+pub(in crate::web) async fn receive(
+    member: &Member,
+    assignment: &str,
+    request: Request,
+    name: Option<&str>,
+    form: Option<&str>,
+    key: Option<&str>,
+) -> Result<(Submission, bool), Problem> {
+    let most = member.assignment(assignment).await?.settings.max_bytes;
+    let received = upload::receive(member.house(), request, most).await?;
+    let form = upload::examine(&received.file, received.form.as_deref().or(form)).await?;
+    let name = upload::plain_name(received.name.as_deref().or(name).unwrap_or("submission"));
+    // A page's key and the file together: another file from the same page is another submission.
+    let of_page = match &received.key {
+        Some(key) => Some(format!("{key} {}", crate::store::digest_of_file(&received.file).await?.digest)),
+        None => None,
+    };
+    let key = of_page.as_deref().or(key);
+    if key.is_some_and(|key| !(1..=200).contains(&key.len()) || key.chars().any(char::is_control)) {
+        return Err(Problem::invalid("a key is 1 to 200 characters long"));
+    }
+    let accepted = member.submit(assignment, &Upload { form, name: &name, file: &received.file, key }).await?;
+    Ok((accepted.submission, accepted.repeated))
+}
+
+/// A submission: where it is in the queue, and what it came to.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}", tag = "submissions",
+    params(("course" = String, Path), ("id" = i64, Path)),
+    responses((status = 200, body = Submission), (status = "default", body = Problem)))]
+pub(super) async fn submission(
+    member: Member,
+    Params((_, id)): Params<(String, i64)>,
+) -> Result<Json<Submission>, Problem> {
+    Ok(Json(member.submission(id).await?))
+}
+
+/// How its grade came to be: who, when, why, by which version and rules.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/history", tag = "submissions",
+    params(("course" = String, Path), ("id" = i64, Path)),
+    responses((status = 200, body = Vec<History>), (status = "default", body = Problem)))]
+pub(super) async fn history(
+    member: Member,
+    Params((_, id)): Params<(String, i64)>,
+) -> Result<Json<Vec<History>>, Problem> {
+    Ok(Json(member.history(id).await?))
+}
+
+/// Its state as server-sent events: one at once, one whenever it changes; the stream ends with the grade. Each event is the
+/// whole state, so that nothing is lost with a connection.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/events", tag = "submissions",
+    params(("course" = String, Path), ("id" = i64, Path)),
+    responses((status = 200, description = "text/event-stream of submissions"), (status = "default", body = Problem)))]
+pub(super) async fn events(member: Member, Params((_, id)): Params<(String, i64)>) -> Result<Response, Problem> {
+    status::stream(member, id).await
+}
+
+/// A report on it, as the grader wrote it: `grade.json`, `report.txt`, ...
+#[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/files/{name}", tag = "submissions",
+    params(("course" = String, Path), ("id" = i64, Path), ("name" = String, Path)),
+    responses((status = 200, description = "The report"), (status = "default", body = Problem)))]
+pub(super) async fn report(
+    member: Member,
+    Params((_, id, name)): Params<(String, i64, String)>,
+) -> Result<Response, Problem> {
+    let (file, bytes) = member.report(id, &name).await?;
+    Ok(report_response(&file, bytes))
+}
+
+/// A report holds words of a stranger's program: a browser shows it as a page of nobody, without this site's cookies.
+pub(in crate::web) fn report_response(file: &FileInfo, bytes: Vec<u8>) -> Response {
+    let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
+    let policy = if file.media_type.starts_with("text/html") {
+        "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+    } else {
+        "sandbox; default-src 'none'"
+    };
+    let headers = [(header::CONTENT_TYPE, kind), (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(policy))];
+    (headers, bytes).into_response()
+}
+
+/// What was handed in.
+#[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
+    params(("course" = String, Path), ("id" = i64, Path)),
+    responses((status = 200, description = "The file"), (status = "default", body = Problem)))]
+pub(super) async fn upload(member: Member, Params((_, id)): Params<(String, i64)>) -> Result<Response, Problem> {
+    let (submission, bytes) = member.upload(id).await?;
+    Ok(upload_response(&submission, bytes))
+}
+
+/// A stranger's file: to be kept, never to be shown.
+pub(in crate::web) fn upload_response(submission: &Submission, bytes: Vec<u8>) -> Response {
+    // The name was made harmless when it came.
+    let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
+    let headers = [
+        (header::CONTENT_TYPE, HeaderValue::from_static("application/octet-stream")),
+        (
+            header::CONTENT_DISPOSITION,
+            HeaderValue::from_str(&disposition).unwrap_or(HeaderValue::from_static("attachment")),
+        ),
+        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static("sandbox; default-src 'none'")),
+    ];
+    (headers, bytes).into_response()
+}
+
+/// A class's grades as a table. What spreadsheets would take for a formula is marked as text.
+///
+/// # Errors
+/// Never, in memory.
+pub fn export_csv(standings: &[Standing]) -> Result<String, Problem> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let fault = |_| Problem::fault();
+    writer
+        .write_record(["login", "name", "submissions", "submission", "verdict", "points", "max_points", "graded_at"])
+        .map_err(fault)?;
+    for standing in standings {
+        let counts = standing.counts.as_ref();
+        let grade = counts.and_then(|counts| counts.grade.as_ref());
+        let or_empty = |text: Option<&String>| text.cloned().unwrap_or_default();
+        writer
+            .write_record([
+                cell(&standing.login),
+                cell(&standing.name),
+                standing.submissions.to_string(),
+                counts.map(|counts| counts.id.to_string()).unwrap_or_default(),
+                grade.map(|grade| cell(&grade.verdict)).unwrap_or_default(),
+                or_empty(grade.and_then(|grade| grade.points.as_ref())),
+                or_empty(grade.and_then(|grade| grade.max_points.as_ref())),
+                grade.map(|grade| grade.created_at.to_string()).unwrap_or_default(),
+            ])
+            .map_err(fault)?;
+    }
+    let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
+    String::from_utf8(bytes).map_err(|_| Problem::fault())
+}
+
+fn cell(text: &str) -> String {
+    if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
+}

@@ -1,0 +1,166 @@
+//! What workers on other machines ask: claim, renew, finish, and the files of the jobs that they hold. A lease is shown in
+//! the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
+use super::super::{
+    input::{Body, Params},
+    upload,
+};
+use crate::{
+    access::{Claimed, Remote},
+    problem::Problem,
+    queue::Lease,
+    store::{Artefact, Digest},
+    task::Outcome,
+};
+use axum::{
+    Json,
+    body::Body as HttpBody,
+    extract::Request,
+    http::{HeaderMap, StatusCode, header},
+    response::{IntoResponse, Response},
+};
+use serde::{Deserialize, Serialize};
+use tokio::io::AsyncReadExt;
+use utoipa::ToSchema;
+
+/// A sign of life.
+#[derive(Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Alive {
+    /// How many gradings it does at one time.
+    pub(crate) slots: usize,
+}
+
+/// What a worker is to know.
+#[derive(Serialize, Deserialize, ToSchema)]
+pub(crate) struct Manners {
+    /// How often to say that it is alive, in milliseconds.
+    pub(crate) tick_every: u64,
+}
+
+/// Whether the lease still holds.
+#[derive(Serialize, Deserialize, ToSchema)]
+pub(crate) struct Held {
+    /// If not, somebody else has the job and nothing was changed.
+    pub(crate) held: bool,
+}
+
+/// Why a try came to nothing.
+#[derive(Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Fault {
+    #[schema(value_type = Object)]
+    pub(crate) lease: Lease,
+    pub(crate) fault: String,
+}
+
+/// A result.
+#[derive(Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Finished {
+    #[schema(value_type = Object)]
+    pub(crate) lease: Lease,
+    #[schema(value_type = Object)]
+    pub(crate) outcome: Outcome,
+}
+
+/// Says that the worker is alive.
+#[utoipa::path(post, path = "/api/v1/worker/tick", tag = "workers", request_body = Alive,
+    responses((status = 200, body = Manners), (status = "default", body = Problem)))]
+pub(super) async fn tick(remote: Remote, Body(alive): Body<Alive>) -> Result<Json<Manners>, Problem> {
+    remote.tick(alive.slots).await?;
+    Ok(Json(Manners { tick_every: remote.tick_every() }))
+}
+
+/// Claims the next job; 204 when there is none.
+#[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
+    responses((status = 200, body = Claimed), (status = 204, description = "No job"),
+        (status = "default", body = Problem)))]
+pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
+    Ok(match remote.claim().await? {
+        Some(job) => Json(job).into_response(),
+        None => StatusCode::NO_CONTENT.into_response(),
+    })
+}
+
+/// Extends a lease.
+#[utoipa::path(post, path = "/api/v1/worker/renew", tag = "workers", request_body(content = Object),
+    responses((status = 200, body = Held), (status = "default", body = Problem)))]
+pub(super) async fn renew(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
+    Ok(Json(Held { held: remote.renew(&lease).await? }))
+}
+
+/// Gives a job back at no cost.
+#[utoipa::path(post, path = "/api/v1/worker/release", tag = "workers", request_body(content = Object),
+    responses((status = 200, body = Held), (status = "default", body = Problem)))]
+pub(super) async fn release(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
+    Ok(Json(Held { held: remote.release(&lease).await? }))
+}
+
+/// Says that a try came to nothing.
+#[utoipa::path(post, path = "/api/v1/worker/fail", tag = "workers", request_body = Fault,
+    responses((status = 200, body = Held), (status = "default", body = Problem)))]
+pub(super) async fn fail(remote: Remote, Body(fault): Body<Fault>) -> Result<Json<Held>, Problem> {
+    Ok(Json(Held { held: remote.fail(&fault.lease, &fault.fault).await? }))
+}
+
+/// Brings a result.
+#[utoipa::path(post, path = "/api/v1/worker/finish", tag = "workers", request_body = Finished,
+    responses((status = 200, body = Held), (status = "default", body = Problem)))]
+pub(super) async fn finish(remote: Remote, Body(result): Body<Finished>) -> Result<Json<Held>, Problem> {
+    Ok(Json(Held { held: remote.finish(&result.lease, &result.outcome).await? }))
+}
+
+fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
+    let text = headers.get("fosssim-lease").and_then(|value| value.to_str().ok()).unwrap_or_default();
+    let mut words = text.splitn(3, ':');
+    let mut next = || words.next().unwrap_or_default();
+    match (next().parse(), next().parse(), next()) {
+        (Ok(job), Ok(attempt), key) if !key.is_empty() => Ok(Lease { job, attempt, key: key.to_owned() }),
+        _ => Err(Problem::invalid("show the lease: Fosssim-Lease: JOB:ATTEMPT:KEY")),
+    }
+}
+
+/// A file of a job that the worker holds.
+#[utoipa::path(get, path = "/api/v1/worker/files/{digest}", tag = "workers",
+    params(("digest" = String, Path), ("Fosssim-Lease" = String, Header)),
+    responses((status = 200, description = "Its bytes"), (status = "default", body = Problem)))]
+pub(super) async fn artefact(
+    remote: Remote,
+    Params(digest): Params<String>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let digest: Digest = digest.parse().map_err(Problem::invalid)?;
+    let path = remote.artefact(&lease(&headers)?, &digest).await?;
+    let file = tokio::fs::File::open(&path).await?;
+    // The file is open: its name is not needed any more.
+    drop(path);
+    let chunks = futures_util::stream::try_unfold(file, async |mut file| {
+        let mut chunk = vec![0; 64 * 1024];
+        let read = file.read(&mut chunk).await?;
+        chunk.truncate(read);
+        Ok::<_, std::io::Error>((read > 0).then_some((chunk, file)))
+    });
+    let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
+    Ok((kind, HttpBody::from_stream(chunks)).into_response())
+}
+
+/// Stores a report of a job that the worker holds; the digest must be that of its bytes.
+#[utoipa::path(put, path = "/api/v1/worker/files/{digest}", tag = "workers",
+    params(("digest" = String, Path), ("Fosssim-Lease" = String, Header)),
+    request_body(content = Vec<u8>, content_type = "application/octet-stream"),
+    responses((status = 200, body = Object), (status = "default", body = Problem)))]
+pub(super) async fn store(
+    remote: Remote,
+    Params(digest): Params<String>,
+    request: Request,
+) -> Result<Json<Artefact>, Problem> {
+    let digest: Digest = digest.parse().map_err(Problem::invalid)?;
+    let lease = lease(request.headers())?;
+    let most = remote.check_held(&lease).await?;
+    let received = upload::receive(remote.house(), request, most).await?;
+    let found = crate::store::digest_of_file(&received.file).await?;
+    if found.digest != digest {
+        return Err(Problem::invalid("these are other bytes than the digest says"));
+    }
+    Ok(Json(remote.store(&lease, &received.file).await?))
+}

@@ -1,0 +1,77 @@
+//! What holds for every request: where it may come from, what answers say to browsers, and what is logged.
+use crate::{
+    access::{House, Secrets},
+    problem::Problem,
+};
+use axum::{
+    extract::{MatchedPath, Request, State},
+    http::{HeaderMap, HeaderName, HeaderValue, Method, header},
+    middleware::Next,
+    response::{IntoResponse, Response},
+};
+use std::time::Instant;
+
+/// What pages may do: their own files only, in no frame.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; \
+                      form-action 'self'; base-uri 'none'; frame-src 'self'; frame-ancestors 'none'";
+
+/// Refuses what another site made a browser send. A token in a header can't be sent by one, so that requests with a token
+/// pass; all others that change something must come from this site, by the browser's own word: `Sec-Fetch-Site`, or
+/// `Origin` from browsers that don't say.
+pub(super) async fn same_site(State(house): State<House>, request: Request, next: Next) -> Response {
+    if is_harmless(request.method())
+        || Secrets::of(request.headers(), house.is_secure()).bearer.is_some()
+        || is_own(request.headers(), &house)
+    {
+        return next.run(request).await;
+    }
+    Problem::cross_site().into_response()
+}
+
+fn is_harmless(method: &Method) -> bool {
+    matches!(*method, Method::GET | Method::HEAD | Method::OPTIONS)
+}
+
+fn is_own(headers: &HeaderMap, house: &House) -> bool {
+    let text = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
+    if let Some(site) = text(HeaderName::from_static("sec-fetch-site")) {
+        return matches!(site, "same-origin" | "none");
+    }
+    let Some(origin) = text(header::ORIGIN) else { return false };
+    origin == house.public()
+        || text(header::HOST).is_some_and(|host| origin.split_once("://").is_some_and(|(_, place)| place == host))
+}
+
+/// What every answer says.
+pub(super) async fn headers(State(house): State<House>, request: Request, next: Next) -> Response {
+    let mut response = next.run(request).await;
+    let headers = response.headers_mut();
+    let mut set = |name: HeaderName, value: &'static str| {
+        headers.entry(name).or_insert(HeaderValue::from_static(value));
+    };
+    set(header::CONTENT_SECURITY_POLICY, POLICY);
+    set(header::X_CONTENT_TYPE_OPTIONS, "nosniff");
+    set(header::REFERRER_POLICY, "no-referrer");
+    set(HeaderName::from_static("cross-origin-opener-policy"), "same-origin");
+    set(HeaderName::from_static("cross-origin-resource-policy"), "same-origin");
+    set(header::CACHE_CONTROL, "no-store");
+    if house.is_secure() {
+        set(header::STRICT_TRANSPORT_SECURITY, "max-age=31536000");
+    }
+    response
+}
+
+/// Notes what was asked by the route, never by the address: addresses may hold secrets.
+pub(super) async fn log(request: Request, next: Next) -> Response {
+    let start = Instant::now();
+    let method = request.method().clone();
+    let route = request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned();
+    let response = next.run(request).await;
+    let (status, took) = (response.status().as_u16(), start.elapsed().as_millis());
+    if response.status().is_server_error() {
+        tracing::warn!(%method, route, status, took, "answered");
+    } else {
+        tracing::debug!(%method, route, status, took, "answered");
+    }
+    response
+}

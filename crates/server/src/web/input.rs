@@ -1,0 +1,82 @@
+//! Reading requests, with answers that say what is wrong.
+use crate::{access::House, problem::Problem};
+use axum::{
+    body::Bytes,
+    extract::{FromRequest, FromRequestParts, Path, Query, Request},
+    http::{HeaderMap, StatusCode, header, request::Parts},
+    response::IntoResponse,
+};
+use serde::de::DeserializeOwned;
+
+/// A body in JSON.
+pub(super) struct Body<T>(pub(super) T);
+
+/// A body of a form.
+pub(super) struct Fields<T>(pub(super) T);
+
+/// The parts of an address that vary.
+pub(super) struct Params<T>(pub(super) T);
+
+/// What stands behind the question mark.
+pub(super) struct Asked<T>(pub(super) T);
+
+fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
+    let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
+    value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted))
+}
+
+async fn bytes(request: Request, house: &House) -> Result<Bytes, Problem> {
+    let received = tokio::time::timeout(house.patience(), Bytes::from_request(request, house)).await;
+    received.map_err(|_| Problem::too_slow())?.map_err(|error| match error.into_response().status() {
+        StatusCode::PAYLOAD_TOO_LARGE => Problem::too_large(super::BODY as u64),
+        _ => Problem::invalid("the request broke off"),
+    })
+}
+
+impl<T: DeserializeOwned> FromRequest<House> for Body<T> {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &House) -> Result<Self, Problem> {
+        if !is_of_type(request.headers(), "application/json") {
+            return Err(Problem::invalid("the body is to be JSON: Content-Type: application/json"));
+        }
+        let bytes = bytes(request, state).await?;
+        serde_json::from_slice(&bytes).map(Self).map_err(|error| Problem::invalid(error.to_string()))
+    }
+}
+
+impl<T: DeserializeOwned> FromRequest<House> for Fields<T> {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &House) -> Result<Self, Problem> {
+        if !is_of_type(request.headers(), "application/x-www-form-urlencoded") {
+            return Err(Problem::invalid("the body is to be a form"));
+        }
+        let bytes = bytes(request, state).await?;
+        let request = Request::builder()
+            .method("POST")
+            .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
+            .body(axum::body::Body::from(bytes))
+            .map_err(|_| Problem::fault())?;
+        let form = axum::Form::<T>::from_request(request, state).await;
+        form.map(|axum::Form(form)| Self(form)).map_err(|error| Problem::invalid(error.to_string()))
+    }
+}
+
+impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for Params<T> {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        let found = Path::<T>::from_request_parts(parts, state).await;
+        found.map(|Path(found)| Self(found)).map_err(|_| Problem::not_found("page"))
+    }
+}
+
+impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Asked<T> {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        let found = Query::<T>::from_request_parts(parts, state).await;
+        found.map(|Query(found)| Self(found)).map_err(|error| Problem::invalid(error.body_text()))
+    }
+}

@@ -1,0 +1,57 @@
+//! What is spoken over HTTP: the API, the pages, and what holds for both.
+
+pub mod api;
+mod guard;
+mod input;
+pub mod pages;
+mod status;
+mod upload;
+
+pub(crate) use api::{Alive, Fault, Finished, Held, Manners};
+
+use crate::{access::House, problem::Problem};
+use axum::{Router, extract::DefaultBodyLimit, middleware};
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+
+/// The largest body of a request that is no upload.
+const BODY: usize = 1 << 20;
+
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "fosssim-server",
+        description = "A course's grading server. Send a token: `Authorization: Bearer fso_...`. Errors are \
+                       `application/problem+json`, and say how to mend them. Times are milliseconds since 1970.",
+        license(name = "MIT OR Apache-2.0")
+    ),
+    components(schemas(Problem))
+)]
+struct Document;
+
+fn api_router() -> (Router<House>, utoipa::openapi::OpenApi) {
+    OpenApiRouter::with_openapi(Document::openapi()).merge(api::routes()).split_for_parts()
+}
+
+/// The description of the API, as it is served and committed.
+#[must_use]
+pub fn openapi() -> String {
+    let mut text = api_router().1.to_pretty_json().unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// Everything that is served.
+pub fn router(house: House) -> Router {
+    let (api, _) = api_router();
+    let pages = pages::router().layer(middleware::from_fn_with_state(house.clone(), pages::show_problems));
+    Router::new()
+        .merge(api)
+        .merge(pages)
+        .fallback(async || Problem::not_found("page"))
+        .layer(DefaultBodyLimit::max(BODY))
+        .layer(middleware::from_fn_with_state(house.clone(), guard::same_site))
+        .layer(middleware::from_fn_with_state(house.clone(), guard::headers))
+        .layer(middleware::from_fn(guard::log))
+        .with_state(house)
+}

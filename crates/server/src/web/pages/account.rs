@@ -1,0 +1,58 @@
+//! One's courses and tokens.
+use super::{
+    super::input::{Fields, Params},
+    Frame, see, show, text,
+};
+use crate::{
+    access::{CourseOf, Person, TokenInfo},
+    problem::Problem,
+};
+use askama::Template;
+use axum::response::{Html, Redirect};
+use serde::Deserialize;
+
+#[derive(Template)]
+#[template(path = "home.html")]
+struct Home {
+    frame: Frame,
+    name: String,
+    courses: Vec<CourseOf>,
+}
+
+#[derive(Template)]
+#[template(path = "account.html")]
+struct AccountPage {
+    frame: Frame,
+    tokens: Vec<TokenInfo>,
+    new: Option<String>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Name {
+    name: String,
+}
+
+pub(super) async fn home(person: Person) -> Result<Html<String>, Problem> {
+    let account = person.account();
+    show(&Home { frame: Frame::of(account), name: account.name.clone(), courses: person.courses().await? })
+}
+
+async fn page(person: &Person, new: Option<String>) -> Result<Html<String>, Problem> {
+    let frame = Frame::of(person.account()).then("/account".to_owned(), "Account");
+    show(&AccountPage { frame, tokens: person.tokens().await?, new })
+}
+
+pub(super) async fn account(person: Person) -> Result<Html<String>, Problem> {
+    page(&person, None).await
+}
+
+/// The secret is shown in the answer itself, and nowhere again.
+pub(super) async fn new_token(person: Person, Fields(form): Fields<Name>) -> Result<Html<String>, Problem> {
+    let (_, secret) = person.new_token(form.name.trim()).await?;
+    page(&person, Some(secret.reveal().to_owned())).await
+}
+
+pub(super) async fn revoke_token(person: Person, Params(id): Params<i64>) -> Result<Redirect, Problem> {
+    person.revoke_token(id).await?;
+    Ok(see("/account"))
+}

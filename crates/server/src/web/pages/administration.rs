@@ -1,0 +1,79 @@
+//! What administrators see.
+use super::{
+    super::input::{Fields, Params},
+    Frame, see, show, text,
+};
+use crate::{
+    access::{Account, Admin, Event, Queue, TokenInfo},
+    problem::Problem,
+};
+use askama::Template;
+use axum::response::{Html, Redirect};
+use serde::Deserialize;
+
+#[derive(Template)]
+#[template(path = "admin.html")]
+struct AdminPage {
+    frame: Frame,
+    accounts: Vec<Account>,
+    workers: Vec<TokenInfo>,
+    queue: Queue,
+    events: Vec<Event>,
+    link: Option<String>,
+    token: Option<String>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewCourse {
+    slug: String,
+    title: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewAccount {
+    login: String,
+    name: String,
+    is_admin: Option<String>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewWorker {
+    name: String,
+}
+
+async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Result<Html<String>, Problem> {
+    show(&AdminPage {
+        frame: Frame::of(admin.account()).then("/admin".to_owned(), "Administration"),
+        accounts: admin.accounts().await?,
+        workers: admin.worker_tokens().await?,
+        queue: admin.queue().await?,
+        events: admin.audit(None).await?,
+        link,
+        token,
+    })
+}
+
+pub(super) async fn page(admin: Admin) -> Result<Html<String>, Problem> {
+    make(&admin, None, None).await
+}
+
+pub(super) async fn new_course(admin: Admin, Fields(form): Fields<NewCourse>) -> Result<Redirect, Problem> {
+    let course = admin.new_course(form.slug.trim(), form.title.trim()).await?;
+    Ok(see(&format!("/c/{}", course.slug)))
+}
+
+pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Result<Html<String>, Problem> {
+    let secret = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?;
+    let link = format!("{}/welcome/{}", admin.house().public(), secret.reveal());
+    make(&admin, Some(link), None).await
+}
+
+pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<NewWorker>) -> Result<Html<String>, Problem> {
+    let (_, secret) = admin.new_worker_token(form.name.trim()).await?;
+    make(&admin, None, Some(secret.reveal().to_owned())).await
+}
+
+pub(super) async fn revoke_worker(admin: Admin, Params(id): Params<i64>) -> Result<Redirect, Problem> {
+    admin.revoke_worker_token(id).await?;
+    Ok(see("/admin"))
+}

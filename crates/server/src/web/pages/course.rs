@@ -1,0 +1,164 @@
+//! A course: its assignments, members, queue and audit log.
+use super::{
+    super::input::{Asked, Fields, Params},
+    Frame, see, show, text,
+};
+use crate::{
+    access::{Assignment, Event, Member, MemberInfo, Queue, Settings, Staff},
+    problem::Problem,
+};
+use askama::Template;
+use axum::response::{Html, Redirect};
+use serde::Deserialize;
+
+#[derive(Template)]
+#[template(path = "course.html")]
+struct CoursePage {
+    frame: Frame,
+    slug: String,
+    title: String,
+    is_staff: bool,
+    assignments: Vec<Assignment>,
+}
+
+#[derive(Template)]
+#[template(path = "members.html")]
+struct MembersPage {
+    frame: Frame,
+    slug: String,
+    members: Vec<MemberInfo>,
+    link: Option<(String, String)>,
+}
+
+#[derive(Template)]
+#[template(path = "audit.html")]
+struct AuditPage {
+    frame: Frame,
+    slug: String,
+    events: Vec<Event>,
+}
+
+#[derive(Template)]
+#[template(path = "queue.html")]
+struct QueuePage {
+    frame: Frame,
+    queue: Queue,
+}
+
+#[derive(Template)]
+#[template(path = "settings.html")]
+struct SettingsPage {
+    frame: Frame,
+    slug: String,
+    assignment: Assignment,
+    settings: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewAssignment {
+    slug: String,
+    title: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewMember {
+    login: String,
+    name: String,
+    role: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewSettings {
+    title: String,
+    visible: Option<String>,
+    settings: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Before {
+    before: Option<i64>,
+}
+
+pub(super) async fn course(member: Member) -> Result<Html<String>, Problem> {
+    let course = member.course();
+    show(&CoursePage {
+        frame: Frame::course(&member),
+        slug: course.slug,
+        title: course.title,
+        is_staff: member.is_staff(),
+        assignments: member.assignments().await?,
+    })
+}
+
+pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
+    let slug = form.slug.trim();
+    if staff.member().assignments().await?.iter().any(|assignment| assignment.slug == slug) {
+        return Err(Problem::conflict("there is an assignment of this name", "give it another name"));
+    }
+    staff.set_assignment(slug, form.title.trim(), false, &Settings::default()).await?;
+    Ok(see(&format!("/c/{}/a/{slug}/settings", staff.member().course().slug)))
+}
+
+async fn members_page(staff: &Staff, link: Option<(String, String)>) -> Result<Html<String>, Problem> {
+    let slug = staff.member().course().slug;
+    let frame = Frame::course(staff.member()).then(format!("/c/{slug}/members"), "Members");
+    show(&MembersPage { frame, slug, members: staff.members().await?, link })
+}
+
+pub(super) async fn members(staff: Staff) -> Result<Html<String>, Problem> {
+    members_page(&staff, None).await
+}
+
+pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Result<Html<String>, Problem> {
+    let login = form.login.trim();
+    let secret = staff.set_member(login, form.name.trim(), &form.role).await?;
+    let public = staff.member().house().public();
+    let link = secret.map(|secret| (login.to_owned(), format!("{public}/welcome/{}", secret.reveal())));
+    members_page(&staff, link).await
+}
+
+pub(super) async fn member_link(
+    staff: Staff,
+    Params((_, login)): Params<(String, String)>,
+) -> Result<Html<String>, Problem> {
+    let secret = staff.new_link(&login).await?;
+    let link = format!("{}/welcome/{}", staff.member().house().public(), secret.reveal());
+    members_page(&staff, Some((login, link))).await
+}
+
+pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Html<String>, Problem> {
+    let slug = staff.member().course().slug;
+    let frame = Frame::course(staff.member()).then(format!("/c/{slug}/audit"), "Audit log");
+    show(&AuditPage { frame, slug, events: staff.audit(asked.before).await? })
+}
+
+pub(super) async fn queue(staff: Staff) -> Result<Html<String>, Problem> {
+    let slug = staff.member().course().slug;
+    let frame = Frame::course(staff.member()).then(format!("/c/{slug}/queue"), "Queue");
+    show(&QueuePage { frame, queue: staff.queue().await? })
+}
+
+pub(super) async fn settings(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+) -> Result<Html<String>, Problem> {
+    let assignment = staff.member().assignment(&assignment).await?;
+    let frame = Frame::course(staff.member())
+        .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
+        .then(format!("/c/{slug}/a/{}/settings", assignment.slug), "Settings");
+    let settings = serde_json::to_string_pretty(&assignment.settings).map_err(|_| Problem::fault())?;
+    show(&SettingsPage { frame, slug, assignment, settings })
+}
+
+pub(super) async fn set_settings(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+    Fields(form): Fields<NewSettings>,
+) -> Result<Redirect, Problem> {
+    let settings: Settings = serde_json::from_str(&form.settings)
+        .map_err(|error| Problem::invalid(format!("the settings are not understood: {error}")))?;
+    // An assignment is made on the course's page: a typing error in an address makes none.
+    let assignment = staff.member().assignment(&assignment).await?;
+    staff.set_assignment(&assignment.slug, form.title.trim(), form.visible.is_some(), &settings).await?;
+    Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))
+}

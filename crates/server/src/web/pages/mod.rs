@@ -1,0 +1,155 @@
+//! The pages. They work without JavaScript; with it a submission's state changes by itself, and files can be dropped.
+
+mod account;
+mod administration;
+mod course;
+mod grades;
+mod sign_in;
+mod submission;
+mod text;
+
+use crate::{access::House, problem::Problem};
+use askama::Template;
+use axum::{
+    Router,
+    extract::{Request, State},
+    http::{HeaderValue, Method, StatusCode, header},
+    middleware::Next,
+    response::{Html, IntoResponse, Redirect, Response},
+    routing,
+};
+
+/// A router, and the list of what is in it.
+macro_rules! pages {
+    ($($method:ident $path:literal => $handler:path,)*) => {
+        /// Every page: method and path.
+        pub const PAGES: &[(&str, &str)] = &[$((stringify!($method), $path)),*];
+
+        pub(super) fn router() -> Router<House> {
+            Router::new()$(.route($path, routing::$method($handler)))*
+        }
+    };
+}
+
+pages! {
+    get "/" => account::home,
+    get "/sign-in" => sign_in::page,
+    post "/sign-in" => sign_in::by_token,
+    get "/welcome/{secret}" => sign_in::welcome,
+    post "/welcome/{secret}" => sign_in::by_link,
+    post "/sign-out" => sign_in::sign_out,
+    get "/account" => account::account,
+    post "/account/tokens" => account::new_token,
+    post "/account/tokens/{id}/revoke" => account::revoke_token,
+    get "/admin" => administration::page,
+    post "/admin/courses" => administration::new_course,
+    post "/admin/accounts" => administration::set_account,
+    post "/admin/workers" => administration::new_worker,
+    post "/admin/workers/{id}/revoke" => administration::revoke_worker,
+    get "/c/{course}" => course::course,
+    post "/c/{course}/assignments" => course::new_assignment,
+    get "/c/{course}/members" => course::members,
+    post "/c/{course}/members" => course::set_member,
+    post "/c/{course}/members/{login}/link" => course::member_link,
+    get "/c/{course}/audit" => course::audit,
+    get "/c/{course}/queue" => course::queue,
+    get "/c/{course}/a/{assignment}" => submission::assignment,
+    post "/c/{course}/a/{assignment}" => submission::submit,
+    get "/c/{course}/a/{assignment}/settings" => course::settings,
+    post "/c/{course}/a/{assignment}/settings" => course::set_settings,
+    get "/c/{course}/a/{assignment}/class" => grades::class,
+    post "/c/{course}/a/{assignment}/regrades" => grades::begin,
+    get "/c/{course}/a/{assignment}/regrades/{id}" => grades::show_regrade,
+    post "/c/{course}/a/{assignment}/regrades/{id}/apply" => grades::apply,
+    post "/c/{course}/a/{assignment}/regrades/{id}/discard" => grades::discard,
+    get "/c/{course}/s/{id}" => submission::submission,
+    get "/c/{course}/s/{id}/report/{name}" => submission::report,
+    get "/c/{course}/s/{id}/upload" => submission::upload,
+    get "/static/style.css" => style,
+    get "/static/page.js" => script,
+}
+
+async fn style() -> Response {
+    constant("text/css; charset=utf-8", include_str!("static/style.css"))
+}
+
+async fn script() -> Response {
+    constant("text/javascript; charset=utf-8", include_str!("static/page.js"))
+}
+
+fn constant(kind: &'static str, text: &'static str) -> Response {
+    ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "max-age=300")], text).into_response()
+}
+
+/// What every page shows around itself.
+pub(super) struct Frame {
+    /// Who is signed in.
+    login: Option<String>,
+    is_admin: bool,
+    /// The way here: addresses and titles.
+    way: Vec<(String, String)>,
+}
+
+impl Frame {
+    fn nobody() -> Self {
+        Self { login: None, is_admin: false, way: Vec::new() }
+    }
+
+    fn of(account: &crate::access::Account) -> Self {
+        Self { login: Some(account.login.clone()), is_admin: account.is_admin, way: Vec::new() }
+    }
+
+    fn course(member: &crate::access::Member) -> Self {
+        let course = member.course();
+        let mut frame = Self::of(member.account());
+        frame.way.push((format!("/c/{}", course.slug), course.title));
+        frame
+    }
+
+    fn then(mut self, address: String, title: &str) -> Self {
+        self.way.push((address, title.to_owned()));
+        self
+    }
+}
+
+/// A page from its template.
+fn show(template: &impl Template) -> Result<Html<String>, Problem> {
+    template.render().map(Html).map_err(|error| {
+        tracing::error!(%error, "a page could not be made");
+        Problem::fault()
+    })
+}
+
+/// After a form was sent: a page that may be loaded again.
+fn see(address: &str) -> Redirect {
+    Redirect::to(address)
+}
+
+#[derive(Template)]
+#[template(path = "problem.html")]
+struct ProblemPage {
+    frame: Frame,
+    problem: Problem,
+}
+
+/// Turns refusals into pages, and shows the way in to who is not signed in.
+pub(super) async fn show_problems(State(_): State<House>, request: Request, next: Next) -> Response {
+    let asks = request.method() == Method::GET;
+    let mut response = next.run(request).await;
+    let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
+    if asks && problem.status() == StatusCode::UNAUTHORIZED {
+        return see("/sign-in").into_response();
+    }
+    let status = problem.status();
+    match show(&ProblemPage { frame: Frame::nobody(), problem }) {
+        Ok(page) => {
+            let mut answer = (status, page).into_response();
+            if let Some(after) = response.headers_mut().remove(header::RETRY_AFTER) {
+                answer.headers_mut().insert(header::RETRY_AFTER, after);
+            }
+            answer.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+            answer
+        }
+        Err(_) => response,
+    }
+}

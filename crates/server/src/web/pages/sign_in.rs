@@ -1,0 +1,82 @@
+//! Signing in and out.
+use super::{
+    super::input::{Fields, Params},
+    Frame, see, show,
+};
+use crate::{
+    access::{House, Session, Visitor, cookie_name},
+    problem::Problem,
+};
+use askama::Template;
+use axum::{
+    http::{HeaderValue, header},
+    response::{Html, IntoResponse, Response},
+};
+use serde::Deserialize;
+
+#[derive(Template)]
+#[template(path = "sign_in.html")]
+struct SignIn {
+    frame: Frame,
+}
+
+#[derive(Template)]
+#[template(path = "welcome.html")]
+struct Welcome {
+    frame: Frame,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Token {
+    token: String,
+}
+
+/// A new session's cookie, and the way in.
+fn enter(house: &House, session: &Session) -> Response {
+    let secure = house.is_secure();
+    let cookie = format!(
+        "{}={}; Path=/; HttpOnly; SameSite=Lax; Max-Age=1209600{}",
+        cookie_name(secure),
+        session.secret(),
+        if secure { "; Secure" } else { "" }
+    );
+    with_cookie(&cookie, "/")
+}
+
+fn with_cookie(cookie: &str, to: &str) -> Response {
+    let mut response = see(to).into_response();
+    if let Ok(value) = HeaderValue::from_str(cookie) {
+        response.headers_mut().append(header::SET_COOKIE, value);
+    }
+    response
+}
+
+pub(super) async fn page(_: Visitor) -> Result<Html<String>, Problem> {
+    show(&SignIn { frame: Frame::nobody() })
+}
+
+pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {
+    let session = visitor.sign_in_by_token(form.token.trim()).await?;
+    Ok(enter(visitor.house(), &session))
+}
+
+/// Opening the link does nothing yet: mail programs open links, too.
+pub(super) async fn welcome(_: Visitor) -> Result<Html<String>, Problem> {
+    show(&Welcome { frame: Frame::nobody() })
+}
+
+pub(super) async fn by_link(visitor: Visitor, Params(secret): Params<String>) -> Result<Response, Problem> {
+    let session = visitor.sign_in_by_link(&secret).await?;
+    Ok(enter(visitor.house(), &session))
+}
+
+pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {
+    visitor.sign_out().await?;
+    let secure = visitor.house().is_secure();
+    let cookie = format!(
+        "{}=; Path=/; HttpOnly; SameSite=Lax; Max-Age=0{}",
+        cookie_name(secure),
+        if secure { "; Secure" } else { "" }
+    );
+    Ok(with_cookie(&cookie, "/sign-in"))
+}

@@ -1,0 +1,103 @@
+//! Handing in, and what came of it.
+use super::{
+    super::{api, input::Params},
+    Frame, see, show, text,
+};
+use crate::{
+    access::{Assignment, History, Member, Submission},
+    problem::Problem,
+    secret,
+};
+use askama::Template;
+use axum::{
+    extract::Request,
+    response::{Html, Redirect, Response},
+};
+
+/// How much of a report a page shows; the rest is behind its link.
+const SHOWN: usize = 200_000;
+
+#[derive(Template)]
+#[template(path = "assignment.html")]
+struct AssignmentPage {
+    frame: Frame,
+    slug: String,
+    is_staff: bool,
+    assignment: Assignment,
+    submissions: Vec<Submission>,
+    key: String,
+}
+
+#[derive(Template)]
+#[template(path = "submission.html")]
+struct SubmissionPage {
+    frame: Frame,
+    slug: String,
+    is_own: bool,
+    submission: Submission,
+    is_moving: bool,
+    history: Vec<History>,
+    report: Option<String>,
+    has_html: bool,
+}
+
+pub(super) async fn assignment(
+    member: Member,
+    Params((slug, assignment)): Params<(String, String)>,
+) -> Result<Html<String>, Problem> {
+    let assignment = member.assignment(&assignment).await?;
+    let frame = Frame::course(&member).then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title);
+    let submissions = member.submissions(&assignment.slug).await?;
+    let key = secret::random_hex();
+    show(&AssignmentPage { frame, slug, is_staff: member.is_staff(), assignment, submissions, key })
+}
+
+pub(super) async fn submit(
+    member: Member,
+    Params((slug, assignment)): Params<(String, String)>,
+    request: Request,
+) -> Result<Redirect, Problem> {
+    let (submission, _) = api::receive(&member, &assignment, request, None, None, None).await?;
+    Ok(see(&format!("/c/{slug}/s/{}", submission.id)))
+}
+
+pub(super) async fn submission(
+    member: Member,
+    Params((slug, id)): Params<(String, i64)>,
+) -> Result<Html<String>, Problem> {
+    let submission = member.submission(id).await?;
+    let frame = Frame::course(&member)
+        .then(format!("/c/{slug}/a/{}", submission.assignment), &submission.title)
+        .then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
+    let has =
+        |name: &str| submission.grade.as_ref().is_some_and(|grade| grade.files.iter().any(|file| file.name == name));
+    let report = if has("report.txt") {
+        let (_, bytes) = member.report(id, "report.txt").await?;
+        Some(String::from_utf8_lossy(&bytes[..bytes.len().min(SHOWN)]).into_owned())
+    } else {
+        None
+    };
+    show(&SubmissionPage {
+        frame,
+        slug,
+        is_own: submission.login == member.account().login,
+        is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
+        history: member.history(id).await?,
+        has_html: has("report.html"),
+        report,
+        submission,
+    })
+}
+
+pub(super) async fn report(
+    member: Member,
+    Params((_, id, name)): Params<(String, i64, String)>,
+) -> Result<Response, Problem> {
+    let (file, bytes) = member.report(id, &name).await?;
+    Ok(api::report_response(&file, bytes))
+}
+
+pub(super) async fn upload(member: Member, Params((_, id)): Params<(String, i64)>) -> Result<Response, Problem> {
+    let (submission, bytes) = member.upload(id).await?;
+    Ok(api::upload_response(&submission, bytes))
+}

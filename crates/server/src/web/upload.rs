@@ -1,0 +1,191 @@
+//! Receiving files: as they come, into a file of the server's own, never whole in memory.
+use crate::{
+    access::{House, is_file_name},
+    archive::{self, Limits},
+    problem::Problem,
+    task::Form,
+};
+use axum::{
+    body::{Body, Bytes},
+    extract::{FromRequest, Multipart, Request},
+    http::header,
+};
+use futures_util::{Stream, StreamExt};
+use std::{
+    fmt::Display,
+    io::Read,
+    path::Path,
+    time::{Duration, Instant},
+};
+use tempfile::TempPath;
+use tokio::io::AsyncWriteExt;
+
+/// The longest that an upload may take, in pauses that a body may make.
+const PAUSES: u32 = 20;
+
+/// A file that came.
+pub(super) struct Received {
+    /// Where it lies until it is stored.
+    pub(super) file: TempPath,
+    /// What the sender calls it.
+    pub(super) name: Option<String>,
+    /// What kind of thing it is, where a form said so.
+    pub(super) form: Option<String>,
+    /// What the sender calls this upload.
+    pub(super) key: Option<String>,
+}
+
+/// Receives the body of a request: the file itself, or a form with a field `file`.
+pub(super) async fn receive(house: &House, request: Request, most: u64) -> Result<Received, Problem> {
+    let multipart = request
+        .headers()
+        .get(header::CONTENT_TYPE)
+        .and_then(|value| value.to_str().ok())
+        .is_some_and(|value| value.trim_start().to_ascii_lowercase().starts_with("multipart/form-data"));
+    let deadline = Instant::now() + house.patience() * PAUSES;
+    if !multipart {
+        let announced =
+            request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse::<u64>().ok());
+        if announced.is_some_and(|announced| announced > most) {
+            return Err(Problem::too_large(most));
+        }
+        let body: Body = request.into_body();
+        let file = to_file(house, body.into_data_stream(), most, deadline).await?;
+        return Ok(Received { file, name: None, form: None, key: None });
+    }
+    let mut multipart =
+        Multipart::from_request(request, house).await.map_err(|error| Problem::invalid(error.body_text()))?;
+    let (mut file, mut name, mut form, mut key) = (None, None, None, None);
+    loop {
+        let next = tokio::time::timeout(house.patience(), multipart.next_field()).await;
+        let field = next.map_err(|_| Problem::too_slow())?.map_err(|error| Problem::invalid(error.body_text()))?;
+        let Some(field) = field else { break };
+        match field.name() {
+            Some("file") if file.is_none() => {
+                name = field.file_name().map(str::to_owned);
+                file = Some(to_file(house, field, most, deadline).await?);
+            }
+            Some("form") => form = Some(short_text(house, field).await?),
+            Some("key") => key = Some(short_text(house, field).await?),
+            _ => return Err(Problem::invalid("the form has a field file, and may have form and key")),
+        }
+    }
+    let file = file.ok_or_else(|| Problem::invalid("the form has no file"))?;
+    Ok(Received { file, name, form: form.filter(|form| !form.is_empty()), key: key.filter(|key| !key.is_empty()) })
+}
+
+/// A short field of a form.
+async fn short_text(house: &House, mut field: axum::extract::multipart::Field<'_>) -> Result<String, Problem> {
+    let mut bytes = Vec::new();
+    loop {
+        let chunk = tokio::time::timeout(house.patience(), field.chunk()).await.map_err(|_| Problem::too_slow())?;
+        match chunk.map_err(|error| Problem::invalid(error.body_text()))? {
+            Some(chunk) if bytes.len() + chunk.len() <= 200 => bytes.extend_from_slice(&chunk),
+            Some(_) => return Err(Problem::invalid("a field is longer than 200 bytes")),
+            None => return String::from_utf8(bytes).map_err(|_| Problem::invalid("a field is not UTF-8")),
+        }
+    }
+}
+
+/// Writes a stream into a file of the server's own.
+async fn to_file<E: Display>(
+    house: &House,
+    mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
+    most: u64,
+    deadline: Instant,
+) -> Result<TempPath, Problem> {
+    let (file, path) = tempfile::NamedTempFile::new_in(house.incoming())?.into_parts();
+    let mut file = tokio::fs::File::from_std(file);
+    let mut size = 0;
+    loop {
+        let left = deadline.saturating_duration_since(Instant::now());
+        if left == Duration::ZERO {
+            return Err(Problem::too_slow());
+        }
+        let next = tokio::time::timeout(left.min(house.patience()), stream.next()).await;
+        match next.map_err(|_| Problem::too_slow())? {
+            None => break,
+            Some(Err(error)) => {
+                tracing::debug!(%error, "an upload broke off");
+                return Err(Problem::invalid("the upload broke off"));
+            }
+            Some(Ok(chunk)) => {
+                size += chunk.len() as u64;
+                if size > most {
+                    return Err(Problem::too_large(most));
+                }
+                file.write_all(&chunk).await?;
+            }
+        }
+    }
+    file.flush().await?;
+    Ok(path)
+}
+
+/// A name as reports and messages may show it: what a browser says it is called, made harmless.
+pub(super) fn plain_name(name: &str) -> String {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    let plain: String = last.chars().map(safe).take(100).collect();
+    let plain = plain.trim_start_matches(['.', '-']);
+    if is_file_name(plain) { plain.to_owned() } else { "submission".to_owned() }
+}
+
+/// What kind of thing a file is, and whether it can be that.
+pub(super) async fn examine(file: &Path, said: Option<&str>) -> Result<Form, Problem> {
+    let said = match said {
+        None => None,
+        Some("program") => Some(Form::Program),
+        Some("sources") => Some(Form::Sources),
+        Some(_) => return Err(Problem::invalid("form is program or sources")),
+    };
+    let file = file.to_owned();
+    tokio::task::spawn_blocking(move || examine_now(&file, said)).await.map_err(|_| Problem::fault())?
+}
+
+fn examine_now(file: &Path, said: Option<Form>) -> Result<Form, Problem> {
+    let mut start = Vec::new();
+    std::fs::File::open(file)?.take(4).read_to_end(&mut start)?;
+    if start.is_empty() {
+        return Err(Problem::unusable("the file is empty"));
+    }
+    let is_program = start == b"\x7fELF" || start.starts_with(b"#!");
+    let form = said.unwrap_or(if is_program { Form::Program } else { Form::Sources });
+    match form {
+        Form::Program if !is_program => {
+            Err(Problem::unusable("this is no program for Linux (ELF, or a script that begins with #!)"))
+        }
+        Form::Program => Ok(form),
+        _ => match archive::look_through(file, Limits::USUAL) {
+            Ok(files) if files.is_empty() => Err(Problem::unusable("the archive is empty")),
+            Ok(_) => Ok(form),
+            Err(archive::ArchiveError::Unknown) if said.is_none() => Err(Problem::unusable(
+                "this is neither a program for Linux nor an archive of sources (zip, tar, tar.gz)",
+            )),
+            Err(error) => Err(Problem::unusable(error.to_string())),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plain_name;
+
+    #[test]
+    fn names_are_made_harmless() {
+        for (name, plain) in [
+            ("FOSSSim", "FOSSSim"),
+            ("../../etc/passwd", "passwd"),
+            ("C:\\Users\\me\\my program.exe", "my_program.exe"),
+            ("..", "submission"),
+            (".bashrc", "bashrc"),
+            ("--help", "help"),
+            ("a\r\nSet-Cookie: x=1", "a__Set-Cookie__x_1"),
+            ("\u{202e}gpj.exe", "_gpj.exe"),
+            ("", "submission"),
+        ] {
+            assert_eq!(super::plain_name(name), plain, "{name:?}");
+        }
+        assert_eq!(plain_name(&"x".repeat(500)).len(), 100);
+    }
+}

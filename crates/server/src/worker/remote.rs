@@ -1,0 +1,246 @@
+//! The desk of workers on other machines: a server over HTTP. They hold a token, no password of a database.
+use super::{Answer, Desk, DeskError, Job};
+use crate::{
+    access::Claimed,
+    queue::Lease,
+    store::{Artefact, Digest, digest_of_file},
+    task::Outcome,
+    web::{Alive, Fault, Finished, Held, Manners},
+};
+use serde::{Serialize, de::DeserializeOwned};
+use std::{
+    fmt, fs, io,
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+use ureq::{Agent, Body, http::Response};
+
+/// How often a worker asks whether there is a job.
+const ASK_EVERY: Duration = Duration::from_secs(1);
+
+/// How long the server may take to answer, and to begin and go on with a file.
+const PATIENCE: Duration = Duration::from_secs(60);
+const WHOLE_FILE: Duration = Duration::from_secs(900);
+
+/// The longest answer that is read.
+const ANSWER: u64 = 1 << 20;
+
+/// A server over HTTP as a desk. Cloning it is cheap.
+#[derive(Clone)]
+pub struct RemoteDesk(Arc<Parts>);
+
+struct Parts {
+    agent: Agent,
+    server: String,
+    authorization: String,
+    name: String,
+    /// Milliseconds, as the server wishes.
+    tick_every: AtomicU64,
+}
+
+impl fmt::Debug for RemoteDesk {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "RemoteDesk({})", self.0.server)
+    }
+}
+
+impl RemoteDesk {
+    /// A desk at a server's address, for a worker of this name.
+    #[must_use]
+    pub fn new(server: &str, token: &str, name: &str) -> Self {
+        let agent = Agent::config_builder()
+            // What a server says with a status is looked at here.
+            .http_status_as_error(false)
+            // The token goes to this server and nowhere else.
+            .max_redirects(0)
+            .timeout_connect(Some(PATIENCE))
+            .timeout_recv_response(Some(PATIENCE))
+            .timeout_global(Some(WHOLE_FILE))
+            .user_agent(concat!("fosssim-server/", env!("CARGO_PKG_VERSION")))
+            .build()
+            .new_agent();
+        Self(Arc::new(Parts {
+            agent,
+            server: server.trim_end_matches('/').to_owned(),
+            authorization: format!("Bearer {token}"),
+            name: name.to_owned(),
+            tick_every: AtomicU64::new(2000),
+        }))
+    }
+
+    /// Asks, away from the threads that must not wait.
+    async fn call<T: Send + 'static>(
+        &self,
+        ask: impl FnOnce(&Parts) -> Result<T, DeskError> + Send + 'static,
+    ) -> Result<T, DeskError> {
+        let parts = self.0.clone();
+        let asked = tokio::task::spawn_blocking(move || ask(&parts)).await;
+        asked.map_err(|error| DeskError::Away(error.to_string()))?
+    }
+
+    async fn held(&self, path: &'static str, body: impl Serialize + Send + 'static) -> Result<Answer, DeskError> {
+        let held: Held = self.call(move |parts| parts.json(path, &body)).await?;
+        Ok(if held.held { Answer::Held } else { Answer::Lost })
+    }
+}
+
+/// A lease as a header shows it.
+fn shown(lease: &Lease) -> String {
+    format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
+}
+
+fn away(error: impl fmt::Display) -> DeskError {
+    DeskError::Away(format!("the server does not answer: {error}"))
+}
+
+impl Parts {
+    fn url(&self, path: &str) -> String {
+        format!("{}/api/v1/worker/{path}", self.server)
+    }
+
+    /// Sends JSON, and reads JSON.
+    fn json<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, DeskError> {
+        let answer = self.post(path, body)?;
+        let mut answer = checked(answer)?;
+        let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
+        serde_json::from_slice(&text).map_err(|error| DeskError::Refused(format!("the server's answer: {error}")))
+    }
+
+    fn post(&self, path: &str, body: &impl Serialize) -> Result<Response<Body>, DeskError> {
+        let body = serde_json::to_vec(body).map_err(|error| DeskError::Refused(error.to_string()))?;
+        self.agent
+            .post(self.url(path))
+            .header("Authorization", &self.authorization)
+            .header("Fosssim-Worker", &self.name)
+            .header("Content-Type", "application/json")
+            .send(&body)
+            .map_err(away)
+    }
+}
+
+/// What a status means: a server that is away for a moment, or one that will never agree.
+fn checked(mut answer: Response<Body>) -> Result<Response<Body>, DeskError> {
+    let status = answer.status();
+    if status.is_success() {
+        return Ok(answer);
+    }
+    let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().unwrap_or_default();
+    let said = serde_json::from_slice::<serde_json::Value>(&body)
+        .ok()
+        .and_then(|problem| problem["detail"].as_str().map(str::to_owned))
+        .unwrap_or_default();
+    let text = format!("{status}: {said}");
+    // Our own mistakes, and what is not there, stay so; a proxy's troubles pass, and a revoked token may be renewed.
+    match status.as_u16() {
+        400 | 403 | 404 | 409 | 413 | 422 => Err(DeskError::Refused(text)),
+        _ => Err(DeskError::Away(text)),
+    }
+}
+
+impl Desk for RemoteDesk {
+    async fn claim(&self) -> Result<Option<Job>, DeskError> {
+        let claimed: Option<Claimed> = self
+            .call(|parts| {
+                let mut answer = checked(parts.post("claim", &serde_json::json!({}))?)?;
+                if answer.status() == 204 {
+                    return Ok(None);
+                }
+                let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
+                serde_json::from_slice(&text)
+                    .map(Some)
+                    .map_err(|error| DeskError::Refused(format!("the job can't be read: {error}")))
+            })
+            .await?;
+        Ok(claimed.map(|claimed| Job {
+            lease: claimed.lease,
+            renew_every: Duration::from_millis(claimed.renew_every),
+            task: claimed.task,
+            alone: claimed.alone,
+        }))
+    }
+
+    async fn wait(&self, patience: Duration) {
+        tokio::time::sleep(patience.min(ASK_EVERY)).await;
+    }
+
+    async fn renew(&self, lease: &Lease) -> Result<Answer, DeskError> {
+        self.held("renew", lease.clone()).await
+    }
+
+    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, DeskError> {
+        self.held("finish", Finished { lease: lease.clone(), outcome: outcome.clone() }).await
+    }
+
+    async fn release(&self, lease: &Lease) -> Result<Answer, DeskError> {
+        self.held("release", lease.clone()).await
+    }
+
+    async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, DeskError> {
+        self.held("fail", Fault { lease: lease.clone(), fault: fault.to_owned() }).await
+    }
+
+    async fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> Result<(), DeskError> {
+        let (lease, wanted, place) = (shown(lease), digest.clone(), file.to_owned());
+        self.call(move |parts| {
+            let answer = parts
+                .agent
+                .get(parts.url(&format!("files/{wanted}")))
+                .header("Authorization", &parts.authorization)
+                .header("Fosssim-Worker", &parts.name)
+                .header("Fosssim-Lease", &lease)
+                .call()
+                .map_err(away)?;
+            let mut answer = checked(answer)?;
+            let written = fs::File::create_new(&place).and_then(|mut output| {
+                let mut input = answer.body_mut().with_config().limit(u64::MAX).reader();
+                io::copy(&mut input, &mut output)
+            });
+            written.map(drop).map_err(|error| {
+                // Whoever tries again wants to find nothing.
+                drop(fs::remove_file(&place));
+                away(error)
+            })
+        })
+        .await?;
+        let found = digest_of_file(file).await.map_err(away)?;
+        if found.digest != *digest {
+            drop(fs::remove_file(file));
+            return Err(DeskError::Away(format!("the server sent other bytes than {digest}")));
+        }
+        Ok(())
+    }
+
+    async fn store(&self, lease: &Lease, file: &Path) -> Result<Artefact, DeskError> {
+        let artefact = digest_of_file(file).await.map_err(|error| DeskError::Refused(error.to_string()))?;
+        let (lease, digest, place) = (shown(lease), artefact.digest.clone(), file.to_owned());
+        self.call(move |parts| {
+            let input = fs::File::open(&place).map_err(|error| DeskError::Refused(error.to_string()))?;
+            let answer = parts
+                .agent
+                .put(parts.url(&format!("files/{digest}")))
+                .header("Authorization", &parts.authorization)
+                .header("Fosssim-Worker", &parts.name)
+                .header("Fosssim-Lease", &lease)
+                .header("Content-Type", "application/octet-stream")
+                .send(input)
+                .map_err(away)?;
+            checked(answer).map(drop)
+        })
+        .await?;
+        Ok(artefact)
+    }
+
+    async fn tick(&self, slots: usize) -> Result<(), DeskError> {
+        let manners: Manners = self.call(move |parts| parts.json("tick", &Alive { slots })).await?;
+        self.0.tick_every.store(manners.tick_every.clamp(100, 60_000), Ordering::Relaxed);
+        Ok(())
+    }
+
+    fn tick_every(&self) -> Duration {
+        Duration::from_millis(self.0.tick_every.load(Ordering::Relaxed))
+    }
+}

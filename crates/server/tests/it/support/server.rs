@@ -1,0 +1,327 @@
+//! A real server as a process of its own, and somebody who speaks HTTP to it, well or badly.
+use super::engines::Fresh;
+use fosssim_server::db::Address;
+use std::{
+    fs,
+    io::{BufRead, BufReader, Read, Write},
+    net::TcpStream,
+    os::unix::fs::PermissionsExt,
+    path::{Path, PathBuf},
+    process::{Child, ChildStdout, Command, Stdio},
+    time::{Duration, Instant},
+};
+
+/// Grades as the submission says: `#!grade CODE POINTS`. Beside `grade.json` it writes a report with what a hostile program
+/// would like to have there.
+const GRADER: &str = r#"#!/bin/sh
+[ "$1" = grade ] || exit 2
+program=$2
+rules=of-the-suite
+suite=none
+while [ $# -gt 0 ]; do
+    case $1 in
+        json=*) json=${1#json=} ;;
+        text=*) text=${1#text=} ;;
+        --rules) rules=$2 ;;
+        --suite) suite=$2 ;;
+    esac
+    shift
+done
+# A folder of sources is graded by the program in it.
+[ -d "$program" ] && program=$program/FOSSSim
+read -r _ code points < "$program"
+[ "$code" = HANG ] && exec sleep 600
+# By the other rules everything is worth half.
+[ "$rules" = parity ] && points=$((points / 2))
+printf '<script>alert(1)</script> %s by %s\n' "$(basename "$program")" "$(basename "$suite")" > "$text"
+cat > "$json" <<END
+{"schema": 3, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
+ "max_points": 100, "groups": [{"scenes": [{"code": "$code"}]}]}]}
+END
+[ "$code" = AC ]
+"#;
+
+/// A program that the grader above grades so.
+pub(crate) fn program(code: &str, points: u32) -> Vec<u8> {
+    format!("#!grade {code} {points}\n").into_bytes()
+}
+
+/// A running server.
+pub(crate) struct Server {
+    child: Child,
+    output: BufReader<ChildStdout>,
+    /// `http://127.0.0.1:PORT`.
+    pub(crate) url: String,
+    pub(crate) folder: PathBuf,
+    options: Vec<String>,
+    database: String,
+    _temp: tempfile::TempDir,
+}
+
+impl Server {
+    /// Starts a server on a database, with further options.
+    pub(crate) fn start(fresh: &Fresh, options: &[&str]) -> Self {
+        let temp = tempfile::tempdir().expect("a folder");
+        let grader = temp.path().join("grader");
+        fs::write(&grader, GRADER).expect("a script");
+        fs::set_permissions(&grader, fs::Permissions::from_mode(0o755)).expect("permissions");
+        let database = match &fresh.address {
+            Address::Sqlite(file) => format!("sqlite:{}", file.display()),
+            Address::Postgres(url) => url.clone(),
+        };
+        let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
+        let folder = temp.path().join("data");
+        let (child, output, url) = Self::spawn(&folder, &grader, &database, "127.0.0.1:0", &options);
+        Self { child, output, url, folder, options, database, _temp: temp }
+    }
+
+    fn spawn(
+        folder: &Path,
+        grader: &Path,
+        database: &str,
+        listen: &str,
+        options: &[String],
+    ) -> (Child, BufReader<ChildStdout>, String) {
+        let log = fs::File::options().create(true).append(true).open(folder.with_file_name("log")).expect("a log");
+        let mut child = Command::new(env!("CARGO_BIN_EXE_fosssim-server"))
+            .args(["serve", "--listen", listen, "--grader"])
+            .arg(grader)
+            .arg("--data")
+            .arg(folder)
+            .args(options)
+            .env("FOSSSIM_DATABASE", database)
+            .env("FOSSSIM_LOG", "debug")
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(log)
+            .spawn()
+            .expect("the server");
+        let mut output = BufReader::new(child.stdout.take().expect("its output"));
+        let mut line = String::new();
+        output.read_line(&mut line).expect("a line");
+        let url = line.trim().strip_prefix("Listening on ").unwrap_or_else(|| {
+            panic!("{line:?}: {}", fs::read_to_string(folder.with_file_name("log")).unwrap_or_default())
+        });
+        let url = url.to_owned();
+        (child, output, url)
+    }
+
+    pub(crate) fn grader(&self) -> PathBuf {
+        self.folder.with_file_name("grader")
+    }
+
+    pub(crate) fn log(&self) -> String {
+        fs::read_to_string(self.folder.with_file_name("log")).unwrap_or_default()
+    }
+
+    /// The link that a fresh server prints.
+    pub(crate) fn first_link(&mut self) -> String {
+        let mut line = String::new();
+        self.output.read_line(&mut line).expect("a line");
+        let link = line.trim().rsplit(' ').next().expect("a word");
+        link.rsplit('/').next().expect("a secret").to_owned()
+    }
+
+    /// `kill -9`.
+    pub(crate) fn kill(&mut self) {
+        self.child.kill().expect("kill");
+        self.child.wait().expect("wait");
+    }
+
+    /// Asks it to end, and returns how it did.
+    pub(crate) fn stop(&mut self) -> std::process::ExitStatus {
+        // SAFETY: the process is this test's own child, and not reaped.
+        unsafe { libc::kill(self.child.id().cast_signed(), libc::SIGTERM) };
+        self.child.wait().expect("wait")
+    }
+
+    /// Starts it again at the same place.
+    pub(crate) fn resume(&mut self) {
+        let listen = self.url.strip_prefix("http://").expect("an address").to_owned();
+        let (child, output, _) = Self::spawn(&self.folder, &self.grader(), &self.database, &listen, &self.options);
+        (self.child, self.output) = (child, output);
+    }
+
+    /// Somebody without anything.
+    pub(crate) fn visitor(&self) -> Client {
+        Client { url: self.url.clone(), headers: Vec::new() }
+    }
+
+    /// Somebody with a token.
+    pub(crate) fn with_token(&self, token: &str) -> Client {
+        Client { url: self.url.clone(), headers: vec![("Authorization".to_owned(), format!("Bearer {token}"))] }
+    }
+
+    /// Signs the first administrator in by the link, and makes a token for them.
+    pub(crate) fn admin(&mut self) -> Client {
+        let link = self.first_link();
+        let session = self.visitor().welcome(&link);
+        let token = session.post_json("/api/v1/tokens", r#"{"name": "tests"}"#).expect(201).json();
+        self.with_token(token["token"].as_str().expect("a token"))
+    }
+
+    /// Makes a member of a course, and signs them in with a token.
+    pub(crate) fn member(&self, by: &Client, course: &str, login: &str, role: &str) -> Client {
+        let wish = format!(r#"{{"name": "The {login}", "role": "{role}"}}"#);
+        let link = by.send("PUT", &format!("/api/v1/courses/{course}/members/{login}"), JSON, wish.as_bytes());
+        let link = link.expect(200).json()["link"].as_str().expect("a link").to_owned();
+        let session = self.visitor().welcome(link.rsplit('/').next().expect("a secret"));
+        let token = session.post_json("/api/v1/tokens", r#"{"name": "tests"}"#).expect(201).json();
+        self.with_token(token["token"].as_str().expect("a token"))
+    }
+
+    /// A course with an assignment that students see.
+    pub(crate) fn course(&self, admin: &Client, slug: &str) {
+        admin.post_json("/api/v1/courses", &format!(r#"{{"slug": "{slug}", "title": "Course {slug}"}}"#)).expect(201);
+        let wish = r#"{"title": "Milestone one", "visible": true,
+            "settings": {"per_hour": 0, "forms": ["program", "sources"]}}"#;
+        let path = format!("/api/v1/courses/{slug}/assignments/m1");
+        admin.send("PUT", &path, JSON, wish.as_bytes()).expect(200);
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        drop(self.child.kill());
+        drop(self.child.wait());
+        if std::thread::panicking() {
+            let log = self.log();
+            let from = log.len().saturating_sub(4000);
+            eprintln!("the end of the server's log:\n{}", log.get(from..).unwrap_or(&log));
+        }
+    }
+}
+
+pub(crate) const JSON: &[(&str, &str)] = &[("Content-Type", "application/json")];
+
+/// Somebody who speaks HTTP.
+#[derive(Debug, Clone)]
+pub(crate) struct Client {
+    pub(crate) url: String,
+    pub(crate) headers: Vec<(String, String)>,
+}
+
+/// What the server says.
+#[derive(Debug)]
+pub(crate) struct Answer {
+    pub(crate) status: u16,
+    pub(crate) headers: Vec<(String, String)>,
+    pub(crate) body: Vec<u8>,
+}
+
+impl Client {
+    /// A request, and the answer to its end.
+    pub(crate) fn send(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Answer {
+        self.try_send(method, path, headers, body).expect("an answer")
+    }
+
+    /// The same, when the server may be dead.
+    pub(crate) fn try_send(
+        &self,
+        method: &str,
+        path: &str,
+        headers: &[(&str, &str)],
+        body: &[u8],
+    ) -> std::io::Result<Answer> {
+        let host = self.url.strip_prefix("http://").expect("an address");
+        // HTTP/1.0: the answer ends with the connection, and is in one piece.
+        let mut request = format!("{method} {path} HTTP/1.0\r\nHost: {host}\r\n");
+        let own = self.headers.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+        for (name, value) in own.chain(headers.iter().copied()) {
+            request.push_str(&format!("{name}: {value}\r\n"));
+        }
+        if method != "GET" {
+            request.push_str(&format!("Content-Length: {}\r\n", body.len()));
+        }
+        request.push_str("\r\n");
+        let mut stream = TcpStream::connect(host)?;
+        stream.set_read_timeout(Some(Duration::from_secs(120)))?;
+        stream.write_all(request.as_bytes())?;
+        // A server that has heard enough may answer before the body is through.
+        drop(stream.write_all(body));
+        Answer::read(&mut stream)
+    }
+
+    pub(crate) fn get(&self, path: &str) -> Answer {
+        self.send("GET", path, &[], b"")
+    }
+
+    pub(crate) fn post_json(&self, path: &str, body: &str) -> Answer {
+        self.send("POST", path, JSON, body.as_bytes())
+    }
+
+    /// A form, as a browser sends it from a page of the server.
+    pub(crate) fn post_form(&self, path: &str, body: &str) -> Answer {
+        let headers = [("Content-Type", "application/x-www-form-urlencoded"), ("Sec-Fetch-Site", "same-origin")];
+        self.send("POST", path, &headers, body.as_bytes())
+    }
+
+    /// Opens a link that signs in, and becomes a browser with a session.
+    pub(crate) fn welcome(&self, secret: &str) -> Self {
+        let answer = self.post_form(&format!("/welcome/{secret}"), "").expect(303);
+        let cookie = answer.header("set-cookie").expect("a cookie");
+        let cookie = cookie.split(';').next().expect("a value").to_owned();
+        let headers = [("Cookie".to_owned(), cookie), ("Sec-Fetch-Site".to_owned(), "same-origin".to_owned())];
+        Self { url: self.url.clone(), headers: headers.into() }
+    }
+
+    /// Hands a program in, and returns the submission's number.
+    pub(crate) fn submit(&self, course: &str, program: &[u8]) -> i64 {
+        let path = format!("/api/v1/courses/{course}/assignments/m1/submissions?name=FOSSSim");
+        self.send("POST", &path, &[], program).expect(201).json()["id"].as_i64().expect("a number")
+    }
+
+    /// Waits until a submission is graded.
+    pub(crate) fn wait_for_grade(&self, course: &str, id: i64) -> serde_json::Value {
+        let start = Instant::now();
+        loop {
+            let submission = self.get(&format!("/api/v1/courses/{course}/submissions/{id}")).expect(200).json();
+            if matches!(submission["state"].as_str(), Some("done" | "buried")) {
+                return submission;
+            }
+            assert!(start.elapsed() < Duration::from_secs(300), "not graded: {submission}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+impl Answer {
+    pub(crate) fn read(stream: &mut TcpStream) -> std::io::Result<Self> {
+        let mut bytes = Vec::new();
+        // A reset after the answer is no loss.
+        if let Err(error) = stream.read_to_end(&mut bytes)
+            && bytes.is_empty()
+        {
+            return Err(error);
+        }
+        let broken = || std::io::Error::from(std::io::ErrorKind::UnexpectedEof);
+        let end = bytes.windows(4).position(|four| four == b"\r\n\r\n").ok_or_else(broken)?;
+        let head = String::from_utf8_lossy(&bytes[..end]).into_owned();
+        let mut lines = head.split("\r\n");
+        let status = lines.next().and_then(|line| line.split(' ').nth(1)?.parse().ok()).ok_or_else(broken)?;
+        let headers = lines
+            .filter_map(|line| line.split_once(": "))
+            .map(|(name, value)| (name.to_ascii_lowercase(), value.to_owned()))
+            .collect();
+        Ok(Self { status, headers, body: bytes[end + 4..].to_vec() })
+    }
+
+    #[track_caller]
+    pub(crate) fn expect(self, status: u16) -> Self {
+        assert_eq!(self.status, status, "{:?}\n{}", self.headers, self.text());
+        self
+    }
+
+    pub(crate) fn header(&self, name: &str) -> Option<&str> {
+        self.headers.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    }
+
+    pub(crate) fn text(&self) -> String {
+        String::from_utf8_lossy(&self.body).into_owned()
+    }
+
+    #[track_caller]
+    pub(crate) fn json(&self) -> serde_json::Value {
+        serde_json::from_slice(&self.body).unwrap_or_else(|error| panic!("{error}: {}", self.text()))
+    }
+}

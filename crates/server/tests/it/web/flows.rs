@@ -1,0 +1,266 @@
+//! What students and teachers do, from the first link to a regrade.
+use crate::support::{
+    engines::{Fresh, on_both_engines},
+    server::{Answer, JSON, Server, program},
+};
+
+on_both_engines!(
+    a_course_from_the_first_link_to_the_grades,
+    an_upload_sent_twice_is_one_submission,
+    limits_are_kept_and_say_so,
+    a_regrade_changes_nothing_until_it_is_applied,
+    a_discarded_regrade_leaves_no_trace_in_grades,
+    what_was_accepted_survives_a_kill_of_the_server,
+);
+
+async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "2"]);
+    let visitor = server.visitor();
+    visitor.get("/health").expect(200);
+    visitor.get("/ready").expect(200);
+    visitor.get("/").expect(303);
+    let link = server.first_link();
+    // Looking at the link, as mail programs do, does not use it up; using it does.
+    visitor.get(&format!("/welcome/{link}")).expect(200);
+    let session = visitor.welcome(&link);
+    assert!(session.get("/").expect(200).text().contains("you are in no course yet"));
+    visitor.post_form(&format!("/welcome/{link}"), "").expect(401);
+    let token = session.post_json("/api/v1/tokens", r#"{"name": "a token"}"#).expect(201).json();
+    let admin = server.with_token(token["token"].as_str().expect("a token"));
+    assert!(!server.log().contains(&link), "the log has the link");
+
+    server.course(&admin, "physics");
+    let teacher = server.member(&admin, "physics", "teacher", "staff");
+    let (ada, bob) =
+        (server.member(&teacher, "physics", "ada", "student"), server.member(&teacher, "physics", "bob", "student"));
+    let first = ada.submit("physics", &program("WA", 40));
+    let second = ada.submit("physics", &program("AC", 100));
+    let other = bob.submit("physics", &program("WA", 20));
+    for (client, id, code, points) in
+        [(&ada, first, "WA", "40"), (&ada, second, "AC", "100"), (&bob, other, "WA", "20")]
+    {
+        let submission = client.wait_for_grade("physics", id);
+        assert_eq!(submission["grade"]["code"], code, "{submission}");
+        assert_eq!(submission["grade"]["points"], points, "{submission}");
+    }
+    // A student sees their own only, in the API and in pages.
+    bob.get(&format!("/api/v1/courses/physics/submissions/{first}")).expect(404);
+    bob.get(&format!("/c/physics/s/{first}/report/report.txt")).expect(404);
+    teacher.get(&format!("/api/v1/courses/physics/submissions/{first}")).expect(200);
+
+    // The report holds words of a stranger: they are text in our page, and a page of nobody for themselves.
+    let page = ada.get(&format!("/c/physics/s/{second}")).expect(200).text();
+    assert!(page.contains("&#60;script&#62;alert(1)"), "{page}");
+    let report = ada.get(&format!("/c/physics/s/{second}/report/report.txt")).expect(200);
+    assert!(report.header("content-security-policy").expect("a policy").starts_with("sandbox"));
+    assert_eq!(report.header("content-type"), Some("text/plain; charset=utf-8"));
+    assert_eq!(report.header("x-content-type-options"), Some("nosniff"));
+    let upload = ada.get(&format!("/api/v1/courses/physics/submissions/{second}/upload")).expect(200);
+    assert_eq!(upload.body, program("AC", 100));
+    assert_eq!(upload.header("content-disposition"), Some("attachment; filename=\"FOSSSim\""));
+
+    let class = teacher.get("/api/v1/courses/physics/assignments/m1/class").expect(200).json();
+    assert_eq!(class[0]["login"], "ada");
+    assert_eq!(class[0]["submissions"], 2);
+    assert_eq!(class[0]["counts"]["id"], second);
+    let table = teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text();
+    assert!(table.starts_with("login,name,submissions,submission,verdict,points,max_points,graded_at\n"), "{table}");
+    assert!(table.contains(&format!("ada,The ada,2,{second},in words,100,100,")), "{table}");
+    let lines = teacher.get("/api/v1/courses/physics/assignments/m1/export?format=jsonl").expect(200).text();
+    assert_eq!(lines.lines().count(), 3);
+
+    let metrics = visitor.get("/metrics").expect(200).text();
+    assert!(metrics.contains("fosssim_jobs{state=\"done\"} 3"), "{metrics}");
+    let audit = teacher.get("/c/physics/audit").expect(200).text();
+    assert!(audit.contains("bob is student"), "{audit}");
+    assert!(server.stop().success());
+    assert!(!server.log().contains("fso_"), "the log has a token");
+}
+
+async fn an_upload_sent_twice_is_one_submission(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let path = "/api/v1/courses/physics/assignments/m1/submissions";
+    let key = [("Idempotency-Key", "from my script")];
+    let send = |body: &[u8]| ada.send("POST", path, &key, body);
+    let id = |answer: Answer| answer.json()["id"].as_i64().expect("a number");
+    let first = id(send(&program("AC", 1)).expect(201));
+    assert_eq!(id(send(&program("AC", 1)).expect(200)), first);
+    let problem = send(&program("AC", 2)).expect(409);
+    assert_eq!(problem.header("content-type"), Some("application/problem+json"));
+    assert_eq!(problem.json()["detail"], "this key was used for another upload");
+    // At the same moment, too.
+    let clients: Vec<_> = (0..8)
+        .map(|_| {
+            let ada = ada.clone();
+            std::thread::spawn(move || {
+                let answer = ada.send("POST", path, &[("Idempotency-Key", "all at once")], &program("AC", 3));
+                assert!(matches!(answer.status, 200 | 201), "{}", answer.text());
+                answer.json()["id"].as_i64().expect("a number")
+            })
+        })
+        .collect();
+    let mut ids: Vec<i64> = clients.into_iter().map(|client| client.join().expect("an answer")).collect();
+    ids.dedup();
+    assert_eq!(ids.len(), 1, "{ids:?}");
+    // Without a key, and from a page: the same page and file are one submission, another file is another one.
+    let form = |key: &str, file: &str| {
+        let body = format!(
+            "--x\r\nContent-Disposition: form-data; name=\"key\"\r\n\r\n{key}\r\n--x\r\n\
+             Content-Disposition: form-data; name=\"file\"; filename=\"../FOSSSim\"\r\n\r\n{file}\r\n--x--\r\n"
+        );
+        let headers = [("Content-Type", "multipart/form-data; boundary=x"), ("Sec-Fetch-Site", "same-origin")];
+        ada.send("POST", "/c/physics/a/m1", &headers, body.as_bytes()).expect(303)
+    };
+    let place = |answer: Answer| answer.header("location").expect("a place").to_owned();
+    let first = place(form("k1", "#!grade AC 5\n"));
+    assert_eq!(place(form("k1", "#!grade AC 5\n")), first);
+    assert_ne!(place(form("k1", "#!grade AC 6\n")), first);
+    assert_ne!(place(form("k2", "#!grade AC 5\n")), first);
+    let all = ada.get(path).expect(200).json();
+    assert_eq!(all.as_array().expect("a list").len(), 5);
+    assert_eq!(all[0]["file_name"], "FOSSSim");
+    // Nobody grades here, so that places count up.
+    let ahead: Vec<_> = [0, 1, 2]
+        .map(|index| {
+            let id = &all[4 - index]["id"];
+            ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json()["ahead"].clone()
+        })
+        .into();
+    assert_eq!(ahead, [0, 1, 2]);
+}
+
+async fn limits_are_kept_and_say_so(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let path = "/api/v1/courses/physics/assignments/m1/submissions";
+    let set = |settings: &str| {
+        let wish = format!(r#"{{"title": "M1", "visible": true, "settings": {settings}}}"#);
+        admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes())
+    };
+    let send = |body: &[u8]| ada.send("POST", path, &[], body);
+    set(r#"{"attempts": 1, "max_bytes": 100}"#).expect(200);
+    assert_eq!(send(&[b'#'; 101]).expect(413).json()["type"], "urn:fosssim:too-large");
+    let remedy = send(b"MZ\x90").expect(422).json();
+    assert!(
+        remedy["detail"].as_str().expect("text").contains("neither a program for Linux nor an archive"),
+        "{remedy}"
+    );
+    send(b"").expect(422);
+    send(&program("AC", 1)).expect(201);
+    assert!(send(&program("AC", 2)).expect(409).text().contains("used up"));
+    set(r#"{"per_hour": 1}"#).expect(200);
+    send(&program("AC", 2)).expect(429);
+    set(r#"{"due_at": 1}"#).expect(200);
+    assert!(send(&program("AC", 2)).expect(409).text().contains("was due before"));
+    set(r#"{"forms": ["sources"]}"#).expect(200);
+    send(&program("AC", 2)).expect(422);
+    // Settings that make no sense, and hidden assignments.
+    for wrong in [
+        r#"{"seconds": 10800}"#,
+        r#"{"suite": "../../etc/passwd"}"#,
+        r#"{"program": "--help"}"#,
+        r#"{"rules": "kind"}"#,
+        r#"{"forms": []}"#,
+        r#"{"unknown": 1}"#,
+    ] {
+        set(wrong).expect(400);
+    }
+    let hidden = r#"{"title": "M1", "visible": false}"#;
+    admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, hidden.as_bytes()).expect(200);
+    ada.get("/api/v1/courses/physics/assignments/m1").expect(404);
+    send(&program("AC", 2)).expect(404);
+}
+
+async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "2"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let (whole, none) = (ada.submit("physics", &program("WA", 40)), ada.submit("physics", &program("WA", 0)));
+    ada.wait_for_grade("physics", whole);
+    ada.wait_for_grade("physics", none);
+    let base = "/api/v1/courses/physics/assignments/m1/regrades";
+    let wish = r#"{"reason": "the rules were too kind", "settings": {"rules": "parity", "per_hour": 0}}"#;
+    let regrade = admin.post_json(base, wish).expect(201).json();
+    let id = regrade["id"].as_i64().expect("a number");
+    admin.post_json(base, wish).expect(409);
+    let finished = || loop {
+        let regrade = admin.get(&format!("{base}/{id}")).expect(200).json();
+        if regrade["left"] == 0 {
+            return regrade;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    };
+    let preview = finished();
+    assert_eq!(preview["submissions"], 2);
+    let changes = preview["changes"].as_array().expect("a list");
+    assert_eq!(changes.len(), 1, "{preview}");
+    assert_eq!(changes[0]["submission"], whole);
+    assert_eq!([&changes[0]["old_points"], &changes[0]["new_points"]], ["40", "20"]);
+    assert_eq!(changes[0]["why"], serde_json::json!(["rules of the suite before, parity now"]));
+    assert_eq!(ada.wait_for_grade("physics", whole)["grade"]["points"], "40");
+    // What comes in meanwhile is graded by the old settings, and is part of the regrade before it can be applied.
+    let late = ada.submit("physics", &program("WA", 60));
+    assert_eq!(ada.wait_for_grade("physics", late)["grade"]["points"], "60");
+    let problem = admin.post_json(&format!("{base}/{id}/apply"), "").expect(409).json();
+    assert_eq!(problem["detail"], "1 submissions came in meanwhile, and are graded now");
+    assert_eq!(finished()["submissions"], 3);
+    let page = admin.get(&format!("/c/physics/a/m1/regrades/{id}")).expect(200).text();
+    assert!(page.contains("rules of the suite before, parity now"), "{page}");
+    let applied = admin.post_json(&format!("{base}/{id}/apply"), "").expect(200).json();
+    assert_eq!(applied["state"], "applied");
+    assert_eq!(applied["changes"].as_array().expect("a list").len(), 2, "what it changed can still be seen");
+    admin.post_json(&format!("{base}/{id}/apply"), "").expect(409);
+    admin.post_json(&format!("{base}/{id}/discard"), "").expect(409);
+    assert_eq!(ada.wait_for_grade("physics", whole)["grade"]["points"], "20");
+    assert_eq!(ada.wait_for_grade("physics", late)["grade"]["points"], "30");
+    // The student is told why, and new submissions are graded the new way.
+    let history = ada.get(&format!("/api/v1/courses/physics/submissions/{whole}/history")).expect(200).json();
+    assert_eq!(history[1]["reason"], "the rules were too kind");
+    assert_eq!([&history[1]["old_points"], &history[1]["new_points"]], ["40", "20"]);
+    assert_eq!(history[1]["by"], "admin");
+    let page = ada.get(&format!("/c/physics/s/{whole}")).expect(200).text();
+    assert!(page.contains("the rules were too kind"), "{page}");
+    let new = ada.submit("physics", &program("WA", 80));
+    assert_eq!(ada.wait_for_grade("physics", new)["grade"]["points"], "40");
+}
+
+async fn a_discarded_regrade_leaves_no_trace_in_grades(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let id = ada.submit("physics", &program("WA", 40));
+    ada.wait_for_grade("physics", id);
+    let base = "/api/v1/courses/physics/assignments/m1/regrades";
+    let wish = r#"{"reason": "to see", "settings": {"rules": "parity", "per_hour": 0}}"#;
+    let regrade = admin.post_json(base, wish).expect(201).json()["id"].clone();
+    admin.post_json(&format!("{base}/{regrade}/discard"), "").expect(200);
+    assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "40");
+    let again = ada.submit("physics", &program("WA", 80));
+    assert_eq!(ada.wait_for_grade("physics", again)["grade"]["points"], "80");
+}
+
+async fn what_was_accepted_survives_a_kill_of_the_server(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1", "--lease", "2"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    // What runs when the server dies is run again; what waited is still there.
+    let ids: Vec<i64> = (0..12).map(|points| ada.submit("physics", &program("WA", points))).collect();
+    for _ in 0..3 {
+        server.kill();
+        server.resume();
+    }
+    for (points, id) in (0..).zip(ids) {
+        let submission = ada.wait_for_grade("physics", id);
+        assert_eq!(submission["grade"]["points"], format!("{points}"), "{submission}");
+        let history = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json();
+        assert_eq!(history.as_array().expect("a list").len(), 1, "graded once: {history}");
+    }
+}

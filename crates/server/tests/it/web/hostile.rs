@@ -1,0 +1,303 @@
+//! What somebody with bad intentions sends.
+use crate::support::{
+    engines::{Fresh, on_both_engines, run},
+    server::{Answer, Client, JSON, Server, program},
+};
+use std::{
+    io::{Cursor, Write},
+    net::TcpStream,
+    time::Duration,
+};
+use zip::{ZipWriter, write::SimpleFileOptions};
+
+on_both_engines!(words_of_sql_are_words);
+
+const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
+
+async fn start(options: &[&str]) -> (Fresh, Server, Client, Client) {
+    let fresh = Fresh::sqlite().await.expect("SQLite");
+    let mut server = Server::start(&fresh, options);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    (fresh, server, admin, ada)
+}
+
+async fn words_of_sql_are_words(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let name = "Robert'); DROP TABLE submission;-- \\ % _ {now} ? $1";
+    let wish = serde_json::json!({"name": name, "role": "student"}).to_string();
+    admin.send("PUT", "/api/v1/courses/physics/members/bobby", JSON, wish.as_bytes()).expect(200);
+    let members = admin.get("/api/v1/courses/physics/members").expect(200).json();
+    assert_eq!(members[0]["name"], name);
+    let page = admin.get("/c/physics/members").expect(200).text();
+    assert!(page.contains("Robert&#39;); DROP TABLE"), "{page}");
+    admin.get("/api/v1/courses/physics'%20OR%20'1'='1/members").expect(404);
+    admin.get("/api/v1/courses/physics/assignments/m1'--").expect(404);
+    admin.get("/api/v1/courses/physics/submissions/1%20OR%201=1").expect(404);
+    admin.get("/api/v1/audit?before=1;DROP").expect(400);
+    admin.post_json("/api/v1/courses", r#"{"slug": "a'b", "title": "x"}"#).expect(400);
+    admin.send("PUT", "/api/v1/courses/physics/members/a%0d%0ab", JSON, wish.as_bytes()).expect(400);
+    let zero = serde_json::json!({"name": "a\u{0}b", "role": "student"}).to_string();
+    admin.send("PUT", "/api/v1/courses/physics/members/zero", JSON, zero.as_bytes()).expect(400);
+    server.visitor().get("/ready").expect(200);
+}
+
+#[test]
+fn other_sites_can_change_nothing() {
+    run(async {
+        let (_fresh, mut server, admin, _) = start(&["--workers", "0"]).await;
+        // A session as a browser has it.
+        let wish = r#"{"name": "Eve", "role": "student"}"#;
+        let link = admin.send("PUT", "/api/v1/courses/physics/members/eve", JSON, wish.as_bytes()).json();
+        let link = link["link"].as_str().expect("a link").rsplit('/').next().expect("a secret").to_owned();
+        let mut browser = server.visitor().welcome(&link);
+        browser.headers.retain(|(name, _)| name == "Cookie");
+        let host = server.url.clone();
+        let post = |headers: &[(&str, &str)]| {
+            let mut all = vec![("Content-Type", "application/x-www-form-urlencoded")];
+            all.extend_from_slice(headers);
+            browser.send("POST", "/account/tokens", &all, b"name=x").status
+        };
+        assert_eq!(post(&[("Sec-Fetch-Site", "same-origin")]), 200);
+        assert_eq!(post(&[("Origin", &host)]), 200);
+        for headers in [
+            &[][..],
+            &[("Sec-Fetch-Site", "cross-site")],
+            &[("Sec-Fetch-Site", "same-site")],
+            &[("Origin", "null")],
+            &[("Origin", "http://evil.example")],
+            &[("Origin", "http://127.0.0.1:1")],
+            // The browser's own word counts before anything else.
+            &[("Sec-Fetch-Site", "cross-site"), ("Origin", &host)],
+        ] {
+            assert_eq!(post(headers), 403, "{headers:?}");
+        }
+        // The cookie is no script's to read, and the API wants JSON, which no form can send.
+        let answer = server.visitor().post_form("/sign-in", "token=fso_wrong").expect(401);
+        assert!(answer.header("set-cookie").is_none());
+        let own = [("Sec-Fetch-Site", "same-origin"), ("Content-Type", "text/plain")];
+        browser.send("POST", "/api/v1/tokens", &own, br#"{"name": "x"}"#).expect(400);
+        // Signed out is signed out, also for who kept the cookie.
+        browser.headers.push(("Sec-Fetch-Site".to_owned(), "same-origin".to_owned()));
+        browser.get("/account").expect(200);
+        browser.post_form("/sign-out", "").expect(303);
+        browser.get("/account").expect(303);
+        assert!(server.stop().success());
+    });
+}
+
+#[test]
+fn cookies_and_headers_are_as_strict_as_can_be() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let options = ["--workers", "0", "--public-url", "https://grades.example.org/"];
+        let mut server = Server::start(&fresh, &options);
+        let link = server.first_link();
+        let answer = server.visitor().post_form(&format!("/welcome/{link}"), "").expect(303);
+        let cookie = answer.header("set-cookie").expect("a cookie");
+        assert!(cookie.starts_with("__Host-fosssim="), "{cookie}");
+        for word in ["; Path=/", "; HttpOnly", "; SameSite=Lax", "; Secure"] {
+            assert!(cookie.contains(word), "{cookie}");
+        }
+        for (name, part) in [
+            ("content-security-policy", "default-src 'none'; script-src 'self'"),
+            ("content-security-policy", "frame-ancestors 'none'"),
+            ("x-content-type-options", "nosniff"),
+            ("referrer-policy", "no-referrer"),
+            ("cross-origin-opener-policy", "same-origin"),
+            ("strict-transport-security", "max-age="),
+            ("cache-control", "no-store"),
+        ] {
+            let page = server.visitor().get("/sign-in").expect(200);
+            assert!(page.header(name).is_some_and(|value| value.contains(part)), "{name}: {:?}", page.headers);
+        }
+        // By HTTP a cookie of the other name is none.
+        let secret = cookie.split(['=', ';']).nth(1).expect("a value").to_owned();
+        let plain = Client { url: server.url.clone(), headers: vec![("Cookie".into(), format!("fosssim={secret}"))] };
+        plain.get("/account").expect(303);
+        let strict = Client {
+            url: server.url.clone(),
+            headers: vec![("Cookie".into(), format!("a=b; __Host-fosssim={secret}"))],
+        };
+        strict.get("/account").expect(200);
+    });
+}
+
+#[test]
+fn bodies_that_are_too_large_or_too_slow_are_given_up() {
+    run(async {
+        let (_fresh, server, admin, ada) = start(&["--workers", "0", "--patience", "5"]).await;
+        let settings = br#"{"title": "M1", "visible": true, "settings": {"max_bytes": 100000}}"#;
+        admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, settings).expect(200);
+        // Announced, and not announced: in chunks.
+        ada.send("POST", SUBMISSIONS, &[], &vec![b'#'; 100_001]).expect(413);
+        let token = &ada.headers[0].1;
+        let head = |path: &str, more: &str| {
+            format!("POST {path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\nAuthorization: {token}\r\n{more}\r\n\r\n")
+        };
+        let mut stream = connect(&server);
+        stream.write_all(head(SUBMISSIONS, "Transfer-Encoding: chunked").as_bytes()).expect("a head");
+        let chunk = format!("{:x}\r\n{}\r\n", 60_000, "#".repeat(60_000));
+        stream.write_all(chunk.as_bytes()).expect("a chunk");
+        stream.write_all(chunk.as_bytes()).expect("a chunk");
+        assert_eq!(Answer::read(&mut stream).expect("an answer").status, 413);
+        // JSON has its own limit.
+        let long = format!(r#"{{"name": "{}"}}"#, "x".repeat(2 << 20));
+        ada.post_json("/api/v1/tokens", &long).expect(413);
+        // Who stops in the middle of an upload, of JSON, or of the head is not waited for. All at one time.
+        let stopped: Vec<(&str, TcpStream)> = [
+            (SUBMISSIONS, "Content-Length: 1000"),
+            ("/api/v1/tokens", "Content-Type: application/json\r\nContent-Length: 1000"),
+        ]
+        .into_iter()
+        .map(|(path, more)| {
+            let mut stream = connect(&server);
+            stream.write_all(head(path, more).as_bytes()).expect("a head");
+            stream.write_all(b"{").expect("a part");
+            (path, stream)
+        })
+        .collect();
+        let mut beginning = connect(&server);
+        beginning.write_all(b"POST / HTTP/1.1\r\nHost: ").expect("a part of a head");
+        for (path, mut stream) in stopped {
+            let answer = Answer::read(&mut stream).expect("an answer");
+            assert_eq!(answer.status, 408, "{path}: {}", answer.text());
+        }
+        // It is closed, with or without a word.
+        drop(Answer::read(&mut beginning));
+        // Nothing of all that lies around.
+        let left = std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count();
+        assert_eq!(left, 0);
+        assert_eq!(ada.get(SUBMISSIONS).expect(200).json(), serde_json::json!([]));
+    });
+}
+
+fn connect(server: &Server) -> TcpStream {
+    let stream = TcpStream::connect(server.url.strip_prefix("http://").expect("an address")).expect("a connection");
+    stream.set_read_timeout(Some(Duration::from_secs(120))).expect("a socket");
+    stream
+}
+
+fn zip(files: &[(&str, &[u8], u32)]) -> Vec<u8> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes, mode) in files {
+        archive.start_file(*name, SimpleFileOptions::default().unix_permissions(*mode)).expect("an entry");
+        archive.write_all(bytes).expect("bytes");
+    }
+    archive.finish().expect("an archive").into_inner()
+}
+
+/// A tar entry of any name and kind, however wrong.
+fn tar(entries: &[(&str, tar::EntryType, &[u8])]) -> Vec<u8> {
+    let mut archive = tar::Builder::new(Vec::new());
+    for (name, kind, bytes) in entries {
+        let mut header = tar::Header::new_ustar();
+        header.as_mut_bytes()[..name.len()].copy_from_slice(name.as_bytes());
+        header.set_entry_type(*kind);
+        header.set_size(bytes.len() as u64);
+        header.set_mode(0o644);
+        if matches!(kind, tar::EntryType::Symlink | tar::EntryType::Link) {
+            header.set_link_name("/etc/passwd").expect("a link");
+        }
+        header.set_cksum();
+        archive.append(&header, *bytes).expect("an entry");
+    }
+    archive.into_inner().expect("an archive")
+}
+
+#[test]
+fn archives_can_not_leave_their_folder() {
+    run(async {
+        let (_fresh, server, _, ada) = start(&["--workers", "0"]).await;
+        use tar::EntryType as Kind;
+        let refused: Vec<(&str, Vec<u8>, &str)> = vec![
+            ("zip ..", zip(&[("a/../../x", b"1", 0o644)]), "name that is not allowed"),
+            ("zip absolute", zip(&[("/etc/cron.d/x", b"1", 0o644)]), "name that is not allowed"),
+            ("zip backslash", zip(&[("..\\x", b"1", 0o644)]), "name that is not allowed"),
+            ("zip drive", zip(&[("C:x", b"1", 0o644)]), "name that is not allowed"),
+            ("zip newline", zip(&[("a\r\nb", b"1", 0o644)]), "name that is not allowed"),
+            ("tar ..", tar(&[("../x", Kind::Regular, b"1")]), "name that is not allowed"),
+            ("tar absolute", tar(&[("/x", Kind::Regular, b"1")]), "name that is not allowed"),
+            ("tar symlink", tar(&[("x", Kind::Symlink, b"")]), "neither a file nor a folder"),
+            ("tar hard link", tar(&[("x", Kind::Link, b"")]), "neither a file nor a folder"),
+            ("tar device", tar(&[("x", Kind::Char, b"")]), "neither a file nor a folder"),
+            ("tar fifo", tar(&[("x", Kind::Fifo, b"")]), "neither a file nor a folder"),
+            ("twice", tar(&[("x", Kind::Regular, b"1"), ("./x", Kind::Regular, b"2")]), "twice"),
+            ("file and folder", tar(&[("x", Kind::Regular, b"1"), ("x/y", Kind::Regular, b"2")]), "twice"),
+            ("folder and file", tar(&[("x/y", Kind::Regular, b"1"), ("x", Kind::Regular, b"2")]), "twice"),
+            ("cut off", zip(&[("x", &[7; 5000], 0o644)])[..60].to_vec(), "damaged"),
+            ("empty", tar(&[]), "neither a program"),
+        ];
+        for (name, bytes, reason) in &refused {
+            let answer = ada.send("POST", SUBMISSIONS, &[], bytes).expect(422);
+            assert!(answer.text().contains(reason), "{name}: {}", answer.text());
+        }
+        // A bomb: a gigabyte of zeros and more, in a megabyte.
+        let mut bomb = ZipWriter::new(Cursor::new(Vec::new()));
+        let options = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
+        let zeros = vec![0; 1 << 20];
+        bomb.start_file("zeros", options).expect("an entry");
+        for _ in 0..1025 {
+            bomb.write_all(&zeros).expect("bytes");
+        }
+        let bomb = bomb.finish().expect("an archive").into_inner();
+        assert!(bomb.len() < 4 << 20);
+        let answer = ada.send("POST", SUBMISSIONS, &[], &bomb).expect(422);
+        assert!(answer.text().contains("1073741824 bytes"), "{}", answer.text());
+        // What students really make.
+        let fine = zip(&[("mine/FOSSSim", b"#!grade AC 1\n", 0o755), ("mine/src/main.cpp", b"int main() {}", 0o644)]);
+        ada.send("POST", SUBMISSIONS, &[], &fine).expect(201);
+        assert_eq!(std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count(), 0);
+    });
+}
+
+#[test]
+fn addresses_lead_nowhere_else() {
+    run(async {
+        let (_fresh, server, _, ada) = start(&["--workers", "1"]).await;
+        let id = ada.submit("physics", &program("AC", 1));
+        ada.wait_for_grade("physics", id);
+        for path in [
+            format!("/api/v1/courses/physics/submissions/{id}/files/..%2F..%2Ffosssim.db"),
+            format!("/api/v1/courses/physics/submissions/{id}/files/%2e%2e"),
+            format!("/c/physics/s/{id}/report/..%2f..%2f..%2fetc%2fpasswd"),
+            "/static/..%2f..%2fCargo.toml".to_owned(),
+            "/static/../../etc/passwd".to_owned(),
+            "/c/physics%00/members".to_owned(),
+            "/c/%ff".to_owned(),
+            "//evil.example/".to_owned(),
+        ] {
+            let answer = ada.get(&path);
+            assert!(matches!(answer.status, 400 | 404), "{path}: {}", answer.status);
+            assert!(!answer.text().contains("root:"), "{path}");
+        }
+        // Names of files, and of whatever is in headers, become plain.
+        let path = format!("{SUBMISSIONS}?name=a%0d%0aSet-Cookie:%20x=1%22;%20filename=evil.html");
+        let sent = ada.send("POST", &path, &[], &program("AC", 2)).expect(201).json();
+        assert_eq!(sent["file_name"], "a__Set-Cookie__x_1___filename_evil.html");
+        let upload = ada.get(&format!("/api/v1/courses/physics/submissions/{}/upload", sent["id"])).expect(200);
+        assert!(upload.header("set-cookie").is_none());
+        assert_eq!(upload.header("content-type"), Some("application/octet-stream"));
+        // The log can't be written into by an address.
+        ada.get("/nowhere%0aERROR%20forged");
+        assert!(!server.log().contains("forged"));
+    });
+}
+
+#[test]
+fn one_account_can_not_flood_the_server() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let mut server = Server::start(&fresh, &["--workers", "0", "--requests-per-minute", "20"]);
+        let admin = server.admin();
+        let refused = (0..40).map(|_| admin.get("/api/v1/me")).find(|answer| answer.status == 429);
+        let refused = refused.expect("a refusal");
+        assert!(refused.header("retry-after").is_some());
+        // Others are not hindered, nor is who is not signed in.
+        server.visitor().get("/health").expect(200);
+        server.visitor().get("/sign-in").expect(200);
+    });
+}

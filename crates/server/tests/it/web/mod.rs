@@ -1,0 +1,6 @@
+//! The server as a process, spoken to over HTTP.
+
+mod flows;
+mod hostile;
+mod roles;
+mod workers;

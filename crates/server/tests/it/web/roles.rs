@@ -1,0 +1,244 @@
+//! Every route against every role: who gets in, who is refused, and how.
+use crate::support::{
+    engines::{Fresh, run},
+    server::{Client, JSON, Server, program},
+};
+use fosssim_server::web;
+use std::collections::BTreeSet;
+
+/// Whom a route serves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum For {
+    /// Anybody.
+    All,
+    /// Whoever is signed in.
+    People,
+    /// Members of the course.
+    Members,
+    /// The owner of the submission and the course's staff.
+    Owner,
+    /// The course's staff.
+    Staff,
+    /// Administrators.
+    Admins,
+    /// Workers.
+    Workers,
+}
+use For::{Admins, All, Members, Owner, People, Staff, Workers};
+
+/// Every route, by its template; what stands in braces is filled in by [`fill`].
+const ROUTES: &[(&str, &str, For)] = &[
+    ("get", "/health", All),
+    ("get", "/ready", All),
+    ("get", "/metrics", All),
+    ("get", "/api/openapi.json", All),
+    ("get", "/api/v1/me", People),
+    ("get", "/api/v1/tokens", People),
+    ("post", "/api/v1/tokens", People),
+    ("delete", "/api/v1/tokens/{id}", People),
+    ("get", "/api/v1/accounts", Admins),
+    ("put", "/api/v1/accounts/{login}", Admins),
+    ("delete", "/api/v1/accounts/{login}", Admins),
+    ("get", "/api/v1/worker-tokens", Admins),
+    ("post", "/api/v1/worker-tokens", Admins),
+    ("delete", "/api/v1/worker-tokens/{id}", Admins),
+    ("get", "/api/v1/queue", Admins),
+    ("get", "/api/v1/audit", Admins),
+    ("get", "/api/v1/courses", People),
+    ("post", "/api/v1/courses", Admins),
+    ("get", "/api/v1/courses/{course}/members", Staff),
+    ("put", "/api/v1/courses/{course}/members/{login}", Staff),
+    ("delete", "/api/v1/courses/{course}/members/{login}", Staff),
+    ("post", "/api/v1/courses/{course}/members/{login}/link", Staff),
+    ("get", "/api/v1/courses/{course}/audit", Staff),
+    ("get", "/api/v1/courses/{course}/assignments", Members),
+    ("get", "/api/v1/courses/{course}/assignments/{assignment}", Members),
+    ("put", "/api/v1/courses/{course}/assignments/{assignment}", Staff),
+    ("put", "/api/v1/courses/{course}/assignments/{assignment}/suite", Staff),
+    ("get", "/api/v1/courses/{course}/assignments/{assignment}/class", Staff),
+    ("get", "/api/v1/courses/{course}/assignments/{assignment}/export", Staff),
+    ("get", "/api/v1/courses/{course}/assignments/{assignment}/submissions", Members),
+    ("post", "/api/v1/courses/{course}/assignments/{assignment}/submissions", Members),
+    ("get", "/api/v1/courses/{course}/submissions/{id}", Owner),
+    ("get", "/api/v1/courses/{course}/submissions/{id}/history", Owner),
+    ("get", "/api/v1/courses/{course}/submissions/{id}/events", Owner),
+    ("get", "/api/v1/courses/{course}/submissions/{id}/files/{name}", Owner),
+    ("get", "/api/v1/courses/{course}/submissions/{id}/upload", Owner),
+    ("get", "/api/v1/courses/{course}/assignments/{assignment}/regrades", Staff),
+    ("post", "/api/v1/courses/{course}/assignments/{assignment}/regrades", Staff),
+    ("get", "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", Staff),
+    ("post", "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply", Staff),
+    ("post", "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard", Staff),
+    ("post", "/api/v1/worker/tick", Workers),
+    ("post", "/api/v1/worker/claim", Workers),
+    ("post", "/api/v1/worker/renew", Workers),
+    ("post", "/api/v1/worker/release", Workers),
+    ("post", "/api/v1/worker/fail", Workers),
+    ("post", "/api/v1/worker/finish", Workers),
+    ("get", "/api/v1/worker/files/{digest}", Workers),
+    ("put", "/api/v1/worker/files/{digest}", Workers),
+    ("get", "/", People),
+    ("get", "/sign-in", All),
+    ("post", "/sign-in", All),
+    ("get", "/welcome/{secret}", All),
+    ("post", "/welcome/{secret}", All),
+    ("post", "/sign-out", All),
+    ("get", "/account", People),
+    ("post", "/account/tokens", People),
+    ("post", "/account/tokens/{id}/revoke", People),
+    ("get", "/admin", Admins),
+    ("post", "/admin/courses", Admins),
+    ("post", "/admin/accounts", Admins),
+    ("post", "/admin/workers", Admins),
+    ("post", "/admin/workers/{id}/revoke", Admins),
+    ("get", "/c/{course}", Members),
+    ("post", "/c/{course}/assignments", Staff),
+    ("get", "/c/{course}/members", Staff),
+    ("post", "/c/{course}/members", Staff),
+    ("post", "/c/{course}/members/{login}/link", Staff),
+    ("get", "/c/{course}/audit", Staff),
+    ("get", "/c/{course}/queue", Staff),
+    ("get", "/c/{course}/a/{assignment}", Members),
+    ("post", "/c/{course}/a/{assignment}", Members),
+    ("get", "/c/{course}/a/{assignment}/settings", Staff),
+    ("post", "/c/{course}/a/{assignment}/settings", Staff),
+    ("get", "/c/{course}/a/{assignment}/class", Staff),
+    ("post", "/c/{course}/a/{assignment}/regrades", Staff),
+    ("get", "/c/{course}/a/{assignment}/regrades/{id}", Staff),
+    ("post", "/c/{course}/a/{assignment}/regrades/{id}/apply", Staff),
+    ("post", "/c/{course}/a/{assignment}/regrades/{id}/discard", Staff),
+    ("get", "/c/{course}/s/{id}", Owner),
+    ("get", "/c/{course}/s/{id}/report/{name}", Owner),
+    ("get", "/c/{course}/s/{id}/upload", Owner),
+    ("get", "/static/style.css", All),
+    ("get", "/static/page.js", All),
+];
+
+/// Who asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Visitor,
+    Owner,
+    Classmate,
+    OtherStudent,
+    Staff,
+    OtherStaff,
+    Admin,
+    Worker,
+}
+
+/// The path to the submission of `owner`; what else it names is not there, so that a request that gets in changes nothing.
+fn fill(path: &str, submission: i64) -> String {
+    let id = if path.contains("submissions/{id}") || path.contains("/s/{id}") { submission } else { 999_999 };
+    path.replace("{course}", "physics")
+        .replace(
+            "{assignment}",
+            if path.contains("/submissions") || path.ends_with("/a/{assignment}") { "m1" } else { "none" },
+        )
+        .replace("{id}", &id.to_string())
+        .replace("{login}", "nobody.here")
+        .replace("{name}", "report.txt")
+        .replace("{secret}", "0123")
+        .replace("{digest}", &"0".repeat(64))
+}
+
+/// Whether somebody gets in, and the status of who does not.
+fn expected(role: Role, whom: For) -> Option<u16> {
+    let signed_in = !matches!(role, Role::Visitor | Role::Worker);
+    let of_course = matches!(role, Role::Owner | Role::Classmate | Role::Staff | Role::Admin);
+    let staff = matches!(role, Role::Staff | Role::Admin);
+    match whom {
+        For::All => None,
+        For::Workers => (role != Role::Worker).then_some(401),
+        _ if !signed_in => Some(401),
+        For::People => None,
+        For::Admins => (role != Role::Admin).then_some(403),
+        // A course of others is none.
+        _ if !of_course => Some(404),
+        For::Members => None,
+        For::Staff => (!staff).then_some(403),
+        For::Owner => (role == Role::Classmate).then_some(404),
+    }
+}
+
+#[test]
+fn every_route_serves_whom_it_should_and_nobody_else() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let mut server = Server::start(&fresh, &["--workers", "1", "--requests-per-minute", "100000"]);
+        let admin = server.admin();
+        server.course(&admin, "physics");
+        server.course(&admin, "other");
+        let owner = server.member(&admin, "physics", "owner", "student");
+        let submission = owner.submit("physics", &program("AC", 1));
+        owner.wait_for_grade("physics", submission);
+        let token = admin.post_json("/api/v1/worker-tokens", r#"{"name": "machine"}"#).expect(201).json();
+        let worker = server.with_token(token["token"].as_str().expect("a token"));
+        let clients: Vec<(Role, Client)> = vec![
+            (Role::Visitor, server.visitor()),
+            (Role::Owner, owner),
+            (Role::Classmate, server.member(&admin, "physics", "mate", "student")),
+            (Role::OtherStudent, server.member(&admin, "other", "guest", "student")),
+            (Role::Staff, server.member(&admin, "physics", "teacher", "staff")),
+            (Role::OtherStaff, server.member(&admin, "other", "colleague", "staff")),
+            (Role::Admin, admin),
+            (Role::Worker, worker),
+        ];
+        let mut wrong = Vec::new();
+        for (method, path, whom) in ROUTES {
+            for (role, client) in &clients {
+                let page = !path.starts_with("/api") && !path.ends_with("/health");
+                // A body that is never understood: who gets in is told so, and nothing is changed.
+                let headers: &[(&str, &str)] = if page {
+                    &[("Content-Type", "application/x-www-form-urlencoded"), ("Sec-Fetch-Site", "same-origin")]
+                } else if path.ends_with("/submissions") || path.ends_with("/suite") {
+                    &[("Sec-Fetch-Site", "same-origin")]
+                } else {
+                    &[JSON[0], ("Sec-Fetch-Site", "same-origin")]
+                };
+                let answer = client.send(&method.to_uppercase(), &fill(path, submission), headers, b"%");
+                let refused = expected(*role, *whom);
+                let right = match refused {
+                    // A page shows the way in instead.
+                    Some(401) if page && *method == "get" => answer.header("location") == Some("/sign-in"),
+                    Some(status) => answer.status == status,
+                    // What is not there, and what is not understood, is told to who got in.
+                    None if *method == "get" => matches!(answer.status, 200 | 400 | 404),
+                    None => !matches!(answer.status, 403 | 500..),
+                };
+                // Being told that the wrong body is wrong, or that nothing is there, is not being let in.
+                let leaks = refused.is_some() && answer.text().contains("owner");
+                if !right || leaks {
+                    wrong.push(format!("{role:?} {method} {path}: {} {}", answer.status, answer.text()));
+                }
+            }
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    });
+}
+
+#[test]
+fn every_route_is_in_the_table() {
+    let listed: BTreeSet<(String, String)> =
+        ROUTES.iter().map(|(method, path, _)| ((*method).to_owned(), (*path).to_owned())).collect();
+    assert_eq!(listed.len(), ROUTES.len());
+    let document: serde_json::Value = serde_json::from_str(&web::openapi()).expect("JSON");
+    let mut served: BTreeSet<(String, String)> =
+        web::pages::PAGES.iter().map(|(method, path)| ((*method).to_owned(), (*path).to_owned())).collect();
+    for (path, methods) in document["paths"].as_object().expect("paths") {
+        for method in methods.as_object().expect("methods").keys() {
+            served.insert((method.clone(), path.clone()));
+        }
+    }
+    assert_eq!(listed, served);
+}
+
+#[test]
+fn the_committed_description_is_the_served_one() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../schemas/service.openapi.json");
+    let committed = std::fs::read_to_string(file).unwrap_or_default();
+    assert!(
+        committed == web::openapi(),
+        "the API has changed: cargo run -p fosssim-server -- openapi > schemas/service.openapi.json"
+    );
+}

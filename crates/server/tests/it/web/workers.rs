@@ -1,0 +1,222 @@
+//! Workers on other machines: processes that know nothing but an address and a token.
+use crate::support::{
+    engines::{Fresh, on_both_engines},
+    server::{Client, JSON, Server, program},
+};
+use std::{
+    fs,
+    process::{Child, Command, Stdio},
+};
+
+on_both_engines!(
+    a_worker_of_another_machine_grades,
+    kills_of_workers_and_server_lose_nothing,
+    a_worker_reaches_the_jobs_that_it_holds_and_nothing_else,
+);
+
+/// A worker as a process with a data folder of its own, killed at the end.
+struct Machine {
+    child: Child,
+    _folder: tempfile::TempDir,
+}
+
+impl Machine {
+    fn start(server: &Server, token: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("token");
+        fs::write(&file, format!("{token}\n")).expect("a token");
+        let log = fs::File::options().create(true).append(true).open(server.folder.with_file_name("worker.log"));
+        let child = Command::new(env!("CARGO_BIN_EXE_fosssim-server"))
+            .args(["worker", "--server", &server.url, "--slots", "2", "--name", "same", "--token-file"])
+            .arg(&file)
+            .arg("--data")
+            .arg(folder.path().join("data"))
+            .arg("--grader")
+            .arg(server.grader())
+            .env_remove("FOSSSIM_DATABASE")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(log.expect("a log"))
+            .spawn()
+            .expect("a worker");
+        Self { child, _folder: folder }
+    }
+
+    fn kill(&mut self) {
+        self.child.kill().expect("kill");
+        self.child.wait().expect("wait");
+    }
+
+    /// Asks it to end; it gives its jobs back first.
+    fn stop(&mut self) {
+        // SAFETY: the process is this test's own child, and not reaped.
+        unsafe { libc::kill(self.child.id().cast_signed(), libc::SIGTERM) };
+        assert!(self.child.wait().expect("wait").success());
+    }
+}
+
+impl Drop for Machine {
+    fn drop(&mut self) {
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
+
+fn worker_token(admin: &Client) -> String {
+    let token = admin.post_json("/api/v1/worker-tokens", r#"{"name": "lab"}"#).expect(201).json();
+    token["token"].as_str().expect("a token").to_owned()
+}
+
+/// A tar archive as students make them: a folder with everything in it.
+fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut archive = tar::Builder::new(Vec::new());
+    for (name, bytes) in files {
+        let mut header = tar::Header::new_ustar();
+        header.set_size(bytes.len() as u64);
+        header.set_mode(0o755);
+        archive.append_data(&mut header, name, *bytes).expect("an entry");
+    }
+    archive.into_inner().expect("an archive")
+}
+
+async fn a_worker_of_another_machine_grades(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let id = ada.submit("physics", &program("WA", 70));
+    let mut machine = Machine::start(&server, &worker_token(&admin));
+    assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "70");
+    let report = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/files/report.txt")).expect(200);
+    assert!(report.text().contains("FOSSSim by t2m2"), "{}", report.text());
+    // Sources, and a suite that was uploaded, come as archives and are unpacked there.
+    let suite = archive(&[("suite.toml", b"title = 'x'")]);
+    admin.send("PUT", "/api/v1/courses/physics/assignments/m1/suite", &[], &suite).expect(200);
+    let sources = archive(&[("mine/FOSSSim", b"#!grade AC 90\n"), ("mine/main.cpp", b"int main() {}")]);
+    let path = "/api/v1/courses/physics/assignments/m1/submissions?name=mine.tar";
+    let id = ada.send("POST", path, &[], &sources).expect(201).json();
+    assert_eq!(id["form"], "sources");
+    let id = id["id"].as_i64().expect("a number");
+    assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "90");
+    let report = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/files/report.txt")).expect(200);
+    assert!(report.text().contains("FOSSSim by suite.toml"), "{}", report.text());
+    let queue = admin.get("/api/v1/queue").expect(200).json();
+    assert!(queue["workers"][0]["name"].as_str().expect("a name").starts_with("lab/same."), "{queue}");
+    // A worker that is asked to stop gives back what it has, and nobody counts a failure.
+    let id = ada.submit("physics", b"#!grade HANG 0\n");
+    while admin.get("/api/v1/queue").expect(200).json()["running"] != 1 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    machine.stop();
+    let submission = ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
+    assert_eq!(submission["state"], "waiting", "{submission}");
+    let metrics = server.visitor().get("/metrics").expect(200).text();
+    assert!(metrics.contains("fosssim_events_total{kind=\"failed_try\"} 0"), "{metrics}");
+}
+
+async fn kills_of_workers_and_server_lose_nothing(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0", "--lease", "2", "--tries", "50"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let token = worker_token(&admin);
+    let mut machines: Vec<Machine> = (0..2).map(|_| Machine::start(&server, &token)).collect();
+    let path = "/api/v1/courses/physics/assignments/m1/submissions";
+    let mut ids = Vec::new();
+    for number in 0..24_u32 {
+        // A client that hears nothing asks again with the same key, until it is told.
+        let key = format!("upload {number}");
+        let id = loop {
+            let sent = ada.try_send("POST", path, &[("Idempotency-Key", &key)], &program("WA", number));
+            match sent {
+                Ok(answer) if matches!(answer.status, 200 | 201) => break answer.json()["id"].as_i64(),
+                _ => std::thread::sleep(std::time::Duration::from_millis(50)),
+            }
+        };
+        ids.push(id.expect("a number"));
+        match number % 6 {
+            1 | 4 => {
+                machines[0].kill();
+                machines.remove(0);
+                machines.push(Machine::start(&server, &token));
+            }
+            3 => {
+                server.kill();
+                server.resume();
+            }
+            _ => {}
+        }
+    }
+    for (number, id) in ids.iter().enumerate() {
+        let submission = ada.wait_for_grade("physics", *id);
+        assert_eq!(submission["grade"]["points"], number.to_string(), "{submission}");
+        let history = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json();
+        assert_eq!(history.as_array().expect("a list").len(), 1, "graded once: {history}");
+    }
+    let all = ada.get(path).expect(200).json();
+    assert_eq!(all.as_array().expect("a list").len(), 24, "each upload is one submission");
+}
+
+async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let (ada, bob) =
+        (server.member(&admin, "physics", "ada", "student"), server.member(&admin, "physics", "bob", "student"));
+    let mine = ada.submit("physics", &program("WA", 1));
+    let others = bob.submit("physics", &program("WA", 2));
+    let digest = |client: &Client, id: i64| {
+        let submission = client.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
+        submission["digest"].as_str().expect("a digest").to_owned()
+    };
+    let (held, not_held) = (digest(&ada, mine), digest(&bob, others));
+    let token = worker_token(&admin);
+    let worker = server.with_token(&token);
+    let job = worker.post_json("/api/v1/worker/claim", "{}").expect(200).json();
+    let lease = &job["lease"];
+    let shown = format!("{}:{}:{}", lease["job"], lease["attempt"], lease["key"].as_str().expect("a key"));
+    let file = |digest: &str, lease: &str| {
+        worker.send("GET", &format!("/api/v1/worker/files/{digest}"), &[("Fosssim-Lease", lease)], b"")
+    };
+    assert_eq!(file(&held, &shown).expect(200).body, program("WA", 1));
+    file(&not_held, &shown).expect(404);
+    file(&held, &format!("{}:{}:{}", lease["job"], lease["attempt"], "0".repeat(32))).expect(404);
+    file(&held, "").expect(400);
+    file("../../fosssim.db", &shown).expect(404);
+    file("..%2F..%2Ffosssim.db", &shown).expect(400);
+    // A result names what was stored for this job: somebody else's file would be read through it.
+    let finish = |code: &str, points: &str, name: &str, digest: &str| {
+        let outcome = format!(
+            r#"{{"lease": {lease}, "outcome": {{"verdict": "w", "code": "{code}", "points": "{points}",
+                "max_points": "100", "summary": "s", "version": "1", "seconds": "1",
+                "files": [{{"name": "{name}", "media_type": "text/html", "digest": "{digest}", "size": 1}}]}}}}"#
+        );
+        worker.send("POST", "/api/v1/worker/finish", JSON, outcome.as_bytes())
+    };
+    finish("WA", "1", "report.txt", &not_held).expect(400);
+    let report = "6c1e671f9af5b46d9c1a52067bdf0e53685674f7";
+    let put = |digest: &str, bytes: &[u8]| {
+        worker.send("PUT", &format!("/api/v1/worker/files/{digest}"), &[("Fosssim-Lease", &shown)], bytes)
+    };
+    put(report, b"a report").expect(400);
+    let report = fosssim_server::store::Digest::of(b"a report").to_string();
+    put(&report, b"another report").expect(400);
+    put(&report, b"a report").expect(200);
+    finish("WA", "1", "../../index.html", &report).expect(400);
+    finish("JE", "1", "report.txt", &report).expect(400);
+    finish("WA", "NaN", "report.txt", &report).expect(400);
+    finish("<b>", "1", "report.txt", &report).expect(400);
+    finish("WA", "1", "report.txt", &report).expect(200);
+    assert_eq!(finish("AC", "100", "report.txt", &report).expect(200).json()["held"], true, "the same lease again");
+    let submission = ada.wait_for_grade("physics", mine);
+    assert_eq!([&submission["grade"]["code"], &submission["grade"]["points"]], ["WA", "1"], "the first answer counts");
+    // What a report holds is ours to say, not the worker's.
+    let told = ada.get(&format!("/api/v1/courses/physics/submissions/{mine}/files/report.txt")).expect(200);
+    assert_eq!(told.header("content-type"), Some("text/plain; charset=utf-8"));
+    // The lease is over, and so is the token once it is revoked.
+    file(&held, &shown).expect(404);
+    let tokens = admin.get("/api/v1/worker-tokens").expect(200).json();
+    let id = &tokens[0]["id"];
+    admin.send("DELETE", &format!("/api/v1/worker-tokens/{id}"), &[], b"").expect(204);
+    worker.post_json("/api/v1/worker/claim", "{}").expect(401);
+}

@@ -1,0 +1,17 @@
+//! `serve`: becomes the program `fosssim-server`, so that whoever grades at a terminal carries no server along.
+use crate::cli::arguments::Serve;
+use anyhow::{Context, Result, bail};
+use std::{os::unix::process::CommandExt, process::Command};
+
+pub(super) fn run(arguments: &Serve) -> Result<u8> {
+    let server = std::env::current_exe().context("where this program is")?.with_file_name("fosssim-server");
+    if !server.is_file() {
+        bail!(
+            "there is no {}: build it with `cargo install --path crates/server --locked`, or beside this program with `cargo build --release -p fosssim-server`",
+            server.display()
+        );
+    }
+    // Returns only when it fails.
+    let error = Command::new(&server).arg("serve").args(&arguments.words).exec();
+    Err(error).with_context(|| format!("cannot start {}", server.display()))
+}
