@@ -93,6 +93,17 @@ pub(super) enum CheckFormat {
     Github,
 }
 
+/// How an explanation is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum ExplainFormat {
+    /// For people.
+    Text,
+    /// For programs; one JSON object.
+    Json,
+    /// For a browser: one file with pictures and a viewer of both motions.
+    Html,
+}
+
 /// Which rule books are asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Rules {
@@ -229,8 +240,8 @@ pub(super) struct Explain {
     #[arg(long, value_enum, default_value_t = Hints::Full)]
     pub(super) hints: Hints,
     /// How the report is written.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
+    pub(super) format: ExplainFormat,
     /// Where to write the report, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,

@@ -20,7 +20,8 @@ a [build] table, folders are built first. A program is alone when it runs: files
 
 With --output (for several submissions always; fosssim-grades by default) results are kept as they come: an \
 interrupted grading goes on where it stopped, and nothing is run twice unless the program, the scene or the rules \
-changed. The folder gets grades.csv, grades.jsonl, scenes.csv, class.txt and a log per run; of a part of the suite \
+changed. The folder gets index.html (a class) or report.html to look at, grades.csv, grades.jsonl, scenes.csv, \
+class.txt and a log per run; of a part of the suite \
 (--scene, --failed) only the logs, because its points are no grade.")]
 pub(super) struct Grade {
     /// Programs, or folders of submissions.
@@ -35,7 +36,7 @@ pub(super) struct Grade {
     /// The folder for results, logs and the journal.
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,
-    /// A report: text, json, junit, gradescope, prairielearn, github, markdown or csv; with =FILE into a file.
+    /// A report: text, json, junit, gradescope, prairielearn, github, markdown, csv or html; with =FILE into a file.
     #[arg(long, value_name = "FORMAT[=FILE]")]
     pub(super) format: Vec<String>,
     /// Runs at one time. One per core by default.
@@ -158,6 +159,9 @@ pub(super) struct Demo {
     /// The mistake of the wrong one; fosssim-sample --list lists them.
     #[arg(long, value_name = "ID")]
     pub(super) mistake: Option<String>,
+    /// Where to write the HTML report on the wrong one.
+    #[arg(short, long, value_name = "FILE", default_value = "fosssim-demo.html")]
+    pub(super) output: PathBuf,
 }
 
 /// Says which layers of the sandbox hold on this machine, and what to install.

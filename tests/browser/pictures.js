@@ -1,7 +1,7 @@
-// Takes the README's picture of an HTML report: docs/report.png.
+// Takes the README's pictures of HTML reports: docs/report.png and docs/class.png.
 //   cargo build --release && node tests/browser/pictures.js
 import { execFileSync, spawnSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { appendFileSync, copyFileSync, mkdirSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -23,6 +23,29 @@ try {
   // The temporary folder is nobody's business.
   await page.locator(".names").evaluate((names) => { names.innerText = names.innerText.replace(/trace .*\//, "trace "); });
   await page.screenshot({ path: join(root, "docs/report.png") });
+
+  // A class of samples. The grader refuses its own programs: one byte more makes it another one.
+  const students = ["ada", "bob.response-halved", "eve.pe-linear-one-ab", "grace.failsafe-angular-overwritten", "kim.pe-linear-one-ab", "liu", "max.pe-square-no-eh", "zoe.response-halved"];
+  const sources = students.map((student) => {
+    const [name, mistake] = student.split(/\.(.*)/);
+    const program = join(folder, name, mistake ? `fosssim-sample.${mistake}` : "fosssim-sample");
+    mkdirSync(join(folder, name));
+    copyFileSync(join(programs, "fosssim-sample"), program);
+    appendFileSync(program, "x");
+    return program;
+  });
+  spawnSync(join(programs, "fosssim-oracle"), ["grade", ...sources, "--output", join(folder, "out")], { cwd: root });
+  await page.setViewportSize({ width: 1180, height: 1000 });
+  await page.goto(pathToFileURL(join(folder, "out/index.html")).href);
+  await page.waitForSelector("html[data-ready]");
+  // Samples are called like their mistake: the student stands there instead, whose folder the path of a twice-used name tells.
+  await page.locator("a").evaluateAll((links, students) => {
+    for (const link of links) {
+      const [, name, mistake] = link.textContent.match(/^(?:.*?([a-z]+)\/)?fosssim-sample\.?(.*)$/) ?? [];
+      link.textContent = name ?? students.find((student) => mistake && student.endsWith(`.${mistake}`))?.split(".")[0] ?? link.textContent;
+    }
+  }, students);
+  await page.screenshot({ path: join(root, "docs/class.png") });
 } finally {
   await browser.close();
   rmSync(folder, { recursive: true, force: true });

@@ -2,17 +2,12 @@
 // FOSSSIM_BIN names the folder with fosssim-oracle and fosssim-sample; CHROMIUM the browser.
 import { strict as assert } from "node:assert";
 import { execFileSync, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
-import { createRequire } from "node:module";
+import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { judgeAccessibility, launch, opened, programs, root } from "./browser.js";
 
-const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
-const programs = process.env.FOSSSIM_BIN ?? join(root, "target/debug");
-const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 let browser, folder;
 
 const CASES = {
@@ -33,24 +28,11 @@ function report(name, { traceName = `${name}.bin`, cut = null } = {}) {
   return html;
 }
 
-async function open(html, { scheme = "light", script = true, hash = "" } = {}) {
-  const context = await browser.newContext({ colorScheme: scheme, javaScriptEnabled: script, viewport: { width: 1200, height: 1000 }, bypassCSP: false });
-  const page = await context.newPage();
-  const complaints = [];
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
-  page.on("pageerror", (error) => complaints.push(String(error)));
-  page.on("request", (request) => /^(file|blob|data):/.test(request.url()) || complaints.push(`request ${request.url()}`));
-  await page.goto(pathToFileURL(html).href + hash);
-  if (script && (await page.locator("details.motion").count())) await page.waitForSelector("html[data-ready]");
-  return { page, complaints, close: () => context.close() };
-}
+const open = (html, how) => opened(browser, html, how);
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "fosssim-browser-"));
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-  });
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();
@@ -64,11 +46,7 @@ for (const name of Object.keys(CASES)) {
     for (const scheme of ["light", "dark"]) {
       const { page, complaints, close } = await open(html, { scheme });
       await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = true)));
-      // The page's policy allows no foreign script: the checker runs as the debugger's own.
-      await page.evaluate(axe + ";0");
-      const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
-      const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-      assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).slice(0, 3).join(" ")}`), []);
+      await judgeAccessibility(page);
       assert.deepEqual(complaints, []);
       await close();
     }
@@ -135,7 +113,7 @@ test("a pair is chosen, its numbers are exact, and a command line reproduces it"
   await page.locator("td.differs button").first().click();
   const numbers = await page.locator(".numbers").innerText();
   assert.match(numbers, /0x[0-9a-f]{16}/);
-  const command = await page.locator(".numbers code").innerText();
+  const command = await page.locator(".numbers code").first().innerText();
   const run = spawnSync("sh", ["-c", command.replace(/^fosssim-oracle/, `'${join(programs, "fosssim-oracle")}'`)], { encoding: "utf8" });
   assert.equal(run.status, 0, run.stderr);
   assert.match(run.stdout, /overlap/);
@@ -157,6 +135,34 @@ test("hostile names are text, and a damaged trace has its page", async () => {
   assert.equal(await page.locator("img").count(), 0);
   assert.match(await page.locator(".names").innerText(), /<img src=x onerror=alert\(1\)>/);
   assert.ok(!(await page.content()).includes("\u202e"), "nothing turns the direction of writing");
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a picture is saved as a drawing, and bodies as a scene that has the same case", async () => {
+  const { page, complaints, close } = await open(report("contact"));
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
+  assert.match(download.suggestedFilename(), /^step-\d+\.svg$/);
+  const svg = readFileSync(await download.path(), "utf8");
+  assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg" viewBox="0 0 960 540"/);
+  assert.ok((svg.match(/<path/g) ?? []).length > 8 && !svg.includes("NaN"), svg);
+  // A contact is chosen by a click; its numbers are there, and its bodies are a scene that the program takes.
+  const canvas = page.locator(".viewer canvas:not(.strip)");
+  await page.evaluate(() => { window.copied = ""; document.execCommand = () => { window.copied = document.activeElement.value ?? ""; return true; }; Object.defineProperty(navigator, "clipboard", { value: undefined }); });
+  const spot = await canvas.evaluate((canvas) => { const box = canvas.getBoundingClientRect(); return [box.width / canvas.width, box.height / canvas.height]; });
+  const contact = svg.match(/<path d="M([\d.]+) ([\d.]+)h12v12h-12Z"/);
+  assert.ok(contact, svg);
+  await canvas.click({ position: { x: (Number(contact[1]) + 6) * spot[0], y: (Number(contact[2]) + 6) * spot[1] } });
+  assert.match(await page.locator(".numbers").innerText(), /particle 0 - particle 1/);
+  assert.match(await page.locator(".numbers").innerText(), /contact's time of impact/);
+  await page.getByRole("button", { name: "Copy as scene" }).click();
+  const scene = await page.evaluate(() => window.copied);
+  const file = join(folder, "case.xml");
+  writeFileSync(file, scene);
+  const run = spawnSync(join(programs, "fosssim-oracle"), ["simulate", file, "--output", join(folder, "case.bin")], { encoding: "utf8" });
+  assert.equal(run.status, 0, `${run.stderr}\n${scene}`);
+  const step = spawnSync(join(programs, "fosssim-oracle"), ["trace", "show", file, join(folder, "case.bin"), "--step", "1"], { encoding: "utf8" });
+  assert.match(step.stdout, /particle/, step.stderr);
   assert.deepEqual(complaints, []);
   await close();
 });

@@ -16,7 +16,7 @@ const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"fu
                      [[group]]\nname = \"Zones\"\nscenes = [\"asset:GeometricTests/ball-*\"]\npoints = 10\n";
 
 /// A workspace with a suite, or nothing where programs can't be run safely.
-fn workspace() -> Option<Workspace> {
+pub(crate) fn workspace() -> Option<Workspace> {
     let workspace = Workspace::new();
     workspace.write("suite.toml", SUITE);
     let doctor = workspace.run(["doctor"]);
@@ -30,7 +30,7 @@ fn workspace() -> Option<Workspace> {
 
 /// Puts sample submissions into `submissions/`, and gives their paths; an empty name is the correct one. They are links,
 /// which are graded only by name.
-fn submit(workspace: &Workspace, mistakes: &[&str]) -> Vec<String> {
+pub(crate) fn submit(workspace: &Workspace, mistakes: &[&str]) -> Vec<String> {
     std::fs::create_dir_all(workspace.path("submissions")).expect("a folder");
     let submit = |mistake: &&str| {
         let name = if mistake.is_empty() { "fosssim-sample".to_owned() } else { format!("fosssim-sample.{mistake}") };
@@ -440,7 +440,13 @@ fn the_demo_ends_well() {
     let sample = env!("CARGO_BIN_EXE_fosssim-sample");
     let run = workspace.run(["demo", "--sample", sample]);
     assert_eq!(run.code, Some(0), "{}", run.shown());
-    assert!(run.out().ends_with("everything works on this machine.\n"), "{}", run.out());
+    assert!(run.out().ends_with("to look at in a browser: fosssim-demo.html\n"), "{}", run.out());
+    let page = String::from_utf8(workspace.read("fosssim-demo.html")).expect("text");
+    assert!(
+        page.contains("Likely mistake") && page.contains("data-scene=") && page.len() < 3_000_000,
+        "{}",
+        page.len()
+    );
 }
 
 #[test]

@@ -13,7 +13,7 @@ const CRATES: [(&str, &[&str]); 14] = [
     ("mistakes", &["num", "model", "judge"]),
     ("render", &["num", "model", "judge"]),
     ("evidence", &["model", "judge", "mistakes"]),
-    ("grading", &["num", "textdiff", "sandbox", "model", "judge", "mistakes"]),
+    ("grading", &["num", "textdiff", "sandbox", "model", "judge", "mistakes", "evidence"]),
     ("report", &["num", "testing", "model", "judge", "mistakes", "render", "evidence", "grading"]),
     (
         "oracle",

@@ -16,6 +16,7 @@ mod known;
 mod layers;
 mod metamorphic;
 mod ordinary_user;
+mod pages;
 mod parity;
 mod properties;
 mod record;

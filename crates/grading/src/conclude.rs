@@ -89,6 +89,7 @@ pub fn conclude(run: &Run<'_>) -> SceneResult {
         memory: Some(program.peak_memory),
         stdout: kept(&program.stdout),
         stderr: kept(&program.stderr),
+        card: None,
     }
 }
 

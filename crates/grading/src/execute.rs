@@ -1,5 +1,6 @@
 //! Runs one program on one scene in the sandbox and judges its trace while it is written.
 use super::{
+    cards::{Cards, Judged},
     conclude::{Run, conclude},
     config::{Hints, RunLimits},
     fault::{self, Stage},
@@ -9,6 +10,7 @@ use super::{
     temporary::Temporary,
     verdict::Verdict,
 };
+use fosssim_evidence::Rulings;
 use fosssim_judge::{
     Outcome, Rules,
     parity::{self, Options, Progress, Remark},
@@ -71,6 +73,8 @@ pub struct Runner<'a> {
     pub faults: &'a Path,
     /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
     pub traces: Option<&'a (dyn Fn(&SceneTask) -> PathBuf + Sync)>,
+    /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
+    pub cards: Option<Cards<'a>>,
     /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of this
     /// scene, and the trace is still at hand.
     pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
@@ -108,19 +112,20 @@ impl Runner<'_> {
         let options =
             Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
         let mut watch = Watch { on_step };
+        let mut rulings = Rulings::new(&mut watch);
         let judged = match running.trace() {
             Some(inner) => {
                 let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep: KEPT_TRACE };
                 let judged = guarded(|| {
                     fault::injected(Stage::Judging, &program.program);
-                    self.judge(task, &mut trace, &options, &mut watch)
+                    self.judge(task, &mut trace, &options, &mut rulings)
                 });
                 // What the judge did not want is read all the same, within the limit: a program must not die of our
                 // closing the pipe. An error here ends the program as well, and its outcome says so.
                 let _ = io::copy(&mut trace, &mut io::sink());
                 judged
             }
-            None => guarded(|| self.judge(task, io::empty(), &options, &mut watch)),
+            None => guarded(|| self.judge(task, io::empty(), &options, &mut rulings)),
         };
         let outcome = running.wait()?;
         let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, &kept);
@@ -150,6 +155,26 @@ impl Runner<'_> {
             Ok(explanations) => SceneResult { explanations, ..result },
             Err(fault) => return Ok(failed(Stage::Explaining, &fault)),
         };
+        let mut result = result;
+        if let Some(cards) = self.cards
+            && !(result.verdict.is_accepted() && result.differs.is_none())
+        {
+            let trace_bytes = bytes.load(Ordering::Relaxed);
+            let judged = Judged {
+                task,
+                result: &result,
+                outcome: &judged,
+                rulings: &rulings.into_steps(&judged),
+                trace: &kept,
+                is_cut: trace_bytes > kept.len() as u64,
+                rules: self.rules,
+                hints: self.hints,
+            };
+            match guarded(|| cards.keep(&judged)) {
+                Ok(card) => result.card = card.map_err(ExecuteError::Folder)?,
+                Err(fault) => return Ok(failed(Stage::Reporting, &fault)),
+            }
+        }
         if let Some(path) = self.traces.map(|path| path(task))
             && !result.verdict.is_accepted()
         {
@@ -209,7 +234,7 @@ impl Runner<'_> {
         task: &SceneTask,
         trace: impl Read + Send,
         options: &Options,
-        watch: &mut Watch<'_>,
+        watch: &mut dyn Progress,
     ) -> Result<Outcome, ExecuteError> {
         if !self.recorded {
             return Ok(parity::judge(&task.scene, trace, options, watch));

@@ -200,6 +200,8 @@ pub struct SceneResult {
     pub stdout: String,
     /// What the program wrote to its standard error, capped; raw text that a report has to escape.
     pub stderr: String,
+    /// The name of the card that was drawn of its trace ([`cards`](crate::cards)).
+    pub card: Option<String>,
 }
 
 impl SceneResult {
@@ -220,6 +222,7 @@ impl SceneResult {
             memory: None,
             stdout: String::new(),
             stderr: String::new(),
+            card: None,
         }
     }
 }

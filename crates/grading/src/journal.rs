@@ -182,6 +182,8 @@ struct Entry {
     memory: Option<u64>,
     stdout: String,
     stderr: String,
+    #[serde(default)]
+    card: Option<String>,
 }
 
 impl Entry {
@@ -202,6 +204,7 @@ impl Entry {
             memory: result.memory,
             stdout: result.stdout.clone(),
             stderr: result.stderr.clone(),
+            card: result.card.clone(),
         }
     }
 
@@ -222,6 +225,7 @@ impl Entry {
             memory: self.memory,
             stdout: self.stdout,
             stderr: self.stderr,
+            card: self.card,
         };
         Some((Key(self.key), result))
     }
@@ -246,6 +250,7 @@ mod tests {
             memory: Some(4096),
             stdout: "out\u{1b}[31m".to_owned(),
             stderr: String::new(),
+            card: Some("0123".to_owned()),
         }
     }
 

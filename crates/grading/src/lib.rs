@@ -4,6 +4,7 @@
 //! parses no arguments.
 
 pub mod batch;
+pub mod cards;
 mod conclude;
 pub mod config;
 mod execute;

@@ -1,13 +1,16 @@
 //! `check`: grades a trace.
-use super::headroom;
+use super::{
+    headroom,
+    pages::{focus, what_if},
+};
 use crate::{
     cli::{
         arguments::{Check, CheckFormat},
         console, exit, input,
         output::Output,
     },
-    diagnose::{self, Explanation},
-    evidence::{self, Evidence, Focus, Rulings, Track},
+    diagnose,
+    evidence::{self, Rulings},
     judge::{
         Outcome, Overall, Rules, Stop, Unreadable, fair,
         parity::{self, Progress, Remark, WrongStep},
@@ -19,9 +22,8 @@ use crate::{
         page,
         style::Style,
     },
-    scene::Scene,
     sim::{RootSearch, StepError},
-    student,
+    suite::config::Hints,
 };
 use anyhow::{Result, bail};
 use std::{
@@ -68,12 +70,15 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let lasting = is_lasting(name);
     let explain = !arguments.no_explain && arguments.step.is_empty();
     let is_page = arguments.format == CheckFormat::Html;
-    let most = if lasting || !(explain || is_page) { 0 } else { KEPT };
+    let pictures = console::pictures().filter(|_| arguments.format == CheckFormat::Text && target.is_none());
+    let pictures = pictures.filter(|_| arguments.step.is_empty());
+    let draws = is_page || pictures.is_some();
+    let most = if lasting || !(explain || draws) { 0 } else { KEPT };
     let mut reader = Kept { inner: &mut trace.reader, bytes: Vec::new(), most };
     let mut rulings = Rulings::new(&mut heard);
     let outcome = parity::judge(&scene.scene, &mut reader, &options, &mut rulings);
     let kept = reader.bytes;
-    let rulings = if is_page { rulings.into_steps(&outcome) } else { Vec::new() };
+    let rulings = if draws { rulings.into_steps(&outcome) } else { Vec::new() };
     let Heard { bar, wrong } = heard;
     drop(bar);
     match &outcome.stop {
@@ -110,20 +115,36 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         audit,
     };
     let style = if target.is_some() { Style::Plain } else { console::style() };
+    let evidence = || {
+        let (fair, focus, budget) = (outcome.fair.is_some(), focus(&outcome), evidence::BUDGET);
+        match if lasting { input::trace(name).ok() } else { None } {
+            Some(whole) => evidence::gather(content, whole.reader, &rulings, fair, &focus, budget),
+            None => evidence::gather(content, &bytes[..], &rulings, fair, &focus, budget),
+        }
+    };
     let text = match arguments.format {
-        CheckFormat::Text => check.text(style),
+        CheckFormat::Text => match pictures {
+            Some(columns) if !check.accepted() => {
+                let plots = report::check::plots(&evidence(), columns);
+                let gap = if plots.is_empty() { "" } else { "\n" };
+                check.text(style) + gap + &plots
+            }
+            _ => check.text(style),
+        },
         CheckFormat::Json => check.json(),
         CheckFormat::Github => check.github(),
         CheckFormat::Html => {
-            let fair = outcome.fair.is_some();
-            let focus = focus(&outcome);
-            let budget = evidence::BUDGET;
-            let evidence = match if lasting { input::trace(name).ok() } else { None } {
-                Some(whole) => evidence::gather(content, whole.reader, &rulings, fair, &focus, budget),
-                None => evidence::gather(content, &bytes[..], &rulings, fair, &focus, budget),
-            };
+            let evidence = evidence();
             let what_if = explanations.first().and_then(|first| what_if(content, first, &bytes, &evidence));
-            let case = page::Case { check, scene: content, evidence: Some(&evidence), what_if: what_if.as_ref() };
+            let hints = Hints::Full;
+            let case = page::Case {
+                check,
+                scene: content,
+                evidence: Some(&evidence),
+                what_if: what_if.as_ref(),
+                hints,
+                has_trace: true,
+            };
             page::Page { title: &format!("{}: {scene}", check.verdict()), cases: vec![case] }.html()
         }
     };
@@ -153,24 +174,6 @@ impl Progress for Heard {
     fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
         self.wrong.step_wrong(wrong);
     }
-}
-
-/// What a viewer is to look at closely: what both books found, the official one's first.
-fn focus(outcome: &Outcome) -> Vec<Focus> {
-    let fair = outcome.fair.iter().flat_map(|fair| fair.first_divergence.iter().chain(&fair.examples));
-    fair.chain(&outcome.first_divergence).chain(&outcome.examples).map(Focus::from).collect()
-}
-
-/// The run of the reference with the mistake that is named, beside the trace.
-fn what_if(scene: &Scene, named: &Explanation, trace: &[u8], evidence: &Evidence) -> Option<page::WhatIf> {
-    // What is not shown as a whole is not made as a whole either.
-    if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
-        return None;
-    }
-    let row = student::find(&named.key)?;
-    let run = student::trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
-    let track = Track::read(&run[..], evidence.layout, evidence.window);
-    Some(page::WhatIf { id: named.key.clone(), sentence: named.what.clone(), track, equal: run == trace })
 }
 
 /// Whether there is something to explain: the fair rules know better what is a mistake.

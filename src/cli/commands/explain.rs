@@ -1,12 +1,16 @@
 //! `explain`: what is likely wrong with the program that left a trace, or with a program at hand.
-use super::grade::{backend, cancelled_by_signals, load_suite};
+use super::{
+    grade::{backend, cancelled_by_signals, load_suite},
+    pages::{self, Source},
+};
 use crate::{
     cli::{
-        arguments::{Explain, Format},
+        arguments::{Explain, ExplainFormat},
         console, exit, input,
         output::Output,
     },
     diagnose::{self, Explanation},
+    evidence::Rulings,
     judge::{
         Rules,
         fair::Verdict,
@@ -15,6 +19,7 @@ use crate::{
     report::{
         check::stopped,
         diagnosis::{Case, Diagnosis},
+        page::{Card, Explained},
         style::Style,
     },
     sandbox::Ended,
@@ -35,29 +40,32 @@ const PATIENCE: usize = 2;
 
 pub(super) fn run(arguments: &Explain) -> Result<u8> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
-    let diagnosis = match (&arguments.program, &arguments.inputs[..]) {
+    let (diagnosis, cards) = match (&arguments.program, &arguments.inputs[..]) {
         (Some(program), scenes) => match program_on_probes(program, scenes, arguments)? {
-            Some(diagnosis) => diagnosis,
+            Some(explained) => explained,
             None => return Ok(exit::INTERRUPTED),
         },
         (None, [scene, trace]) => {
-            Diagnosis { cases: vec![trace_on_scene(scene, trace, arguments)?], common: Vec::new() }
+            let (case, card) = trace_on_scene(scene, trace, arguments)?;
+            (Diagnosis { cases: vec![case], common: Vec::new() }, vec![card])
         }
         (None, _) => bail!("explain takes a scene and a trace, or --program PROGRAM and any number of scenes"),
     };
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let text = match arguments.format {
-        Format::Text => diagnosis.text(style),
-        Format::Json => diagnosis.json(),
+        ExplainFormat::Text => diagnosis.text(style),
+        ExplainFormat::Json => diagnosis.json(),
+        ExplainFormat::Html => Explained { diagnosis: &diagnosis, cards: &cards }.html(),
     };
     match target {
         Some(target) => target.finish_with(text.as_bytes())?,
-        None => console::show(&text, arguments.format)?,
+        None if arguments.format == ExplainFormat::Text => console::report(&text)?,
+        None => console::print(text.as_bytes())?,
     }
     Ok(if diagnosis.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<Case> {
+fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Case, Option<Card>)> {
     let scene = input::scene(scene)?;
     let mut trace = input::trace(trace)?;
     let mut bytes = Vec::new();
@@ -65,28 +73,57 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<Cas
     if let Some(message) = trace.failure() {
         bail!("cannot read the trace {}: {message}", trace.name);
     }
-    Ok(case(scene.name, trace.name, &scene.scene, &bytes, None, arguments.hints.into()))
+    Ok(case((scene.name, trace.name), true, &scene.scene, &bytes, None, arguments))
 }
 
-/// Judges a trace by the fair rules, and explains it if they reject it.
-fn case(name: String, trace: String, scene: &Scene, bytes: &[u8], note: Option<String>, hints: Hints) -> Case {
+/// Judges a trace by the fair rules, and explains it if they reject it; for a page it is drawn as well.
+fn case(
+    (name, trace): (String, String),
+    has_trace: bool,
+    scene: &Scene,
+    bytes: &[u8],
+    note: Option<String>,
+    arguments: &Explain,
+) -> (Case, Option<Card>) {
+    let hints: Hints = arguments.hints.into();
     let options = Options { fair: true, ..Options::default() };
-    let outcome = parity::judge(scene, bytes, &options, &mut ());
+    let mut nobody = ();
+    let mut rulings = Rulings::new(&mut nobody);
+    let outcome = parity::judge(scene, bytes, &options, &mut rulings);
+    let rulings = rulings.into_steps(&outcome);
     // How the program ended tells more than how its trace did.
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, &outcome)));
-    let fair = outcome.fair.unwrap_or_default();
+    let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == Verdict::Accepted && note.is_none();
     let explanations = if fair.verdict == Verdict::Accepted { Vec::new() } else { diagnose::explain(scene, bytes) };
     let first = fair
         .first_divergence
         .as_ref()
         .and_then(|first| Some((hints.first_divergence(first)?, (hints == Hints::Full).then_some(*first))));
-    Case { scene: name, trace, accepted, note, first, explanations: hints.cut(explanations) }
+    let explanations = hints.cut(explanations);
+    let draws = arguments.format == ExplainFormat::Html && !accepted;
+    let source = Source {
+        scene,
+        trace: bytes,
+        outcome: &outcome,
+        rulings: &rulings,
+        explanations: &explanations,
+        rules: Rules::Fair,
+        hints,
+        names: (&name, has_trace.then_some(trace.as_str())),
+        depth: 2,
+    };
+    let card = if draws { pages::card(&source) } else { None };
+    (Case { scene: name, trace, accepted, note, first, explanations }, card)
 }
 
 /// Runs a program on scenes that make every term of every formula visible, and on those that are named. Nothing when it
 /// was interrupted.
-fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) -> Result<Option<Diagnosis>> {
+fn program_on_probes(
+    program: &Path,
+    scenes: &[PathBuf],
+    arguments: &Explain,
+) -> Result<Option<(Diagnosis, Vec<Option<Card>>)>> {
     let program = std::path::absolute(program).unwrap_or_else(|_| program.to_owned());
     let tasks = tasks(scenes)?;
     let cancellation = cancelled_by_signals();
@@ -102,9 +139,10 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
         cancellation: &cancellation,
         faults: Path::new(""),
         traces: None,
+        cards: None,
         rehearse: &|_| {},
     };
-    let mut cases = Vec::new();
+    let (mut cases, mut cards) = (Vec::new(), Vec::new());
     let mut late = 0;
     let bar = console::Bar::of_runs(tasks.len() as u64);
     for task in &tasks {
@@ -114,6 +152,7 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
             let shown = program.display().to_string();
             let (accepted, first, explanations) = (false, None, Vec::new());
             cases.push(Case { scene: task.name.clone(), trace: shown, accepted, note, first, explanations });
+            cards.push(None);
             continue;
         }
         let (trace, outcome) = runner.collect(&program, task, LONGEST).map_err(anyhow::Error::msg)?;
@@ -126,11 +165,13 @@ fn program_on_probes(program: &Path, scenes: &[PathBuf], arguments: &Explain) ->
         late += usize::from(matches!(outcome.ended, Ended::CpuLimit | Ended::WallLimit));
         let note = (!matches!(outcome.ended, Ended::Exited(0))).then(|| format!("the program {}", outcome.ended));
         let shown = program.display().to_string();
-        cases.push(case(task.name.clone(), shown, &task.scene, &trace, note, arguments.hints.into()));
+        let (case, card) = case((task.name.clone(), shown), false, &task.scene, &trace, note, arguments);
+        cases.push(case);
+        cards.push(card);
     }
     drop(bar);
     let common = settled(&cases, &tasks);
-    Ok(Some(Diagnosis { cases, common }))
+    Ok(Some((Diagnosis { cases, common }, cards)))
 }
 
 /// The likely mistakes of the wrong traces together, without those that right traces of the same program speak against.

@@ -1,5 +1,11 @@
 //! `grade`: runs programs on a suite in the sandbox, keeps every result, and writes the reports.
-use super::{closer::Closer, display::Display, last_run::LastRun, submissions::Search};
+use super::{
+    closer::Closer,
+    display::Display,
+    last_run::LastRun,
+    pages::{self, Pages},
+    submissions::Search,
+};
 use crate::{
     cli::{console, exit, grading::Grade as Arguments, output, selection::Selection},
     judge::Rules,
@@ -13,6 +19,7 @@ use crate::{
     suite::{
         Cancellation, Grade, SceneTask, Verdict,
         batch::{self, Batch, BatchOptions, Submission},
+        cards::{Cards, Judged},
         config, guarded,
         journal::Journal,
         plan::{self, Plan},
@@ -56,7 +63,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     if submissions.len() > 1
         && let Some(report) = reports.iter().find(|report| !report.format.takes_several())
     {
-        bail!("--format {} holds one submission, and there are {}", report.name, submissions.len());
+        let class = if report.format == Format::Html { "; a class's pages go to its --output folder" } else { "" };
+        bail!("--format {} holds one submission, and there are {}{class}", report.name, submissions.len());
     }
     // Before any output is touched, whose own handler would end the program at once.
     let cancellation = cancelled_by_signals();
@@ -83,7 +91,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         return Ok(exit::ACCEPTED);
     }
     let is_part = plan.scenes().count() < whole || arguments.failed;
-    let session = Session { arguments, plan: &plan, backend: &backend, cancellation: &cancellation, folder, is_part };
+    let pictures = submissions.len() == 1 && console::pictures().is_some();
+    let draws = pictures || folder.is_some() || reports.iter().any(|report| report.format == Format::Html);
+    // Against recordings nothing is known of single steps.
+    let pages = if draws && !arguments.recorded { Some(Pages::new(folder.as_deref())?) } else { None };
+    let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
+    let session = Session { arguments, plan, backend, cancellation, folder, pages, is_part };
     if arguments.watch {
         return session.watch(&submissions, &reports, &mut last_run);
     }
@@ -189,6 +202,7 @@ struct Session<'a> {
     backend: &'a Backend,
     cancellation: &'a Cancellation,
     folder: Option<PathBuf>,
+    pages: Option<Pages>,
     /// Whether scenes of the suite were left out on purpose.
     is_part: bool,
 }
@@ -237,6 +251,11 @@ impl Session<'_> {
         Some(folder.join("traces").join(file_name(submission)).join(format!("{}.bin", file_name(scene))))
     }
 
+    /// Draws what a page shows of a trace.
+    fn draw(&self, judged: &Judged<'_>) -> Option<String> {
+        pages::draw(judged, (&judged.task.name, None))
+    }
+
     /// The grades, and what kept the rest from being graded or kept.
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let mut journal = match &self.folder {
@@ -255,6 +274,10 @@ impl Session<'_> {
         let faults = self.folder.as_deref().map_or_else(|| PathBuf::from(FAULTS), |folder| folder.join("faults"));
         let trace =
             |submission: &Submission, scene: &SceneTask| self.trace(&submission.name, &scene.name).unwrap_or_default();
+        if let (Some(pages), true) = (&self.pages, fresh) {
+            pages.forget();
+        }
+        let draw = |judged: &Judged<'_>| self.draw(judged);
         let batch = Batch {
             plan: self.plan,
             backend: self.backend,
@@ -262,6 +285,7 @@ impl Session<'_> {
             cancellation: self.cancellation,
             faults: &faults,
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },
+            cards: self.pages.as_ref().map(|pages| Cards { folder: pages.cards(), draw: &draw }),
             rehearse: &grade::rehearse,
         };
         let mut display = Display::new(self.plan, submissions);
@@ -297,9 +321,19 @@ impl Session<'_> {
             if grades.len() > 1 {
                 keep(write(&folder.join("class.txt"), || grade::class(grades, usize::MAX, Style::Plain)));
             }
+            if let Some(pages) = &self.pages {
+                keep(made("the pages", || pages.write(grades)).and_then(|written| written).map(|first| {
+                    if let Some(first) = first {
+                        console::remark(format!("to look at: {}\n", first.display()).as_bytes());
+                    }
+                }));
+            }
         }
         for report in reports {
-            let render = || report.format.render(grades);
+            let render = || match (report.format, &self.pages, grades) {
+                (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None),
+                _ => report.format.render(grades),
+            };
             match (&report.file, report.format) {
                 (None, Format::Text) => {
                     let text = made("the report", || self.text(grades, submissions));
@@ -327,7 +361,12 @@ impl Session<'_> {
         };
         let trace = |submission: &str, scene: &str| self.trace(submission, scene);
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
-        let closer = |grade: &Grade, scene: &_| closer.advice(grade, scene);
+        let closer = |grade: &Grade, scene: &_| {
+            let plot =
+                self.pages.as_ref().filter(|_| console::pictures().is_some()).and_then(|pages| pages.card(scene));
+            let plot = plot.as_ref().map(|card| card.plot().lines().map(str::to_owned).collect()).unwrap_or_default();
+            [plot, closer.advice(grade, scene)].concat()
+        };
         let (style, width) = (console::style(), console::width());
         let text = Text { style, shown, width, again: None, closer: Some(&closer) }.render(grades);
         match is_class && shown > Shown::Line {
@@ -403,7 +442,7 @@ fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
 }
 
 /// A text, or what the grader failed on while it made it.
-fn made(name: &str, text: impl FnOnce() -> String) -> Result<String> {
+fn made<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
     guarded(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
 }
 
@@ -456,7 +495,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
 }
 
 /// A name as a file name: no separators, no leading dot, not too long, and another for every other name.
-fn file_name(name: &str) -> String {
+pub(super) fn file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
     let plain: String = name.replace('/', "_").chars().map(safe).take(100).collect();
     let plain = plain.trim_start_matches('.').trim();

@@ -1,9 +1,13 @@
 //! `doctor`, `selftest` and `demo`: what this machine can do.
-use super::grade::{backend, cancelled_by_signals};
+use super::{
+    grade::{backend, cancelled_by_signals},
+    pages::{self, Pages},
+};
 use crate::{
     cli::{
         console, exit,
         grading::{Demo, Selftest},
+        output,
     },
     report::{
         grade::{Format, rehearse},
@@ -13,6 +17,7 @@ use crate::{
     suite::{
         Verdict,
         batch::{Batch, BatchOptions, Submission},
+        cards::{Cards, Judged},
         plan,
     },
 };
@@ -72,7 +77,9 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     let backend = backend(false)?;
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let mut verdicts = Vec::new();
+    let pages = Pages::new(None)?;
+    let draw = |judged: &Judged<'_>| pages::draw(judged, (&format!("asset:{}", judged.task.name), None));
+    let (mut verdicts, mut last) = (Vec::new(), None);
     for (name, run) in [
         ("right sample".to_owned(), plan.run.clone()),
         (
@@ -89,6 +96,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             cancellation: &cancellation,
             faults: Path::new("fosssim-faults"),
             traces: None,
+            cards: Some(Cards { folder: pages.cards(), draw: &draw }),
             rehearse: &rehearse,
         };
         let grades = batch.run(&[submission], None, &mut |_| {}).grades;
@@ -97,9 +105,16 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             return Ok(exit::INTERRUPTED);
         }
         verdicts.push(grades.iter().map(|grade| grade.verdict).max());
+        // The last one stays: the wrong sample's.
+        last = grades.into_iter().next();
     }
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
         console::print(b"The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
+        if let Some(grade) = &last {
+            output::write(&arguments.output, &[], pages.of_one(grade, None).as_bytes())?;
+            let words = format!("What is wrong with it, to look at in a browser: {}\n", arguments.output.display());
+            console::print(words.as_bytes())?;
+        }
         Ok(exit::ACCEPTED)
     } else {
         bail!("the demo did not end as it should: the right sample must be accepted and the wrong one must not")

@@ -9,6 +9,7 @@ mod grade;
 mod headroom;
 mod host;
 mod last_run;
+mod pages;
 mod record;
 mod render;
 mod scene;

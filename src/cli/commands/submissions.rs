@@ -15,7 +15,7 @@ use std::{
 const RESULTS: [&str; 2] = [".lock", "journal.jsonl"];
 
 /// The folders in it.
-const OWN: [&str; 3] = ["logs", "faults", "traces"];
+const OWN: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
 /// Where submissions are looked for, and what is none.
 pub(super) struct Search<'a> {

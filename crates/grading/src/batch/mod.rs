@@ -4,6 +4,7 @@
 //! a result has been written to the journal before its event is sent. What is found in the journal is not run again. A
 //! panic in the work on one scene is a judge error of that scene, and the batch goes on.
 use super::{
+    cards::Cards,
     config::Visibility,
     execute::{Cancellation, Runner, SceneTask},
     grade::{Build, Grade, GroupGrade, SceneResult},
@@ -76,6 +77,8 @@ pub struct Batch<'a> {
     pub faults: &'a Path,
     /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
     pub traces: Option<&'a TraceFile<'a>>,
+    /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
+    pub cards: Option<Cards<'a>>,
     /// Shows a result in the forms in which it will be reported, for nobody to see ([`Runner::rehearse`]).
     pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
 }
@@ -176,11 +179,12 @@ impl Known {
         Key::of(digest, &scene.xml, &words)
     }
 
-    /// An earlier result. Where traces are wanted, it is none without its trace.
-    fn find(&self, key: &Key, trace: Option<&Path>) -> Option<Done> {
+    /// An earlier result. Where traces or cards are wanted, it is none without them.
+    fn find(&self, key: &Key, trace: Option<&Path>, cards: Option<Cards<'_>>) -> Option<Done> {
         let found = self.found.get(key)?;
-        let lacks = trace.is_some_and(|trace| !found.verdict.is_accepted() && !trace.exists());
-        (!lacks).then(|| Done { result: found.clone(), cached: true, key: None })
+        let lacks_trace = trace.is_some_and(|trace| !found.verdict.is_accepted() && !trace.exists());
+        let lacks_card = cards.is_some_and(|cards| cards.lack(found));
+        (!lacks_trace && !lacks_card).then(|| Done { result: found.clone(), cached: true, key: None })
     }
 }
 
@@ -289,7 +293,8 @@ impl Batch<'_> {
         let trace = self.traces.map(|path| path(submission, scene));
         let trace = trace.as_deref();
         let found = work.digest(self, submission);
-        let found = found.and_then(|digest| known.find(&known.key(&digest, scene, &submission.called()), trace));
+        let found =
+            found.and_then(|digest| known.find(&known.key(&digest, scene, &submission.called()), trace, self.cards));
         if let Some(done) = found {
             return done;
         }
@@ -304,7 +309,7 @@ impl Batch<'_> {
             }
             Ok(staged) => {
                 let key = known.key(&staged.digest, scene, &called(&staged.program));
-                known.find(&key, trace).unwrap_or_else(|| {
+                known.find(&key, trace, self.cards).unwrap_or_else(|| {
                     let mut told = Instant::now();
                     let mut on_step = |step| {
                         // A display can't show more, and a channel should not hold more.
@@ -334,6 +339,7 @@ impl Batch<'_> {
             cancellation: self.cancellation,
             faults: self.faults,
             traces: None,
+            cards: self.cards,
             rehearse: self.rehearse,
         }
     }

@@ -109,7 +109,16 @@ impl Stage {
     fn batch<'a>(&'a self, plan: &'a Plan, cancellation: &'a Cancellation) -> Batch<'a> {
         let options = BatchOptions { jobs: 2, fail_fast: false, recorded: false };
         let faults = self.folder.path();
-        Batch { plan, backend: &self.backend, options, cancellation, faults, traces: None, rehearse: &|_| {} }
+        Batch {
+            plan,
+            backend: &self.backend,
+            options,
+            cancellation,
+            faults,
+            traces: None,
+            cards: None,
+            rehearse: &|_| {},
+        }
     }
 
     fn grade_by(&self, plan: &Plan, names: &[&str]) -> Vec<Grade> {

@@ -7,9 +7,11 @@ mod closer;
 mod divergence;
 mod fair;
 mod fair_view;
+mod plots;
 mod steps;
 mod text;
 
+pub use plots::plots;
 pub use steps::{LISTED, Shown, WrongSteps};
 pub(crate) use text::headline;
 pub use text::stopped;

@@ -10,15 +10,15 @@ use std::{collections::BTreeMap, fmt::Write};
 
 /// How many submissions were run on a scene, and how many of these it was accepted for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-struct Share {
-    accepted: usize,
-    run: usize,
+pub(crate) struct Share {
+    pub(crate) accepted: usize,
+    pub(crate) run: usize,
 }
 
 /// The class, with at most so many scenes and mistakes.
 #[must_use]
 pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
-    let mut text = head(grades, style);
+    let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), head(grades));
     let (scenes, whole) = hardest(grades);
     if !scenes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scenes that fewest have right"));
@@ -51,11 +51,10 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     text
 }
 
-/// `Class: 30 submissions, 12 accepted; mean 63.2, median 71, from 0 to 100 of 100 points; 2 without points`.
-fn head(grades: &[Grade], style: Style) -> String {
-    let name = style.paint(Look::Strong, "Class");
+/// `30 submissions, 12 accepted; mean 63.2, median 71, from 0 to 100 of 100 points; 2 without points`.
+pub(crate) fn head(grades: &[Grade]) -> String {
     let accepted = grades.iter().filter(|grade| grade.verdict.is_accepted()).count();
-    let mut text = format!("{name}: {}, {accepted} accepted", counted(grades.len() as u64, "submission"));
+    let mut text = format!("{}, {accepted} accepted", counted(grades.len() as u64, "submission"));
     let mut reached: Vec<f64> = grades.iter().filter_map(|grade| grade.points).collect();
     reached.sort_by(f64::total_cmp);
     if let ([lowest, ..], [.., highest], Some(grade)) = (&reached[..], &reached[..], grades.first()) {
@@ -70,12 +69,12 @@ fn head(grades: &[Grade], style: Style) -> String {
     if without > 0 {
         let _ = write!(text, "; {without} without points");
     }
-    text + "\n"
+    text
 }
 
 /// The scenes that are not accepted for everybody, those that fewest have right first, and how many others there are.
 /// What was not run and what the grader failed on does not count.
-fn hardest(grades: &[Grade]) -> (Vec<(&str, Share)>, usize) {
+pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, Share)>, usize) {
     let mut shares: BTreeMap<&str, Share> = BTreeMap::new();
     let mut order = Vec::new();
     for scene in grades.iter().flat_map(Grade::scenes) {

@@ -12,7 +12,7 @@ mod junit;
 mod prairielearn;
 mod text;
 
-use crate::number::counted;
+use crate::{number::counted, page::Graded};
 use fosssim_grading::{
     Grade, GroupGrade, SceneGrade, SceneResult, Verdict,
     config::{Credit, Visibility},
@@ -40,11 +40,13 @@ pub enum Format {
     Markdown,
     /// One row per scene, for spreadsheets.
     Csv,
+    /// One file to look at ([`page::Graded`](crate::page::Graded)); without cards here, because these lie on a disk.
+    Html,
 }
 
 impl Format {
     /// All formats with the names under which the command line knows them.
-    pub const ALL: [(Self, &'static str); 8] = [
+    pub const ALL: [(Self, &'static str); 9] = [
         (Self::Text, "text"),
         (Self::Json, "json"),
         (Self::Junit, "junit"),
@@ -53,6 +55,7 @@ impl Format {
         (Self::Github, "github"),
         (Self::Markdown, "markdown"),
         (Self::Csv, "csv"),
+        (Self::Html, "html"),
     ];
 
     /// The format with this name.
@@ -64,7 +67,7 @@ impl Format {
     /// Whether one document holds the grades of several submissions.
     #[must_use]
     pub const fn takes_several(self) -> bool {
-        !matches!(self, Self::Gradescope | Self::Prairielearn)
+        !matches!(self, Self::Gradescope | Self::Prairielearn | Self::Html)
     }
 
     /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
@@ -79,11 +82,16 @@ impl Format {
             Self::Github => github::annotations(grades),
             Self::Markdown => github::summary(grades),
             Self::Csv => csv_table::scenes(grades),
+            Self::Html => {
+                let page = |grade| Graded { grade, card: &|_| None, class: None }.html();
+                grades.first().map(page).unwrap_or_default()
+            }
         }
     }
 }
 
 pub use class::class;
+pub(crate) use class::{hardest, head as class_head};
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use github::annotation;
 pub use json::line as json_line;

@@ -13,9 +13,9 @@ use std::fmt::Write;
 /// Coefficients agree where they differ by less than this part of the polynomial's largest one.
 const SAME: f64 = 1e-9;
 
-pub(super) fn html(step: u32, call: &Call) -> String {
+pub(super) fn html(step: u32, call: &Call, depth: usize) -> String {
     let mut out = format!(
-        "<section>\n<h3>Step {step}: {} <span class=\"hint\">({}, {})</span></h3>\n",
+        "<section>\n<h{depth}>Step {step}: {} <span class=\"hint\">({}, {})</span></h{depth}>\n",
         text(&PairWords(call.pair).to_string()),
         text(&PassWords(call.pass).to_string()),
         key(call.pair)

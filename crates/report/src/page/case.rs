@@ -1,12 +1,14 @@
 //! One judged trace on a page.
-use super::{Case, call, data, markup::text};
+use super::{Case, call, data, markup::text, strip};
 use crate::{
     check::{divergence_text, headline},
     explain,
     number::{count, general},
 };
-use fosssim_evidence::{Class, Evidence};
+use fosssim_evidence::Evidence;
+use fosssim_grading::config::Hints;
 use fosssim_judge::{Account, Book, Outcome, Ruling};
+use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::tolerances::PARITY_MAXIMUM;
 use fosssim_render::plot::{Embedding, PASSES_AXIS, Passes, RESIDUALS_AXIS, Residuals, Series};
 use std::fmt::Write;
@@ -15,13 +17,13 @@ use std::fmt::Write;
 const CALLS: usize = 6;
 
 impl Case<'_> {
-    pub(super) fn html(&self, number: usize) -> String {
+    /// The case as a page's own content.
+    pub(super) fn html(&self, key: &str) -> String {
         let check = &self.check;
-        let outcome = check.outcome;
         let look = if check.accepted() { "good" } else { "bad" };
         let mut out = format!(
-            "<article class=\"case\" data-case=\"{number}\" data-scene=\"{}\" aria-labelledby=\"title-{number}\">\n\
-             <h1 id=\"title-{number}\"><span class=\"{look}\">{}</span>: {}</h1>\n\
+            "<article class=\"case\" data-case=\"{key}\" data-scene=\"{}\" aria-labelledby=\"title-{key}\">\n\
+             <h1 id=\"title-{key}\"><span class=\"{look}\">{}</span>: {}</h1>\n\
              <p class=\"names\">scene {}<br>trace {}</p>\n",
             text(check.scene),
             text(&check.verdict().to_uppercase()),
@@ -29,28 +31,54 @@ impl Case<'_> {
             text(check.scene),
             text(check.trace),
         );
-        out += &books(outcome);
-        let is_other_scene = check.explanations.iter().any(|one| one.is_other_scene());
-        if !is_other_scene {
-            out += &self.mistakes();
+        if !self.is_other_scene() && !check.explanations.is_empty() {
+            out += "<h2>What explains it</h2>\n";
+            out += &mistakes(check.explanations);
         }
-        let account = outcome.account(check.rules.official());
+        out += &self.trace_part(key, 1);
+        if let Some(evidence) = self.evidence {
+            out += &data::blocks(self, evidence, key);
+        }
+        out + "</article>\n"
+    }
+
+    /// Where the trace is another scene's, nothing that differs is a mistake.
+    fn is_other_scene(&self) -> bool {
+        self.check.explanations.iter().any(|one| one.is_other_scene())
+    }
+
+    /// What is shown of the trace, below a heading of the given depth.
+    pub(super) fn trace_part(&self, key: &str, depth: usize) -> String {
+        let outcome = self.check.outcome;
+        let is_full = self.hints == Hints::Full;
+        let heading = |words: &str| format!("<h{0}>{words}</h{0}>\n", depth + 1);
+        let mut out = books(outcome);
+        let account = outcome.account(self.check.rules.official());
         let other = outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
         let first = account.first_divergence.or(other);
-        if let (Some(first), false) = (first, is_other_scene) {
-            let _ = writeln!(out, "<h2>Where it goes wrong first</h2>");
+        if let (Some(first), true) = (first, is_full && !self.is_other_scene()) {
             let _ = writeln!(
                 out,
-                "<pre tabindex=\"0\" role=\"region\" aria-label=\"First divergence\">{}</pre>",
+                "{}<pre tabindex=\"0\" role=\"region\" aria-label=\"First divergence\">{}</pre>",
+                heading("Where it goes wrong first"),
                 text(&divergence_text(first, outcome.steps))
             );
         }
-        if let Some(evidence) = self.evidence {
+        if let Some(evidence) = self.evidence.filter(|evidence| !evidence.steps.is_empty()) {
+            out += &heading("The motion");
+            if let (Some(what), true) = (self.what_if, is_full) {
+                let words = if what.equal {
+                    "Proof: the reference with exactly the likely mistake writes the same trace, to the last bit."
+                } else {
+                    "The reference with exactly the likely mistake writes another trace: look at its motion beside yours."
+                };
+                let _ = writeln!(out, "<p>{words}</p>");
+            }
             let _ = writeln!(
                 out,
-                "<h2>The motion</h2>\n<details class=\"motion\" hidden><summary>Look at both motions</summary>\
-                 <div class=\"stage\"></div></details>\n<noscript><p>The motion viewer needs JavaScript; all else on this page \
-                 does not.</p></noscript>"
+                "<details class=\"motion\" hidden><summary>Look at {}</summary><div class=\"stage\"></div></details>\n\
+                 <noscript><p>The motion viewer needs JavaScript; all else on this page does not.</p></noscript>",
+                if is_full { "both motions" } else { "the motion" }
             );
             if !evidence.window.is_whole(evidence.layout.steps) {
                 let _ = writeln!(
@@ -61,55 +89,47 @@ impl Case<'_> {
                     count(u64::from(evidence.layout.steps))
                 );
             }
-            out += &plots(evidence, number, first.map(|first| first.step));
-            let calls = evidence.close_ups.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
-            let mut calls: Vec<_> = calls.collect();
-            calls.sort_by_key(|(step, _)| Some(*step) != first.map(|first| first.step));
-            if !calls.is_empty() {
-                out += "<h2>The detection calls that are wrong</h2>\n";
-                out.extend(calls.iter().take(CALLS).map(|(step, one)| call::html(*step, one)));
-                if calls.len() > CALLS {
-                    let _ = writeln!(out, "<p>{} more are not shown.</p>", calls.len() - CALLS);
+            out += &heading("All steps");
+            out += &strip::html(&evidence.steps);
+            if is_full {
+                out += &plots(evidence, key, first.map(|first| first.step));
+                let calls = evidence.close_ups.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
+                let mut calls: Vec<_> = calls.collect();
+                calls.sort_by_key(|(step, _)| Some(*step) != first.map(|first| first.step));
+                if !calls.is_empty() {
+                    out += &heading("The detection calls that are wrong");
+                    out.extend(calls.iter().take(CALLS).map(|(step, one)| call::html(*step, one, depth + 2)));
+                    if calls.len() > CALLS {
+                        let _ = writeln!(out, "<p>{} more are not shown.</p>", calls.len() - CALLS);
+                    }
                 }
             }
         }
-        if !account.examples.is_empty() {
+        if is_full && !account.examples.is_empty() {
+            out += &heading("Findings");
             out += &findings(&account);
-        }
-        if let Some(evidence) = self.evidence {
-            out += &data::blocks(self, evidence, number);
-        }
-        out + "</article>\n"
-    }
-
-    fn mistakes(&self) -> String {
-        if self.check.explanations.is_empty() {
-            return String::new();
-        }
-        let mut out = String::from("<h2>What explains it</h2>\n");
-        for (place, one) in self.check.explanations.iter().enumerate() {
-            let lines = explain::lines(std::slice::from_ref(one));
-            let (first, rest) = lines.split_first().map_or(("", &[][..]), |(first, rest)| (first.as_str(), rest));
-            let _ = write!(out, "<div class=\"mistake\"><p>{}</p>", text(first));
-            if !rest.is_empty() {
-                let _ = write!(
-                    out,
-                    "<pre tabindex=\"0\" role=\"region\" aria-label=\"Details\">{}</pre>",
-                    text(&rest.join("\n"))
-                );
-            }
-            if let (0, Some(what)) = (place, self.what_if) {
-                let words = if what.equal {
-                    "Proof: the reference with exactly this mistake writes the same trace, to the last bit."
-                } else {
-                    "The reference with exactly this mistake writes another trace: look at its motion beside yours below."
-                };
-                let _ = write!(out, "<p>{words}</p>");
-            }
-            out += "</div>\n";
         }
         out
     }
+}
+
+/// Explanations, each in a box.
+pub(super) fn mistakes(explanations: &[Explanation]) -> String {
+    let mut out = String::new();
+    for one in explanations {
+        let lines = explain::lines(std::slice::from_ref(one));
+        let (first, rest) = lines.split_first().map_or(("", &[][..]), |(first, rest)| (first.as_str(), rest));
+        let _ = write!(out, "<div class=\"mistake\"><p>{}</p>", text(first));
+        if !rest.is_empty() {
+            let _ = write!(
+                out,
+                "<pre tabindex=\"0\" role=\"region\" aria-label=\"Details\">{}</pre>",
+                text(&rest.join("\n"))
+            );
+        }
+        out += "</div>\n";
+    }
+    out
 }
 
 /// What both rule books say.
@@ -131,11 +151,8 @@ fn books(outcome: &Outcome) -> String {
     )
 }
 
-fn plots(evidence: &Evidence, number: usize, first: Option<u32>) -> String {
+fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     let steps = evidence.steps.len();
-    if steps == 0 {
-        return String::new();
-    }
     let positions: Vec<f64> = evidence.steps.iter().map(|step| step.position).collect();
     let velocities: Vec<f64> = evidence.steps.iter().map(|step| step.velocity).collect();
     let series = [Series { name: "positions", values: &positions }, Series { name: "velocities", values: &velocities }];
@@ -150,17 +167,10 @@ fn plots(evidence: &Evidence, number: usize, first: Option<u32>) -> String {
     let passes = Passes { title: "Detection passes in each step", expected: &expected, actual: &actual };
     let figure = |svg: &str, [left, right]: [f64; 2]| {
         format!(
-            "<figure data-plot=\"{number}\" data-left=\"{left}\" data-right=\"{right}\" data-steps=\"{steps}\">{svg}</figure>\n"
+            "<figure data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" data-steps=\"{steps}\">{svg}</figure>\n"
         )
     };
-    let count_of = |class: Class| evidence.steps.iter().filter(|step| step.class == class).count();
-    let mut out = format!(
-        "<h2>All steps</h2>\n<p>{} right, {} wrong by themselves, {} right but starting from where a wrong step has led.</p>\n",
-        count_of(Class::Right),
-        count_of(Class::Wrong),
-        count_of(Class::Inherited)
-    );
-    out += &figure(&residuals.svg(Embedding::Inline), RESIDUALS_AXIS);
+    let mut out = figure(&residuals.svg(Embedding::Inline), RESIDUALS_AXIS);
     if evidence.layout.polynomials {
         out += &figure(&passes.svg(Embedding::Inline), PASSES_AXIS);
     }
@@ -169,7 +179,7 @@ fn plots(evidence: &Evidence, number: usize, first: Option<u32>) -> String {
 
 fn findings(account: &Account<'_>) -> String {
     let mut out = String::from(
-        "<h2>Findings</h2>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Findings\"><table><thead><tr>\
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Findings\"><table><thead><tr>\
          <th scope=\"col\">kind</th><th scope=\"col\">count</th><th scope=\"col\">first example</th></tr></thead><tbody>\n",
     );
     for example in account.examples {

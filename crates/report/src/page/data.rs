@@ -1,6 +1,7 @@
 //! What the motion viewer reads: one JSON block per case, and the motions as packed doubles.
 use super::{Case, markup};
 use fosssim_evidence::{CloseUp, Evidence, PassUp, Track};
+use fosssim_grading::config::Hints;
 use fosssim_judge::PassWords;
 use fosssim_model::{
     scene::{self, Collision, Scene},
@@ -11,19 +12,20 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// All data blocks of a case.
-pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, number: usize) -> String {
+pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str) -> String {
     let mut out = String::new();
     let _ = writeln!(
         out,
-        r#"<script type="application/json" id="case-{number}">{}</script>"#,
+        r#"<script type="application/json" id="case-{key}">{}</script>"#,
         markup::data(&of_case(case, evidence))
     );
-    let what = case.what_if.map(|what| ("what", &what.track));
-    for (name, track) in
-        [("reference", &evidence.reference), ("submission", &evidence.submission)].into_iter().chain(what)
-    {
+    // Below full hints a page holds nothing but what the program wrote itself.
+    let is_full = case.hints == Hints::Full;
+    let reference = is_full.then_some(("reference", &evidence.reference));
+    let what = case.what_if.filter(|_| is_full).map(|what| ("what", &what.track));
+    for (name, track) in [("submission", &evidence.submission)].into_iter().chain(reference).chain(what) {
         let _ =
-            writeln!(out, r#"<script type="application/octet-stream" id="{name}-{number}">{}</script>"#, packed(track));
+            writeln!(out, r#"<script type="application/octet-stream" id="{name}-{key}">{}</script>"#, packed(track));
     }
     out
 }
@@ -36,10 +38,12 @@ fn packed(track: &Track) -> String {
 }
 
 fn of_case(case: &Case<'_>, evidence: &Evidence) -> Value {
+    let is_full = case.hints == Hints::Full;
+    let close_ups: &[CloseUp] = if is_full { &evidence.close_ups } else { &[] };
     let Scene { particles, edges, half_planes, .. } = case.scene;
     let (integrator, collision) = tags(case.scene);
     let strip: String = evidence.steps.iter().map(|step| step.class.letter()).collect();
-    let calls = evidence.close_ups.iter().flat_map(|up| {
+    let calls = close_ups.iter().flat_map(|up| {
         up.calls.iter().map(|call| {
             let zeros: Vec<f64> = match &call.study {
                 Ok(study) => study.curves.iter().flat_map(|curve| curve.real_zeros()).collect(),
@@ -51,7 +55,8 @@ fn of_case(case: &Case<'_>, evidence: &Evidence) -> Value {
     let first = case.check.outcome.account(case.check.rules.official()).first_divergence.map(|first| first.step);
     json!({
         "scene": markup::visible(case.check.scene),
-        "traceName": markup::visible(case.check.trace),
+        "traceName": case.has_trace.then(|| markup::visible(case.check.trace)),
+        "full": is_full,
         "collision": kind(case.scene.collision),
         "collisionTag": collision,
         "integrator": integrator,
@@ -69,9 +74,9 @@ fn of_case(case: &Case<'_>, evidence: &Evidence) -> Value {
         "planes": half_planes.iter()
             .map(|plane| [plane.point.x, plane.point.y, plane.normal.x, plane.normal.y]).collect::<Vec<_>>(),
         "strip": strip,
-        "closeUps": evidence.close_ups.iter().map(|up| close_up(up, evidence)).collect::<Vec<_>>(),
+        "closeUps": close_ups.iter().map(|up| close_up(up, evidence)).collect::<Vec<_>>(),
         "calls": calls.collect::<Vec<_>>(),
-        "whatIf": case.what_if.map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),
+        "whatIf": case.what_if.filter(|_| is_full).map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),
     })
 }
 

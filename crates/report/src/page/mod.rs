@@ -5,14 +5,25 @@
 //! script everything but the viewer is there, and prints.
 
 mod call;
+mod card;
 mod case;
+mod class;
 mod data;
+mod explained;
+mod graded;
 mod markup;
+mod strip;
 #[cfg(test)]
 mod tests;
 
+pub use card::Card;
+pub use class::Class;
+pub use explained::{Explained, ExplainedCase};
+pub use graded::Graded;
+
 use super::check::Check;
 use fosssim_evidence::{Evidence, Track};
+use fosssim_grading::config::Hints;
 use fosssim_model::scene::Scene;
 use sha2::{Digest, Sha256};
 
@@ -43,6 +54,10 @@ pub struct Case<'a> {
     pub evidence: Option<&'a Evidence>,
     /// The proof of the first explanation.
     pub what_if: Option<&'a WhatIf>,
+    /// How much is told. What is not is not in the file at all.
+    pub hints: Hints,
+    /// Whether whoever reads the page has the trace, so that commands may name it.
+    pub has_trace: bool,
 }
 
 /// A page about some traces.
@@ -58,26 +73,32 @@ impl Page<'_> {
     /// The file.
     #[must_use]
     pub fn html(&self) -> String {
-        let style = format!("{}{STYLE}", fosssim_render::plot::STYLE);
-        let policy = format!(
-            "default-src 'none'; script-src '{}'; style-src '{}'; img-src blob: data:; media-src blob:; base-uri 'none'; \
-             form-action 'none'",
-            digest(SCRIPT),
-            digest(&style)
-        );
-        let title = markup::text(self.title);
-        let body: String = self.cases.iter().enumerate().map(|(number, case)| case.html(number)).collect();
-        format!(
-            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
-             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta name=\"robots\" content=\"noindex\">\n<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n\
-             <a class=\"skip\" href=\"#content\">To the content</a>\n<main id=\"content\">\n{body}</main>\n\
-             <footer><p>Written by fosssim-oracle {}. Lengths, times and velocities are in the scene's units.</p></footer>\n\
-             <script>{SCRIPT}</script>\n</body>\n</html>\n",
-            env!("CARGO_PKG_VERSION"),
-        )
+        let body: String = self.cases.iter().enumerate().map(|(number, case)| case.html(&number.to_string())).collect();
+        document(self.title, &body, SCRIPT)
     }
+}
+
+/// A file around a body: one style sheet, at most one script, and a policy that allows these and nothing else.
+fn document(title: &str, body: &str, script: &str) -> String {
+    let style = format!("{}{STYLE}", fosssim_render::plot::STYLE);
+    let allowed = if script.is_empty() { "'none'".to_owned() } else { format!("'{}'", digest(script)) };
+    let policy = format!(
+        "default-src 'none'; script-src {allowed}; style-src '{}'; img-src blob: data:; media-src blob:; base-uri 'none'; \
+         form-action 'none'",
+        digest(&style)
+    );
+    let title = markup::text(title);
+    let script = if script.is_empty() { String::new() } else { format!("<script>{script}</script>\n") };
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"robots\" content=\"noindex\">\n<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n\
+         <a class=\"skip\" href=\"#content\">To the content</a>\n<main id=\"content\">\n{body}</main>\n\
+         <footer><p>Written by fosssim-oracle {}. Lengths, times and velocities are in the scene's units.</p></footer>\n\
+         {script}</body>\n</html>\n",
+        env!("CARGO_PKG_VERSION"),
+    )
 }
 
 /// The digest by which a policy allows a script or a style sheet.

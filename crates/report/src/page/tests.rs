@@ -1,5 +1,10 @@
 use super::*;
 use fosssim_evidence::{BUDGET, Focus, Rulings, gather};
+use fosssim_grading::{
+    Grade, SceneResult, Verdict,
+    config::{Credit, Visibility},
+    score::{self, Stakes},
+};
 use fosssim_judge::{Outcome, Rules, parity};
 use fosssim_mistakes::{
     diagnose,
@@ -13,11 +18,15 @@ fn asset(name: &str) -> Scene {
 }
 
 fn page(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8]) -> String {
+    told(scene, scene_name, trace_name, trace, Hints::Full)
+}
+
+fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: Hints) -> String {
     let options = parity::Options { fair: true, ..Default::default() };
     let mut nobody = ();
     let mut rulings = Rulings::new(&mut nobody);
     let outcome: Outcome = parity::judge(scene, trace, &options, &mut rulings);
-    let explanations = diagnose::explain(scene, trace);
+    let explanations = hints.cut(diagnose::explain(scene, trace));
     let focus: Vec<Focus> = outcome.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, trace, &rulings.into_steps(&outcome), true, &focus, BUDGET);
     let check = Check {
@@ -29,7 +38,7 @@ fn page(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8]) -> Stri
         steps: &crate::check::WrongSteps::new(crate::check::Shown::None),
         audit: false,
     };
-    let case = Case { check, scene, evidence: Some(&evidence), what_if: None };
+    let case = Case { check, scene, evidence: Some(&evidence), what_if: None, hints, has_trace: true };
     Page { title: trace_name, cases: vec![case] }.html()
 }
 
@@ -107,4 +116,89 @@ fn the_motion_is_exact() {
     assert_eq!(bytes[..state], trace[..state]);
     let last = &bytes[bytes.len() - state..];
     assert!(trace.windows(state).any(|window| window == last));
+}
+
+/// A scene's grade, and the card that is drawn of its trace, with hints of this level.
+fn graded(scene: &Scene, id: &str, hints: Hints) -> String {
+    let trace = of_mistake(scene, id);
+    let mut nobody = ();
+    let mut rulings = Rulings::new(&mut nobody);
+    let options = parity::Options { fair: true, ..Default::default() };
+    let outcome = parity::judge(scene, &trace[..], &options, &mut rulings);
+    let focus: Vec<Focus> = outcome.examples.iter().map(Focus::from).collect();
+    let evidence = gather(scene, &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let explanations = hints.cut(diagnose::explain(scene, &trace));
+    let what_if = WhatIf {
+        id: id.to_owned(),
+        sentence: student::find(id).expect("a mistake").what.to_owned(),
+        track: evidence.reference.clone(),
+        equal: true,
+    };
+    let steps = crate::check::WrongSteps::new(crate::check::Shown::None);
+    let check = Check {
+        scene: "Group/scene",
+        trace: "",
+        outcome: &outcome,
+        explanations: &explanations,
+        rules: Rules::Fair,
+        steps: &steps,
+        audit: false,
+    };
+    let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
+    let card = Card::of(&case, 3).and_then(|card| Card::from_kept(&card.kept()));
+    let first = outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
+    let summary = "some steps are wrong";
+    let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, summary);
+    result.details = first.and_then(|first| hints.first_divergence(first)).into_iter().collect();
+    result.explanations = explanations;
+    let stakes = Stakes { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+    let grade = Grade {
+        groups: vec![score::group("Group", stakes, vec![(result, false)])],
+        verdict: Verdict::WrongAnswer,
+        ..crate::grade::samples::good()
+    };
+    Graded { grade: &grade, card: &|_| card.clone(), class: None }.html()
+}
+
+/// What a level hides is not in the file at all: neither as text, nor in the viewer's data.
+#[test]
+fn what_the_hints_hide_is_not_in_the_file() {
+    let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
+    let id = "pe-linear-one-ab";
+    let [none, place, what, full] =
+        [Hints::None, Hints::Where, Hints::What, Hints::Full].map(|hints| graded(&scene, id, hints));
+    let script = |html: &str| html.matches("<script>").count();
+    assert!([&none, &place, &what, &full].iter().all(|html| script(html) == 1));
+    // The viewer's own text and the style sheet are the same for all.
+    let body = |html: &str| {
+        let body = html.split_once("</style>").expect("a style sheet").1;
+        body.split_once("<script>").expect("a script").0.to_owned()
+    };
+    let [none, place, what, full] = [none, place, what, full].map(|html| body(&html));
+    let row = student::find(id).expect("a mistake");
+    assert!(row.what.len() > 10);
+    for (html, level) in [(&none, "none"), (&place, "where"), (&what, "what")] {
+        for hidden in [
+            "id=\"reference-",
+            "id=\"what-",
+            "Coefficients",
+            "First divergence",
+            "differs",
+            "expected",
+            "data-plot",
+            "Proof",
+        ] {
+            assert!(!html.contains(hidden), "{hidden} at level {level}");
+        }
+        assert!(!html.contains(row.term), "{level}");
+        assert_eq!(html.contains(row.what), level == "what", "{level}");
+        assert_eq!(html.contains("first divergence: step"), level != "none", "{level}");
+        assert_eq!(html.contains("id=\"submission-"), level != "none", "{level}");
+        assert_eq!(html.contains("class=\"steps\""), level != "none", "{level}");
+    }
+    for shown in
+        ["id=\"reference-", "id=\"what-", "Coefficients", "First divergence", "differs", "data-plot", "Proof", row.what]
+    {
+        assert!(full.contains(shown), "{shown}");
+    }
 }

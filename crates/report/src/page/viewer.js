@@ -45,7 +45,7 @@
     constructor(article, data, tracks) {
       Object.assign(this, { article, data, tracks });
       this.key = article.dataset.case;
-      this.name = data.scene;
+      this.name = article.dataset.scene;
       const wrong = data.strip.indexOf("w");
       this.step = Math.max(data.first, Math.min(data.last, wrong >= 0 ? wrong + 1 : data.focus || data.first));
       this.t = 1;
@@ -56,7 +56,7 @@
       this.playing = 0;
       this.speed = 1;
       this.selected = null;
-      this.show = { reference: true, expected: true, what: !!data.whatIf, arrows: true };
+      this.show = { reference: data.full, expected: data.full, what: !!data.whatIf, arrows: data.full };
       this.build();
       this.fit();
       this.look();
@@ -162,6 +162,7 @@
           el("label", {}, "speed ", this.speeds()),
           button("Fit", "Show everything", () => { this.zoom = 1; this.pan = [0, 0]; this.look(); }, "0"),
           button("PNG", "Save this picture", () => this.picture()),
+          button("SVG", "Save this picture as a drawing", () => this.drawing()),
           button("Clip", "Record a film of the steps", () => this.clip()),
           button("Link", "Copy a link to this moment", () => this.link())),
         this.strip, this.slider,
@@ -169,10 +170,10 @@
         el("div", { class: "bar" }, el("label", { class: "grow" }, "inside the step, t = ", this.insideText, this.inside, this.ticks),
           el("label", {}, "moving ", this.passes), hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : ""),
         el("div", { class: "bar" },
-          check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
-          data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
-          check("arrows", "differences", "k-arrow"),
-          el("label", { class: "grow" }, "magnified ", this.factorText, this.factor)),
+          ...(data.full ? [check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
+            data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
+            check("arrows", "differences", "k-arrow"),
+            el("label", { class: "grow" }, "magnified ", this.factorText, this.factor)] : [])),
         this.say, this.facts, this.matrix, this.numbers, this.table);
       this.article.querySelector(".stage").append(this.root);
       this.canvas.addEventListener("wheel", (event) => {
@@ -252,7 +253,7 @@
         Home: () => this.go(this.data.first), End: () => this.go(this.data.last),
         "+": () => { this.zoom *= 1.25; this.look(); }, "-": () => { this.zoom /= 1.25; this.look(); },
       }[event.key];
-      if (!act || typing || (ranging && event.key.startsWith("Arrow")) || (event.key === " " && event.target.tagName === "BUTTON")) return;
+      if (!act || typing || (ranging && event.key.startsWith("Arrow")) || (event.key === " " && /^(BUTTON|SUMMARY|INPUT)$/.test(event.target.tagName))) return;
       event.preventDefault();
       act();
     }
@@ -327,8 +328,7 @@
       }
       return { list, most, base };
     }
-    draw() {
-      const context = this.canvas.getContext("2d");
+    draw(context = this.canvas.getContext("2d")) {
       const { width, height } = this.canvas;
       context.fillStyle = colour("--paper");
       context.fillRect(0, 0, width, height);
@@ -461,6 +461,7 @@
     }
     contacts(context) {
       const close = this.close();
+      this.spots = [];
       if (!close) return;
       const draw = (list, stroke, dash, filled) => {
         for (const [pair, time, nx, ny] of list) {
@@ -470,6 +471,7 @@
           const from = this.to(...place);
           const to = [from[0] + (nx / length) * 46, from[1] - (ny / length) * 46];
           if (!finite(...from, ...to)) continue;
+          this.spots.push([pair, ...from]);
           context.strokeStyle = context.fillStyle = stroke;
           context.lineWidth = filled ? 2 : 3;
           context.setLineDash(dash);
@@ -579,11 +581,11 @@
       const before = sums(this.state("submission", this.step - 1)), after = sums(this.state("submission", this.step));
       const right = close && sums(close.end || close.mid);
       const momentum = (s) => (s ? `(${short(s[0])}, ${short(s[1])}), angular ${short(s[2])}` : "-");
-      this.facts.replaceChildren(table(["", "expected", "yours"], [
+      this.facts.replaceChildren(table(data.full ? ["", "expected", "yours"] : ["", "yours"], this.cut([
         ...rows,
         ["momentum before the step", "", momentum(before)],
         ["momentum after the step", right ? momentum(right) : "-", momentum(after)],
-      ], "This step in numbers"));
+      ]), "This step in numbers"));
       if (close && close.zones.length) {
         this.facts.append(el("p", {}, "Impact zones of the reference: " + close.zones[close.zones.length - 1].zones
           .map((zone) => `{${zone.particles.join(", ")}${zone.halfPlane ? ", a half-plane" : ""}}`).join(" ") || "none"));
@@ -591,6 +593,10 @@
     }
     tellMatrix() {
       const close = this.close();
+      const shown = `${this.step} ${this.pass}`;
+      // Whoever stands in the table stays there.
+      if (shown === this.matrixShown) return;
+      this.matrixShown = shown;
       if (!close || !close.passes.length) return this.matrix.replaceChildren();
       const pass = close.passes[Math.max(0, this.pass)];
       const { n, edges, planes } = this.data;
@@ -642,38 +648,69 @@
         const s = Math.max(0, Math.min(1, ((x - a[0]) * d[0] + (y - a[1]) * d[1]) / size));
         near(Math.max(1, Math.hypot(a[0] + s * d[0] - x, a[1] + s * d[1] - y) - r * this.scale()), "edge", index);
       });
-      this.selected = best[0] < 14 ? best[1] : null;
+      this.data.planes.forEach(([px, py, nx, ny], index) => {
+        const a = this.to(px, py), depth = ((x - a[0]) * nx - (y - a[1]) * ny) / (Math.hypot(nx, ny) || 1);
+        near(depth > 0 ? depth : 12, "half-plane", index);
+      });
+      const spot = this.spots.find(([, sx, sy]) => Math.hypot(sx - x, sy - y) < 9);
+      this.selected = spot ? { pair: spot[0] } : best[0] < 14 ? best[1] : null;
       this.look();
     }
     tellNumbers() {
       const { selected, data } = this;
-      if (!selected) return this.numbers.replaceChildren(el("p", { class: "hint" }, "Click a particle or an edge for its numbers, or a pair in the table of pairs."));
+      if (!selected) return this.numbers.replaceChildren(el("p", { class: "hint" }, "Click a particle, an edge, a half-plane or a contact for its numbers, or a pair in the table of pairs."));
       const rows = [];
       const list = selected.pair ? [parse(selected.pair).first, ...(selected.pair.startsWith("pp") ? [parse(selected.pair).second] : selected.pair.startsWith("pe") ? data.edges[parse(selected.pair).second].slice(0, 2) : [])]
-        : selected.kind === "particle" ? [selected.index] : data.edges[selected.index].slice(0, 2);
+        : selected.kind === "particle" ? [selected.index] : selected.kind === "edge" ? data.edges[selected.index].slice(0, 2) : [];
+      const exact = (value) => `${value} (${hex(value)})`;
+      const plane = selected.kind === "half-plane" ? selected.index : selected.pair && selected.pair.startsWith("ph") ? parse(selected.pair).second : null;
+      if (plane !== null && data.planes[plane]) {
+        ["point x", "point y", "normal x", "normal y"].forEach((name, k) => rows.push([`half-plane ${plane} ${name}`, ...Array(3).fill(exact(data.planes[plane][k]))]));
+      }
+      const close = this.close();
+      if (selected.pair && close) {
+        const [right, own] = [close.expected, close.actual].map((all) => all.find(([pair]) => pair === selected.pair));
+        ["time of impact", "normal x", "normal y"].forEach((name, k) => {
+          if (right || own) rows.push([`contact's ${name}`, ...[right, own].map((one) => (one ? exact(one[k + 1]) : "none")), "-"]);
+        });
+      }
       const expected = this.expected();
       for (const k of list) {
         for (const [name, at] of [["x", 2 * k], ["y", 2 * k + 1], ["vx", 2 * data.n + 2 * k], ["vy", 2 * data.n + 2 * k + 1]]) {
           const own = this.state("submission", this.step, this.mid), ref = this.state("reference", this.step, this.mid);
-          const cell = (state) => (state ? `${state[at]} (${hex(state[at])})` : "-");
+          const cell = (state) => (state ? exact(state[at]) : "-");
           rows.push([`particle ${k} ${name}`, cell(expected), cell(own), cell(ref)]);
         }
       }
       const title = selected.pair ? words(selected.pair) : `${selected.kind} ${selected.index}`;
-      const command = selected.pair
+      const command = !data.traceName ? "" : selected.pair
         ? `fosssim-oracle detect --scene ${quoted(data.scene)} --trace ${quoted(data.traceName)} --step ${this.step} --pair ${selected.pair}`
         : `fosssim-oracle trace show ${quoted(data.scene)} ${quoted(data.traceName)} --step ${this.step}`;
       this.numbers.replaceChildren(
         el("h4", {}, title, " after step ", String(this.step)),
-        el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Numbers" }, table(["", "expected from your own state", "yours", "reference from the start"], rows, "Exact numbers")),
-        el("p", {}, "On the command line: ", el("code", {}, command), " ",
-          el("button", { type: "button", onclick: (event) => copy(command, event.target) }, "Copy"), " ",
-          el("button", { type: "button", onclick: (event) => copy(this.asScene(list), event.target) }, "Copy as scene")));
+        el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Numbers" }, table(this.columns(), this.cut(rows), "Exact numbers")),
+        command ? el("p", {}, "On the command line: ", el("code", {}, command), " ",
+          el("button", { type: "button", onclick: (event) => copy(command, event.target) }, "Copy")) : "",
+        el("p", {}, "The same bodies alone, moving as here: ",
+          el("button", { type: "button", onclick: (event) => copy(this.asScene(list), event.target) }, "Copy as scene"),
+          ". Saved as case.xml: ", el("code", {}, "./FOSSSim -s case.xml -d 0 -o case.bin; fosssim-oracle check case.xml case.bin")));
+    }
+    // Where hints hide what is right, there is only one column.
+    columns() {
+      return this.data.full ? ["", "expected from your own state", "yours", "reference from the start"] : ["", "yours"];
+    }
+    cut(rows) {
+      return this.data.full ? rows : rows.map(([name, , own]) => [name, own]);
     }
     // The bodies at the start of the step as a scene of one step, without forces.
     asScene(particles) {
       const { data } = this;
-      const state = this.state("submission", Math.max(data.first, this.step - 1));
+      const state = this.state("submission", Math.max(data.first, this.step - 1)).slice();
+      // Forces are left out: velocities are such that the bodies move as the step's first detection saw them.
+      const close = this.close(), pass = close && close.passes[0];
+      if (pass && pass.q.length === 2 * data.n) {
+        for (let k = 0; k < 2 * data.n; k++) state[2 * data.n + k] = (pass.q[k] - state[k]) / data.dt;
+      }
       const chosen = [...new Set(particles)].sort((a, b) => a - b);
       const index = new Map(chosen.map((k, place) => [k, place]));
       const lines = [`<scene>`, `  <duration time="${data.dt}"/>`, `  ${data.integrator}`, `  ${data.collisionTag}`];
@@ -689,7 +726,7 @@
       const own = this.state("submission", this.step, this.mid), ref = this.state("reference", this.step, this.mid), expected = this.expected();
       const cell = (state, k) => (state ? `(${short(state[2 * k])}, ${short(state[2 * k + 1])})` : "-");
       const rows = [...Array(this.data.n).keys()].map((k) => [`particle ${k}`, cell(expected, k), cell(own, k), cell(ref, k)]);
-      this.tableBody.replaceChildren(table(["", "expected from your own state", "yours", "reference from the start"], rows, `Positions after step ${this.step}`));
+      this.tableBody.replaceChildren(table(this.columns(), this.cut(rows), `Positions after step ${this.step}`));
     }
 
     // ---- taking along ----
@@ -701,6 +738,11 @@
     }
     picture() {
       this.canvas.toBlob((blob) => blob && this.file(blob, `step-${this.step}.png`));
+    }
+    drawing() {
+      const sketch = new Sketch(this.canvas.width, this.canvas.height);
+      this.draw(sketch);
+      this.file(new Blob([sketch.svg()], { type: "image/svg+xml" }), `step-${this.step}.svg`);
     }
     clip() {
       if (typeof MediaRecorder === "undefined" || !this.canvas.captureStream) { this.say.textContent = "This browser can't record films."; return; }
@@ -723,6 +765,32 @@
       history.replaceState(null, "", "#" + hash);
       copy(location.href, null);
       this.say.textContent = "The address of this page leads to this moment now.";
+    }
+  }
+
+  // Takes down as SVG what is drawn: as much of a canvas's context as the viewer uses. Arcs are whole circles.
+  class Sketch {
+    constructor(width, height) {
+      Object.assign(this, { width, height, out: [], path: "", dash: [], fillStyle: "#000", strokeStyle: "#000", lineWidth: 1, font: "", textAlign: "start", lineCap: "butt", lineJoin: "miter" });
+    }
+    at(...values) { return values.map((value) => Math.round(value * 100) / 100).join(" "); }
+    beginPath() { this.path = ""; }
+    moveTo(x, y) { this.path += `M${this.at(x, y)}`; }
+    lineTo(x, y) { this.path += `L${this.at(x, y)}`; }
+    closePath() { this.path += "Z"; }
+    rect(x, y, w, h) { this.path += `M${this.at(x, y)}h${this.at(w)}v${this.at(h)}h${this.at(-w)}Z`; }
+    arc(x, y, r) { this.path += `M${this.at(x + r, y)}A${this.at(r, r)} 0 1 1 ${this.at(x - r, y)}A${this.at(r, r)} 0 1 1 ${this.at(x + r, y)}Z`; }
+    setLineDash(dash) { this.dash = dash; }
+    stroke() {
+      this.out.push(`<path d="${this.path}" fill="none" stroke="${this.strokeStyle}" stroke-width="${this.at(this.lineWidth)}" stroke-dasharray="${this.dash.join(" ") || "none"}" stroke-linecap="${this.lineCap}" stroke-linejoin="${this.lineJoin}"/>`);
+    }
+    fill() { this.out.push(`<path d="${this.path}" fill="${this.fillStyle}"/>`); }
+    fillRect(x, y, w, h) { this.beginPath(); this.rect(x, y, w, h); this.fill(); }
+    fillText(text, x, y) {
+      this.out.push(`<text x="${this.at(x)}" y="${this.at(y)}" fill="${this.fillStyle}" font-family="sans-serif" font-size="${parseFloat(this.font)}" text-anchor="${this.textAlign === "center" ? "middle" : "start"}">${text}</text>`);
+    }
+    svg() {
+      return `<svg xmlns="${SVG}" viewBox="0 0 ${this.width} ${this.height}" width="${this.width}" height="${this.height}">\n${this.out.join("\n")}\n</svg>\n`;
     }
   }
 
@@ -818,12 +886,16 @@
       if (!details) continue;
       details.hidden = false;
       details.addEventListener("toggle", () => { if (details.open) open(article); });
+      const card = article.querySelector("details.card");
+      if (card) card.addEventListener("toggle", () => { if (card.open) details.open = true; }, { once: true });
     }
     const named = articles.find((article) => article.dataset.scene === wish.get("scene"));
-    const first = named || articles.find((article) => article.querySelector("details.motion"));
-    if (!first) return;
+    const first = [named, ...articles].find((article) => article && article.querySelector("details.motion"));
+    if (!first) { document.documentElement.dataset.ready = "yes"; return; }
     const details = first.querySelector("details.motion");
     if (!details) return;
+    const card = first.querySelector("details.card");
+    if (card) card.open = true;
     details.open = true;
     const viewer = await open(first);
     if (viewer && named) {

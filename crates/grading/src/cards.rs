@@ -1,0 +1,89 @@
+//! Cards: what a report shows of a wrong trace beyond its result. They are drawn while the trace is at hand and kept under the
+//! digest of what they say, so that the journal's result names them and the trace itself need not be kept.
+use super::{config::Hints, execute::SceneTask, grade::SceneResult};
+use fosssim_evidence::Ruling;
+use fosssim_judge::{Outcome, Rules};
+use std::{
+    fs,
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+/// Deflating harder gains little: most of a card is packed already.
+const LEVEL: i32 = 3;
+
+/// So many bytes of a card are read at most; what is larger is none of ours.
+const LARGEST: u64 = 64 << 20;
+
+/// A judged trace that is at hand.
+#[derive(Debug, Clone, Copy)]
+pub struct Judged<'a> {
+    /// The scene.
+    pub task: &'a SceneTask,
+    /// The result, cut to what the hints let through.
+    pub result: &'a SceneResult,
+    /// What judging yielded; it tells more than hints may let through.
+    pub outcome: &'a Outcome,
+    /// What the rule books say of each step.
+    pub rulings: &'a [Ruling],
+    /// The trace, or its beginning.
+    pub trace: &'a [u8],
+    /// Whether the trace goes on beyond that.
+    pub is_cut: bool,
+    /// The rule books that were asked.
+    pub rules: Rules,
+    /// How much may be told.
+    pub hints: Hints,
+}
+
+/// Draws the card of a trace, or nothing where there is nothing to show.
+pub type Draw<'a> = dyn Fn(&Judged<'_>) -> Option<String> + Sync + 'a;
+
+/// Where cards are kept, and who draws them.
+#[derive(Clone, Copy)]
+pub struct Cards<'a> {
+    /// The folder; made when it is needed.
+    pub folder: &'a Path,
+    /// Draws.
+    pub draw: &'a Draw<'a>,
+}
+
+impl Cards<'_> {
+    /// Draws a card and keeps it; its name, if there is one.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub(super) fn keep(&self, judged: &Judged<'_>) -> io::Result<Option<String>> {
+        let Some(card) = (self.draw)(judged) else { return Ok(None) };
+        let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
+        let path = file(self.folder, &name);
+        if !path.exists() {
+            fs::create_dir_all(self.folder)?;
+            // By rename: another job may draw the same card now.
+            let mut part = tempfile::Builder::new().prefix(".card-").tempfile_in(self.folder)?;
+            part.write_all(&zstd::encode_all(card.as_bytes(), LEVEL)?)?;
+            part.persist(&path).map_err(|error| error.error)?;
+        }
+        Ok(Some(name))
+    }
+
+    /// Whether the card of an earlier result is missing.
+    pub(super) fn lack(&self, result: &SceneResult) -> bool {
+        result.card.as_ref().is_some_and(|name| !file(self.folder, name).is_file())
+    }
+}
+
+/// Reads a card that has been kept in a folder.
+#[must_use]
+pub fn read(folder: &Path, name: &str) -> Option<String> {
+    let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let packed = is_name.then(|| fs::File::open(file(folder, name)).ok()).flatten()?;
+    let mut text = String::new();
+    io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, LARGEST), &mut text).ok()?;
+    // Whoever changed it meanwhile changes nobody's report.
+    (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
+}
+
+fn file(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.zst"))
+}

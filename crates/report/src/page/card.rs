@@ -1,0 +1,82 @@
+//! The card of a scene: what is drawn of a wrong trace while it is at hand, for pages that are put together later.
+use super::{Case, data};
+use crate::check::plots;
+use fosssim_grading::config::Hints;
+use serde::{Deserialize, Serialize};
+
+/// What stands for the key of a card until its page is known. No text holds it: text has no control characters.
+const KEY: &str = "\u{1}";
+
+/// Columns of a small terminal.
+const TERMINAL: usize = 78;
+
+/// A card.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Card {
+    /// What is there without script.
+    html: String,
+    /// The motions and what the viewer tells of them; empty where there is no motion.
+    data: String,
+    /// The same for a terminal: a small plot.
+    plot: String,
+}
+
+impl Card {
+    /// The card of a case below a heading of this depth; nothing where hints are to say nothing.
+    #[must_use]
+    pub fn of(case: &Case<'_>, depth: usize) -> Option<Self> {
+        let data = || case.evidence.map(|evidence| data::blocks(case, evidence, KEY)).unwrap_or_default();
+        (case.hints > Hints::None).then(|| Self { html: case.trace_part(KEY, depth), data: data(), plot: plot(case) })
+    }
+
+    /// A card that only says something.
+    #[must_use]
+    pub fn saying(words: &str) -> Self {
+        Self { html: format!("<p>{}</p>\n", super::markup::text(words)), data: String::new(), plot: String::new() }
+    }
+
+    /// The card with a remark above it.
+    #[must_use]
+    pub fn noting(self, words: &str) -> Self {
+        Self { html: Self::saying(words).html + &self.html, ..self }
+    }
+
+    /// The card as it is kept.
+    #[must_use]
+    pub fn kept(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// A card that has been kept.
+    #[must_use]
+    pub fn from_kept(text: &str) -> Option<Self> {
+        serde_json::from_str(text).ok()
+    }
+
+    /// A small plot for a terminal; empty where there is none.
+    #[must_use]
+    pub fn plot(&self) -> &str {
+        &self.plot
+    }
+
+    /// The bytes of what is there without script, and of the motions.
+    pub(super) fn sizes(&self) -> (usize, usize) {
+        (self.html.len(), self.data.len())
+    }
+
+    /// What is there without script, under a key that no other card of the page has.
+    pub(super) fn html(&self, key: &str) -> String {
+        self.html.replace(KEY, key)
+    }
+
+    /// The motions.
+    pub(super) fn data(&self, key: &str) -> String {
+        self.data.replace(KEY, key)
+    }
+}
+
+/// What is kept for terminals: what is right is shown with full hints only.
+fn plot(case: &Case<'_>) -> String {
+    let evidence = case.evidence.filter(|_| case.hints == Hints::Full);
+    evidence.map(|evidence| plots(evidence, TERMINAL)).unwrap_or_default()
+}

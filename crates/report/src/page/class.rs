@@ -1,0 +1,356 @@
+//! The page of a class: who got what, which scenes few have right, and who makes the same mistake.
+use super::{document, markup::text};
+use crate::{
+    grade::{class_head, hardest, likely_mistakes, one_line, points, reached},
+    number::counted,
+};
+use fosssim_grading::{Grade, SceneGrade, Verdict};
+use std::{collections::BTreeMap, fmt::Write};
+
+const SCRIPT: &str = include_str!("class.js");
+
+/// Bars of the histogram.
+const BARS: usize = 10;
+
+/// So many characters of a likely mistake or of a summary stand in a table.
+const SHORT: usize = 160;
+
+/// So many names of a cluster are listed.
+const NAMES: usize = 400;
+
+/// The grades of a class.
+#[derive(Clone, Copy)]
+pub struct Class<'a> {
+    /// The grades.
+    pub grades: &'a [Grade],
+    /// The address of a submission's page, seen from this one.
+    pub page: &'a dyn Fn(&Grade) -> String,
+}
+
+impl Class<'_> {
+    /// The file.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let suite = self.grades.first().map_or("", |grade| grade.suite.as_str());
+        let mut body =
+            format!("<h1>Class: {}</h1>\n<p>{}</p>\n", text(&one_line(suite)), text(&class_head(self.grades)));
+        body += &histogram(self.grades);
+        body += &self.table();
+        body += &self.clusters();
+        body += &scenes(self.grades);
+        body += &self.differing();
+        document(&format!("Class: {suite}"), &body, SCRIPT)
+    }
+
+    fn link(&self, grade: &Grade) -> String {
+        format!("<a href=\"{}\">{}</a>", text(&(self.page)(grade)), text(&one_line(&grade.submission)))
+    }
+
+    fn links(&self, members: &[usize]) -> String {
+        let shown: Vec<String> = members.iter().take(NAMES).map(|&number| self.link(&self.grades[number])).collect();
+        let more = members.len().saturating_sub(NAMES);
+        shown.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+    }
+
+    fn table(&self) -> String {
+        let groups: Vec<&str> =
+            self.grades.first().iter().flat_map(|grade| &grade.groups).map(|group| group.name.as_str()).collect();
+        let mut out = String::from(
+            "<h2>Submissions</h2>\n<p class=\"filter\" hidden><label>Only those that hold <input type=\"search\"></label> \
+             <output></output></p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Submissions\">\
+             <table class=\"sortable\"><thead><tr>",
+        );
+        let fixed = ["submission", "verdict", "points", "accepted", "likely mistakes, or the reason"];
+        for name in fixed.into_iter().chain(groups.iter().copied()) {
+            let _ = write!(out, "<th scope=\"col\">{}</th>", text(&one_line(name)));
+        }
+        out += "<th scope=\"col\">rule books differ</th></tr></thead><tbody>\n";
+        let number = |value: Option<f64>, words: &str| {
+            let sort = value.map_or_else(String::new, |value| format!("{value}"));
+            format!("<td class=\"num\" data-sort=\"{sort}\">{words}</td>")
+        };
+        for grade in self.grades {
+            let look = if grade.verdict.is_accepted() { "good" } else { "bad" };
+            let _ = write!(
+                out,
+                "<tr><th scope=\"row\">{}</th><td class=\"{look}\">{}</td>",
+                self.link(grade),
+                grade.verdict.words()
+            );
+            out += &number(grade.points, &format!("{} of {}", reached(grade.points), points(grade.max_points)));
+            let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
+            let _ = write!(out, "<td class=\"num\" data-sort=\"{accepted}\">{accepted} of {all}</td>");
+            let likely: Vec<String> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake.what).collect();
+            let words = if likely.is_empty() { grade.reason().unwrap_or_default() } else { likely.join(" ") };
+            let _ = write!(out, "<td class=\"words\">{}</td>", text(&short(&words)));
+            for name in &groups {
+                let group = grade.groups.iter().find(|group| group.name == *name);
+                out += &number(
+                    group.and_then(|group| group.points),
+                    &group.map_or("-".to_owned(), |group| reached(group.points)),
+                );
+            }
+            let differing = grade.differing();
+            let _ = writeln!(out, "<td class=\"num\" data-sort=\"{differing}\">{differing}</td></tr>");
+        }
+        out + "</tbody></table></div>\n"
+    }
+
+    fn clusters(&self) -> String {
+        let mut out = String::from("<h2>The same mistake</h2>\n");
+        let (named, rest) = by_mistake(self.grades);
+        let signed = by_signature(self.grades, &rest);
+        if named.is_empty() && signed.is_empty() {
+            return out + "<p>No two submissions make the same mistake.</p>\n";
+        }
+        for (what, members) in &named {
+            let _ = writeln!(
+                out,
+                "<section class=\"cluster\"><h3>{}</h3>\n<p>{}: {}</p></section>",
+                text(&one_line(what)),
+                counted(members.len() as u64, "submission"),
+                self.links(members)
+            );
+        }
+        for members in &signed {
+            let grade = &self.grades[members[0]];
+            let wrong: Vec<&SceneGrade> = grade.scenes().filter(|scene| is_failed(scene)).collect();
+            let first = wrong.first().map_or(String::new(), |scene| format!("{}: {}", scene.scene, scene.summary));
+            let _ = writeln!(
+                out,
+                "<section class=\"cluster\"><h3>No mistake is named, but {} in the same words</h3>\n<p>The first: {}</p>\n\
+                 <p>{}: {}</p></section>",
+                match wrong.len() {
+                    1 => "the same scene fails".to_owned(),
+                    count => format!("the same {count} scenes fail"),
+                },
+                text(&short(&one_line(&first))),
+                counted(members.len() as u64, "submission"),
+                self.links(members)
+            );
+        }
+        out
+    }
+
+    fn differing(&self) -> String {
+        let mut out = String::from("<h2>Where the rule books differ</h2>\n");
+        let differing: Vec<&Grade> = self.grades.iter().filter(|grade| grade.differing() > 0).collect();
+        if differing.is_empty() {
+            return out + "<p>Both rule books, as far as they were asked, agree on everything.</p>\n";
+        }
+        out += "<table class=\"sortable\"><thead><tr><th scope=\"col\">submission</th><th scope=\"col\">scenes</th>\
+                <th scope=\"col\">why, with the number of scenes</th></tr></thead><tbody>\n";
+        for grade in differing {
+            let mut causes: BTreeMap<String, (usize, bool)> = BTreeMap::new();
+            for cause in grade.scenes().filter_map(|scene| scene.differs) {
+                causes.entry(cause.to_string()).or_insert((0, cause.original_fails())).0 += 1;
+            }
+            let words: Vec<String> = causes
+                .into_iter()
+                .map(|(cause, (count, fails))| {
+                    let verdict = if fails { "the original fails them" } else { "the original passes them" };
+                    format!("{count}: {cause} ({verdict})")
+                })
+                .collect();
+            let _ = writeln!(
+                out,
+                "<tr><th scope=\"row\">{}</th><td class=\"num\" data-sort=\"{1}\">{1}</td><td>{2}</td></tr>",
+                self.link(grade),
+                grade.differing(),
+                text(&words.join("; "))
+            );
+        }
+        out + "</tbody></table>\n"
+    }
+}
+
+/// The beginning of a long text.
+fn short(words: &str) -> String {
+    let cut: String = words.chars().take(SHORT).collect();
+    if cut.len() < words.len() { cut + "..." } else { cut }
+}
+
+/// Whether a scene counts as failed: what was not run and what the grader failed on does not.
+fn is_failed(scene: &SceneGrade) -> bool {
+    !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
+}
+
+/// Likely mistakes that several submissions make, the most frequent first, and the numbers of the submissions that fail
+/// without any that is named.
+fn by_mistake(grades: &[Grade]) -> (Vec<(String, Vec<usize>)>, Vec<usize>) {
+    let mut found: BTreeMap<String, (String, Vec<usize>)> = BTreeMap::new();
+    let mut rest = Vec::new();
+    for (number, grade) in grades.iter().enumerate() {
+        let likely = likely_mistakes(grade);
+        if likely.is_empty() && grade.scenes().any(is_failed) {
+            rest.push(number);
+        }
+        for (mistake, _) in likely {
+            found.entry(mistake.key).or_insert_with(|| (mistake.what, Vec::new())).1.push(number);
+        }
+    }
+    let mut several: Vec<_> = found.into_values().filter(|(_, members)| members.len() > 1).collect();
+    several.sort_by_key(|(_, members)| std::cmp::Reverse(members.len()));
+    (several, rest)
+}
+
+/// Submissions that fail the same scenes in the same words, the largest cluster first.
+fn by_signature(grades: &[Grade], among: &[usize]) -> Vec<Vec<usize>> {
+    let mut found: BTreeMap<Vec<(&str, Verdict, &str)>, Vec<usize>> = BTreeMap::new();
+    for &number in among {
+        let failed = grades[number].scenes().filter(|scene| is_failed(scene));
+        let signature = failed.map(|scene| (scene.scene.as_str(), scene.verdict, scene.summary.as_str())).collect();
+        found.entry(signature).or_default().push(number);
+    }
+    let mut several: Vec<_> = found.into_values().filter(|members| members.len() > 1).collect();
+    several.sort_by_key(|members| std::cmp::Reverse(members.len()));
+    several
+}
+
+/// Scenes that not everybody has right.
+fn scenes(grades: &[Grade]) -> String {
+    let (scenes, whole) = hardest(grades);
+    let mut out = String::from("<h2>Scenes by failure rate</h2>\n");
+    if !scenes.is_empty() {
+        out += "<table class=\"sortable\"><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">failed</th>\
+                <th scope=\"col\">of</th><th scope=\"col\">rate</th></tr></thead><tbody>\n";
+        for (scene, share) in scenes {
+            let failed = share.run - share.accepted;
+            let percent = 100 * failed / share.run.max(1);
+            let _ = writeln!(
+                out,
+                "<tr><th scope=\"row\">{}</th><td class=\"num\" data-sort=\"{failed}\">{failed}</td>\
+                 <td class=\"num\" data-sort=\"{1}\">{1}</td><td data-sort=\"{percent}\"><meter min=\"0\" max=\"100\" \
+                 value=\"{percent}\" aria-label=\"failed\">{percent} %</meter> {percent} %</td></tr>",
+                text(&one_line(scene)),
+                share.run
+            );
+        }
+        out += "</tbody></table>\n";
+    }
+    match whole {
+        0 => out,
+        whole => out + &format!("<p>{} accepted for everybody.</p>\n", counted(whole as u64, "scene")),
+    }
+}
+
+/// How many submissions reach which share of the points.
+fn histogram(grades: &[Grade]) -> String {
+    let shares: Vec<f64> = grades
+        .iter()
+        .filter_map(|grade| Some(grade.points? / grade.max_points))
+        .filter(|share| share.is_finite())
+        .collect();
+    if shares.is_empty() {
+        return String::new();
+    }
+    let mut counts = [0_usize; BARS];
+    for share in shares {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "a bar"
+        )]
+        let bar = (share.clamp(0.0, 1.0) * BARS as f64) as usize;
+        counts[bar.min(BARS - 1)] += 1;
+    }
+    let most = counts.iter().copied().max().unwrap_or(1).max(1);
+    let names: Vec<String> = (0..BARS).map(|bar| format!("{} to {} %", 10 * bar, 10 * bar + 10)).collect();
+    let words: Vec<String> = counts.iter().zip(&names).map(|(count, name)| format!("{name}: {count}")).collect();
+    let title = "Points of the class";
+    let mut out = format!(
+        "<figure><svg class=\"fp\" viewBox=\"0 0 640 190\" width=\"640\" height=\"190\" role=\"img\" \
+         aria-label=\"{title}: {}\"><title>{title}</title>\n<text x=\"20\" y=\"16\">{title}, in percent of what can be reached</text>\n",
+        words.join(", ")
+    );
+    for (bar, count) in counts.into_iter().enumerate() {
+        let (left, height) = (20 + 61 * bar, 120 * count / most);
+        let top = 160 - height;
+        let _ = writeln!(
+            out,
+            "<rect class=\"f1\" x=\"{left}\" y=\"{top}\" width=\"52\" height=\"{height}\"/>\
+             <text x=\"{0}\" y=\"{1}\" text-anchor=\"middle\">{count}</text>\
+             <text class=\"ft\" x=\"{0}\" y=\"178\" text-anchor=\"middle\">{2}-{3}</text>",
+            left + 26,
+            top - 5,
+            10 * bar,
+            10 * bar + 10
+        );
+    }
+    out + "<line class=\"ax\" x1=\"14\" y1=\"160\" x2=\"632\" y2=\"160\"/></svg></figure>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grade::samples;
+    use fosssim_grading::{
+        GroupGrade, SceneResult,
+        config::{Credit, Visibility},
+        score::{self, Stakes},
+    };
+
+    fn grade(name: &str, fails: impl Fn(usize) -> Option<String>) -> Grade {
+        let stakes = Stakes { points: 20.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+        let groups: Vec<GroupGrade> = (0..5)
+            .map(|group| {
+                let scenes = (0..16).map(|number| {
+                    let scene = 16 * group + number;
+                    let (verdict, words) = match fails(scene) {
+                        Some(words) => (Verdict::WrongAnswer, words),
+                        None => (Verdict::Accepted, String::new()),
+                    };
+                    (SceneResult::without_run(&format!("Group/a-scene-of-number-{scene}"), 100, verdict, words), false)
+                });
+                score::group(&format!("Group {group}"), stakes, scenes.collect())
+            })
+            .collect();
+        Grade {
+            submission: name.to_owned(),
+            verdict: groups.iter().map(|group| group.verdict).max().expect("groups"),
+            points: groups.iter().map(|group| group.points).sum(),
+            max_points: 100.0,
+            groups,
+            ..samples::good()
+        }
+    }
+
+    fn page(grades: &[Grade]) -> String {
+        Class { grades, page: &|grade| format!("reports/{}.html", grade.submission) }.html()
+    }
+
+    #[test]
+    fn three_hundred_submissions_of_eighty_scenes_stay_small() {
+        let fails = |student: usize| {
+            move |scene: usize| {
+                let words = || format!("{} of 100 steps are wrong, first step {student}: wrong coefficient", scene + 1);
+                (scene.is_multiple_of(1 + student % 9)).then(words)
+            }
+        };
+        let grades: Vec<Grade> = (0..300).map(|student| grade(&format!("student-{student}"), fails(student))).collect();
+        let html = page(&grades);
+        assert!(html.len() < 1_000_000, "{}", html.len());
+        assert_eq!(html.matches("<tr><th scope=\"row\"><a href=").count(), 300);
+        assert!(html.contains("No two submissions make the same mistake."), "each fails in words of its own");
+    }
+
+    #[test]
+    fn who_fails_in_the_same_words_is_found_though_no_mistake_is_named() {
+        let crash = |scene: usize| (scene > 70).then(|| "the program ended by signal 11".to_owned());
+        let grades = [
+            grade("ada", |_| None),
+            grade("eve", crash),
+            grade("<b>kim", crash),
+            grade("bob", |_| Some("other".to_owned())),
+        ];
+        let html = page(&grades);
+        let cluster = html.split("class=\"cluster\"").nth(1).expect("one cluster");
+        let cluster = &cluster[..cluster.find("</section>").expect("its end")];
+        assert!(cluster.contains("the same 9 scenes fail") && cluster.contains("2 submissions"), "{cluster}");
+        assert!(cluster.contains("eve") && cluster.contains("&lt;b&gt;kim") && !cluster.contains("bob"), "{cluster}");
+        assert!(html.contains("<td class=\"num\" data-sort=\"3\">3</td>"), "three fail the last scenes");
+        let bars = html.split("aria-label=\"Points of the class: ").nth(1).expect("a histogram");
+        assert!(bars.starts_with("0 to 10 %: 1, ") && bars.contains("90 to 100 %: 1\""), "{bars:.300}");
+    }
+}

@@ -1,0 +1,74 @@
+//! The page of `explain`: what is likely wrong with a program, trace by trace and all together.
+use super::{Card, SCRIPT, case::mistakes, document, graded::key, markup::text};
+use crate::diagnosis::{Case, Diagnosis};
+use std::fmt::Write;
+
+/// One trace with what was drawn of it.
+#[derive(Debug, Clone, Copy)]
+pub struct ExplainedCase<'a> {
+    /// What is to be said.
+    pub case: &'a Case,
+    /// What was drawn.
+    pub card: Option<&'a Card>,
+}
+
+/// A page about some traces of one program.
+#[derive(Debug, Clone)]
+pub struct Explained<'a> {
+    /// All that is to be said.
+    pub diagnosis: &'a Diagnosis,
+    /// The card of each of its traces, in their order.
+    pub cards: &'a [Option<Card>],
+}
+
+impl Explained<'_> {
+    /// The file.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let Diagnosis { cases, common } = self.diagnosis;
+        let wrong = cases.iter().filter(|case| !case.accepted).count();
+        let look = if wrong == 0 { "good" } else { "bad" };
+        let title = match (&cases[..], wrong) {
+            ([case], 0) => format!("{}: nothing to explain", case.scene),
+            ([case], _) => format!("{}: what is wrong", case.scene),
+            (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
+        };
+        let mut body = format!("<h1><span class=\"{look}\">{}</span></h1>\n", text(&title));
+        for one in common {
+            let explained = cases.iter().filter(|case| one.is_named_in(&case.explanations)).count();
+            let _ = writeln!(body, "<h2>What explains {explained} of {wrong} wrong traces</h2>");
+            body += &mistakes(std::slice::from_ref(one));
+        }
+        let mut open = true;
+        for (number, (case, card)) in cases.iter().zip(self.cards.iter().map(Option::as_ref)).enumerate() {
+            body += &article(&ExplainedCase { case, card }, number, open && !case.accepted);
+            open &= case.accepted;
+        }
+        document(&title, &body, SCRIPT)
+    }
+}
+
+fn article(one: &ExplainedCase<'_>, number: usize, open: bool) -> String {
+    let Case { scene, trace, accepted, note, first, explanations } = one.case;
+    let key = key(&format!("{number} {scene}"));
+    let (look, word) = if *accepted { ("good", "right") } else { ("bad", "wrong") };
+    let mut out = format!(
+        "<article class=\"case\" data-case=\"{key}\" data-scene=\"{0}\" aria-labelledby=\"title-{key}\">\n\
+         <details class=\"card\"{1}><summary><h2 id=\"title-{key}\"><span class=\"{look}\">{word}</span> {0}</h2></summary>\n\
+         <p class=\"names\">{2}</p>\n",
+        text(scene),
+        if open { " open" } else { "" },
+        text(trace),
+    );
+    for line in note.iter().chain(first.iter().map(|(line, _)| line)) {
+        let _ = writeln!(out, "<p>{}</p>", text(line));
+    }
+    if !*accepted && explanations.is_empty() {
+        out += "<p>No known mistake explains it.</p>\n";
+    }
+    out += &mistakes(explanations);
+    out += &one.card.map(|card| card.html(&key)).unwrap_or_default();
+    out += "</details>\n";
+    out += &one.card.map(|card| card.data(&key)).unwrap_or_default();
+    out + "</article>\n"
+}

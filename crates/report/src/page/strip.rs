@@ -1,0 +1,74 @@
+//! All steps in a row: right, wrong by itself, wrong as a consequence. Heights tell them apart without colour.
+use fosssim_evidence::{Class, Step};
+use std::fmt::Write;
+
+/// The strip's size.
+const WIDTH: f64 = 960.0;
+const HEIGHT: f64 = 26.0;
+/// More steps than this share columns, which show the worst of theirs.
+const COLUMNS: usize = 480;
+
+/// The strip, with its counts in words.
+pub(super) fn html(steps: &[Step]) -> String {
+    let of = |class: Class| steps.iter().filter(|step| step.class == class).count();
+    let words = format!(
+        "{} right, {} wrong by themselves, {} right but starting from where a wrong step has led{}",
+        of(Class::Right),
+        of(Class::Wrong),
+        of(Class::Inherited),
+        match of(Class::Unknown) {
+            0 => String::new(),
+            unknown => format!(", {unknown} not judged"),
+        }
+    );
+    let mut out = format!(
+        "<p>{words}.</p>\n<svg class=\"steps\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"All steps: {words}\" \
+         preserveAspectRatio=\"none\">"
+    );
+    let columns = steps.len().min(COLUMNS);
+    let worst = |column: usize| {
+        let range = column * steps.len() / columns..(column + 1) * steps.len() / columns;
+        steps[range].iter().map(|step| step.class).max_by_key(|class| severity(*class)).unwrap_or(Class::Unknown)
+    };
+    let mut column = 0;
+    while column < columns {
+        let class = worst(column);
+        let end = (column + 1..columns).find(|&next| worst(next) != class).unwrap_or(columns);
+        let height = [3.0, 8.0, 14.0, 22.0][severity(class)];
+        #[expect(clippy::cast_precision_loss, reason = "some columns")]
+        let (left, width) = (WIDTH * column as f64 / columns as f64, WIDTH * (end - column) as f64 / columns as f64);
+        let top = HEIGHT - 2.0 - height;
+        let _ = write!(
+            out,
+            "<rect class=\"is-{}\" x=\"{left:.2}\" y=\"{top}\" width=\"{width:.2}\" height=\"{height}\"/>",
+            class.letter()
+        );
+        column = end;
+    }
+    out + "</svg>\n"
+}
+
+const fn severity(class: Class) -> usize {
+    match class {
+        Class::Unknown => 0,
+        Class::Right => 1,
+        Class::Inherited => 2,
+        Class::Wrong => 3,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_strip_shows_every_wrong_step_however_long_it_is() {
+        let step = |class| Step { class, position: 0.0, velocity: 0.0, expected_passes: 1, actual_passes: Some(1) };
+        let mut steps = vec![step(Class::Right); 100_000];
+        steps[77_777] = step(Class::Wrong);
+        let html = html(&steps);
+        assert!(html.len() < 1500 && html.matches("is-w").count() == 1, "{html}");
+        assert!(html.contains("99999 right, 1 wrong by themselves, 0 right but"), "{html}");
+        assert!(super::html(&[]).contains("0 right"));
+    }
+}

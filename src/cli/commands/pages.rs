@@ -1,0 +1,173 @@
+//! What is drawn of judged traces, and the HTML pages that are put together of it.
+use super::grade::file_name;
+use crate::{
+    cli::output,
+    diagnose::Explanation,
+    evidence::{self, Evidence, Focus, Track},
+    judge::{Outcome, Rules},
+    report::{
+        check::{Check, Shown, WrongSteps},
+        page::{Card, Case, Class, Graded, WhatIf},
+    },
+    scene::Scene,
+    student,
+    suite::{
+        Grade, SceneGrade,
+        cards::{self, Judged},
+        config::Hints,
+        guarded,
+    },
+};
+use anyhow::{Context, Result};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// So many numbers of one motion are kept of a graded scene. The largest course scene has 70,444.
+const BUDGET: usize = 1 << 17;
+
+/// The cards of a grading, and where the pages go.
+pub(super) struct Pages {
+    cards: PathBuf,
+    /// The folder for pages, when there is one.
+    folder: Option<PathBuf>,
+    _temporary: Option<tempfile::TempDir>,
+}
+
+impl Pages {
+    /// Pages in the folder for results; without one, cards that live as long as the grading.
+    pub(super) fn new(folder: Option<&Path>) -> Result<Self> {
+        let temporary = match folder {
+            Some(_) => None,
+            None => Some(tempfile::Builder::new().prefix("fosssim-cards-").tempdir().context("no temporary folder")?),
+        };
+        let cards = match (folder, &temporary) {
+            (Some(folder), _) => folder.join("cards"),
+            (None, Some(temporary)) => temporary.path().to_owned(),
+            (None, None) => PathBuf::new(),
+        };
+        Ok(Self { cards, folder: folder.map(Path::to_owned), _temporary: temporary })
+    }
+
+    /// Where cards are kept.
+    pub(super) fn cards(&self) -> &Path {
+        &self.cards
+    }
+
+    /// Forgets the cards of earlier gradings.
+    pub(super) fn forget(&self) {
+        let is_card = |path: &Path| path.extension().is_some_and(|extension| extension == "zst");
+        for entry in fs::read_dir(&self.cards).into_iter().flatten().flatten() {
+            if is_card(&entry.path()) {
+                // What stays behind costs room and nothing else.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
+
+    /// The card of a scene.
+    pub(super) fn card(&self, scene: &SceneGrade) -> Option<Card> {
+        Card::from_kept(&cards::read(&self.cards, scene.card.as_deref()?)?)
+    }
+
+    /// The page of one submission.
+    pub(super) fn of_one(&self, grade: &Grade, class: Option<&str>) -> String {
+        Graded { grade, card: &|scene| self.card(scene), class }.html()
+    }
+
+    /// Writes the pages into the folder for results; the one to begin with.
+    pub(super) fn write(&self, grades: &[Grade]) -> Result<Option<PathBuf>> {
+        let Some(folder) = &self.folder else { return Ok(None) };
+        if let [grade] = grades {
+            let path = folder.join("report.html");
+            output::write(&path, &[], self.of_one(grade, None).as_bytes())?;
+            return Ok(Some(path));
+        }
+        let reports = folder.join("reports");
+        fs::create_dir_all(&reports).with_context(|| format!("cannot make {}", reports.display()))?;
+        for grade in grades {
+            let path = reports.join(format!("{}.html", file_name(&grade.submission)));
+            output::write(&path, &[], self.of_one(grade, Some("../index.html")).as_bytes())?;
+        }
+        // Names of files hold nothing that an address would have to write otherwise, but blanks.
+        let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
+        let index = folder.join("index.html");
+        output::write(&index, &[], Class { grades, page: &page }.html().as_bytes())?;
+        Ok(Some(index))
+    }
+}
+
+/// Draws the card of a graded scene. `names` are those under which whoever reads the page finds scene and trace.
+pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>)) -> Option<String> {
+    if judged.hints == Hints::None {
+        return None;
+    }
+    // A picture that can't be made costs nobody's points.
+    let card = guarded(|| {
+        card(&Source {
+            scene: &judged.task.scene,
+            trace: judged.trace,
+            outcome: judged.outcome,
+            rulings: judged.rulings,
+            explanations: &judged.result.explanations,
+            rules: judged.rules,
+            hints: judged.hints,
+            names,
+            depth: 3,
+        })
+    });
+    let card = card.unwrap_or_else(|fault| {
+        Some(Card::saying(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
+    });
+    let cut = "The trace is longer than what the grader keeps of it: the pictures end where that ends.";
+    card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.kept())
+}
+
+/// A judged trace.
+pub(super) struct Source<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) trace: &'a [u8],
+    pub(super) outcome: &'a Outcome,
+    pub(super) rulings: &'a [evidence::Ruling],
+    pub(super) explanations: &'a [Explanation],
+    pub(super) rules: Rules,
+    pub(super) hints: Hints,
+    pub(super) names: (&'a str, Option<&'a str>),
+    /// The depth of the heading above.
+    pub(super) depth: usize,
+}
+
+/// The card of a judged trace.
+pub(super) fn card(source: &Source<'_>) -> Option<Card> {
+    let Source { scene, trace, outcome, rulings, explanations, rules, hints, names, depth } = *source;
+    let evidence = evidence::gather(scene, trace, rulings, outcome.fair.is_some(), &focus(outcome), BUDGET);
+    let what_if = match (hints, explanations.first()) {
+        (Hints::Full, Some(first)) => what_if(scene, first, trace, &evidence),
+        _ => None,
+    };
+    let steps = WrongSteps::new(Shown::None);
+    let (name, trace) = (names.0, names.1.unwrap_or_default());
+    let check = Check { scene: name, trace, outcome, explanations, rules, steps: &steps, audit: false };
+    let has_trace = names.1.is_some();
+    let case = Case { check, scene, evidence: Some(&evidence), what_if: what_if.as_ref(), hints, has_trace };
+    Card::of(&case, depth)
+}
+
+/// What a viewer is to look at closely: what both books found, the official one's first.
+pub(super) fn focus(outcome: &Outcome) -> Vec<Focus> {
+    let fair = outcome.fair.iter().flat_map(|fair| fair.first_divergence.iter().chain(&fair.examples));
+    fair.chain(&outcome.first_divergence).chain(&outcome.examples).map(Focus::from).collect()
+}
+
+/// The run of the reference with the mistake that is named, beside the trace.
+pub(super) fn what_if(scene: &Scene, named: &Explanation, trace: &[u8], evidence: &Evidence) -> Option<WhatIf> {
+    // What is not shown as a whole is not made as a whole either.
+    if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
+        return None;
+    }
+    let row = student::find(&named.key)?;
+    let run = student::trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
+    let track = Track::read(&run[..], evidence.layout, evidence.window);
+    Some(WhatIf { id: named.key.clone(), sentence: named.what.clone(), track, equal: run == trace })
+}

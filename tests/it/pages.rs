@@ -1,0 +1,106 @@
+//! HTML pages as a teacher and a student get them.
+use crate::{grading, workspace::Workspace};
+
+fn text(workspace: &Workspace, file: &str) -> String {
+    String::from_utf8(workspace.read(file)).expect("text")
+}
+
+/// What is on a page besides the style sheet and the script, which are the same on all.
+fn body(page: &str) -> &str {
+    let body = page.split_once("</style>").expect("a style sheet").1;
+    body.rsplit_once("<script>").map_or(body, |(body, _)| body)
+}
+
+#[test]
+fn a_class_has_a_page_each_and_an_index_and_nothing_is_run_for_them_again() {
+    let Some(workspace) = grading::workspace() else { return };
+    let mut words = grading::submit(&workspace, &["", "pe-square-no-eh", "response-halved"]);
+    words.splice(0..0, ["grade", "--suite", "suite.toml", "--output", "class"].map(str::to_owned));
+    let first = workspace.run(&words);
+    assert_eq!(first.code, Some(1), "{}", first.shown());
+    assert!(first.err().contains("to look at: class/index.html\n"), "{}", first.shown());
+    let index = text(&workspace, "class/index.html");
+    let links: Vec<&str> = index
+        .split("<th scope=\"row\"><a href=\"")
+        .skip(1)
+        .map(|rest| &rest[..rest.find('"').expect("an end")])
+        .collect();
+    assert_eq!(links.len(), 3, "{links:?}");
+    for link in &links {
+        assert!(text(&workspace, &format!("class/{link}")).contains("<a href=\"../index.html\">The class</a>"));
+    }
+    let wrong = text(&workspace, "class/reports/fosssim-sample.pe-square-no-eh.html");
+    assert!(body(&wrong).contains("Likely mistake") && body(&wrong).contains("class=\"motion\""), "no motion");
+    assert!(body(&wrong).contains("id=\"reference-") && body(&wrong).contains("Coefficients"), "no polynomials");
+    let right = text(&workspace, "class/reports/fosssim-sample.html");
+    assert!(!body(&right).contains("class=\"motion\"") && body(&right).contains("scenes accepted</summary>"));
+    // All is there: nothing is run again, and the pages are the same, byte for byte.
+    let again = workspace.run(&words);
+    let taken = again.err().lines().find(|line| line.contains("taken over")).expect("a line").to_owned();
+    let numbers: Vec<&str> = taken.split(' ').filter(|word| word.parse::<u32>().is_ok()).collect();
+    assert_eq!(numbers.first(), numbers.get(1), "{taken}");
+    assert_eq!(text(&workspace, "class/reports/fosssim-sample.pe-square-no-eh.html"), wrong);
+    // Without its card a wrong scene is run again.
+    std::fs::remove_dir_all(workspace.path("class/cards")).expect("cards");
+    workspace.run(&words);
+    assert_eq!(text(&workspace, "class/reports/fosssim-sample.pe-square-no-eh.html"), wrong);
+}
+
+/// Each level of hints, through the whole program.
+#[test]
+fn a_page_tells_no_more_than_the_hints() {
+    let Some(workspace) = grading::workspace() else { return };
+    let submission = grading::submit(&workspace, &["pe-square-no-eh"]).remove(0);
+    let page = |hints: &str| {
+        let file = format!("--format=html={hints}.html");
+        let run = workspace.run(["grade", &submission, "--suite", "suite.toml", "--hints", hints, &file, "--quiet"]);
+        assert_eq!(run.code, Some(1), "{}", run.shown());
+        text(&workspace, &format!("{hints}.html"))
+    };
+    for (hints, has) in [
+        ("none", [false; 4]),
+        ("where", [true, false, false, false]),
+        ("what", [true, true, false, false]),
+        ("full", [true; 4]),
+    ] {
+        let page = page(hints);
+        let body = body(&page);
+        let found = [
+            body.contains("first divergence: step") && body.contains("id=\"submission-"),
+            body.contains("likely mistake: "),
+            body.contains("id=\"reference-") || body.contains("Coefficients") || body.contains("data-plot"),
+            body.contains("  expected ") || body.contains("Proof: "),
+        ];
+        assert_eq!(found, has, "{hints}");
+        assert!(page.len() < 3_000_000, "{}", page.len());
+    }
+    assert!(
+        !workspace.exists("cards") && !workspace.exists("fosssim-grades"),
+        "a page alone leaves nothing else behind"
+    );
+}
+
+#[test]
+fn explain_has_a_page_too() {
+    let workspace = Workspace::new();
+    let trace = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/traces/flawed.bin");
+    let scene = "asset:ContinuousTimeTests/spinning-edge-sweeps-balls";
+    let explain = |hints: &str| {
+        let run = workspace.run([
+            "explain",
+            scene,
+            trace.to_str().expect("a path"),
+            "--format=html",
+            "--output=page.html",
+            "--hints",
+            hints,
+        ]);
+        assert_eq!(run.code, Some(1), "{}", run.shown());
+        text(&workspace, "page.html")
+    };
+    let full = explain("full");
+    assert!(body(&full).contains("likely mistake") && body(&full).contains("id=\"reference-"), "{}", full.len());
+    let what = explain("what");
+    assert!(body(&what).contains("likely mistake") && !body(&what).contains("id=\"reference-"), "{}", what.len());
+    assert!(!body(&what).contains("Coefficients") && !body(&what).contains("data-plot"));
+}
