@@ -49,7 +49,7 @@ impl Default for Settings {
             forms: vec!["program".to_owned()],
             program: "FOSSSim".to_owned(),
             seconds: 600,
-            max_bytes: 64 << 20,
+            max_bytes: 128 << 20,
             attempts: 0,
             per_hour: 20,
             due_at: None,

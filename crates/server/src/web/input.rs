@@ -1,11 +1,10 @@
 //! Reading requests, with answers that say what is wrong.
 use crate::{access::House, problem::Problem};
 use axum::{
-    body::Bytes,
     extract::{FromRequest, FromRequestParts, Path, Query, Request},
-    http::{HeaderMap, StatusCode, header, request::Parts},
-    response::IntoResponse,
+    http::{HeaderMap, header, request::Parts},
 };
+use futures_util::StreamExt;
 use serde::de::DeserializeOwned;
 
 /// A body in JSON.
@@ -25,12 +24,19 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
     value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted))
 }
 
-async fn bytes(request: Request, house: &House) -> Result<Bytes, Problem> {
-    let received = tokio::time::timeout(house.patience(), Bytes::from_request(request, house)).await;
-    received.map_err(|_| Problem::too_slow())?.map_err(|error| match error.into_response().status() {
-        StatusCode::PAYLOAD_TOO_LARGE => Problem::too_large(super::BODY as u64),
-        _ => Problem::invalid("the request broke off"),
-    })
+async fn bytes(request: Request, house: &House) -> Result<Vec<u8>, Problem> {
+    let reading = async {
+        let mut stream = request.into_body().into_data_stream();
+        let mut bytes = Vec::new();
+        while let Some(chunk) = stream.next().await {
+            bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request broke off"))?);
+            if bytes.len() > super::BODY {
+                return Err(Problem::too_large(super::BODY as u64));
+            }
+        }
+        Ok(bytes)
+    };
+    tokio::time::timeout(house.patience(), reading).await.map_err(|_| Problem::too_slow())?
 }
 
 impl<T: DeserializeOwned> FromRequest<House> for Body<T> {

@@ -49,7 +49,8 @@ pub fn router(house: House) -> Router {
         .merge(api)
         .merge(pages)
         .fallback(async || Problem::not_found("page"))
-        .layer(DefaultBodyLimit::max(BODY))
+        // Whoever reads a body counts it: what is allowed differs.
+        .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(house.clone(), guard::same_site))
         .layer(middleware::from_fn_with_state(house.clone(), guard::headers))
         .layer(middleware::from_fn(guard::log))

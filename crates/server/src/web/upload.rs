@@ -15,6 +15,10 @@ use std::{
     fmt::Display,
     io::Read,
     path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
     time::{Duration, Instant},
 };
 use tempfile::TempPath;
@@ -22,6 +26,24 @@ use tokio::io::AsyncWriteExt;
 
 /// The longest that an upload may take, in pauses that a body may make.
 const PAUSES: u32 = 20;
+
+/// What a form may hold beside its file: boundaries, names, short fields.
+const BESIDE: u64 = 256 * 1024;
+
+/// Counts what came of a form and was not taken by anybody: that lies in memory, and a form may be nothing else.
+#[derive(Clone, Default)]
+struct Untaken(Arc<AtomicU64>);
+
+impl Untaken {
+    fn come(&self, bytes: usize) -> Result<(), &'static str> {
+        let untaken = self.0.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
+        if untaken > BESIDE { Err("the form has too much beside its file") } else { Ok(()) }
+    }
+
+    fn take(&self, bytes: usize) {
+        self.0.fetch_sub(bytes as u64, Ordering::Relaxed);
+    }
+}
 
 /// A file that came.
 pub(super) struct Received {
@@ -50,9 +72,17 @@ pub(super) async fn receive(house: &House, request: Request, most: u64) -> Resul
             return Err(Problem::too_large(most));
         }
         let body: Body = request.into_body();
-        let file = to_file(house, body.into_data_stream(), most, deadline).await?;
+        let file = to_file(house, body.into_data_stream(), most, deadline, None).await?;
         return Ok(Received { file, name: None, form: None, key: None });
     }
+    let untaken = Untaken::default();
+    let (parts, body) = request.into_parts();
+    let counting = untaken.clone();
+    let counted = body.into_data_stream().map(move |chunk| {
+        let chunk = chunk.map_err(|error| error.to_string())?;
+        counting.come(chunk.len()).map(|()| chunk).map_err(str::to_owned)
+    });
+    let request = Request::from_parts(parts, Body::from_stream(counted));
     let mut multipart =
         Multipart::from_request(request, house).await.map_err(|error| Problem::invalid(error.body_text()))?;
     let (mut file, mut name, mut form, mut key) = (None, None, None, None);
@@ -63,7 +93,7 @@ pub(super) async fn receive(house: &House, request: Request, most: u64) -> Resul
         match field.name() {
             Some("file") if file.is_none() => {
                 name = field.file_name().map(str::to_owned);
-                file = Some(to_file(house, field, most, deadline).await?);
+                file = Some(to_file(house, field, most, deadline, Some(&untaken)).await?);
             }
             Some("form") => form = Some(short_text(house, field).await?),
             Some("key") => key = Some(short_text(house, field).await?),
@@ -93,6 +123,7 @@ async fn to_file<E: Display>(
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
     most: u64,
     deadline: Instant,
+    untaken: Option<&Untaken>,
 ) -> Result<TempPath, Problem> {
     let (file, path) = tempfile::NamedTempFile::new_in(house.incoming())?.into_parts();
     let mut file = tokio::fs::File::from_std(file);
@@ -110,6 +141,9 @@ async fn to_file<E: Display>(
                 return Err(Problem::invalid("the upload broke off"));
             }
             Some(Ok(chunk)) => {
+                if let Some(untaken) = untaken {
+                    untaken.take(chunk.len());
+                }
                 size += chunk.len() as u64;
                 if size > most {
                     return Err(Problem::too_large(most));

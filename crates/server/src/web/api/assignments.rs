@@ -78,6 +78,15 @@ pub(super) async fn set_suite(
     Params((_, assignment)): Params<(String, String)>,
     request: Request,
 ) -> Result<Json<Assignment>, Problem> {
+    Ok(Json(receive_suite(&staff, &assignment, request).await?))
+}
+
+/// Receives an archive with a suite, and makes it the assignment's.
+pub(in crate::web) async fn receive_suite(
+    staff: &Staff,
+    assignment: &str,
+    request: Request,
+) -> Result<Assignment, Problem> {
     let received = upload::receive(staff.member().house(), request, SUITE).await?;
     let path = received.file.to_path_buf();
     let looked = tokio::task::spawn_blocking(move || archive::look_through(&path, Limits::USUAL)).await;
@@ -85,7 +94,7 @@ pub(super) async fn set_suite(
     if !files.iter().any(|file| file.as_os_str() == "suite.toml") {
         return Err(Problem::unusable("the archive has no suite.toml at its top"));
     }
-    Ok(Json(staff.set_suite(&assignment, &received.file).await?))
+    staff.set_suite(assignment, &received.file).await
 }
 
 /// How all students stand: which submission counts, and for what.

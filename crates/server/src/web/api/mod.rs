@@ -8,6 +8,7 @@ mod regrades;
 mod submissions;
 mod workers;
 
+pub(super) use assignments::receive_suite;
 pub use submissions::export_csv;
 pub(super) use submissions::{receive, report_response, upload_response};
 

@@ -1,6 +1,9 @@
 //! A course: its assignments, members, queue and audit log.
 use super::{
-    super::input::{Asked, Fields, Params},
+    super::{
+        api,
+        input::{Asked, Fields, Params},
+    },
     Frame, see, show, text,
 };
 use crate::{
@@ -8,7 +11,10 @@ use crate::{
     problem::Problem,
 };
 use askama::Template;
-use axum::response::{Html, Redirect};
+use axum::{
+    extract::Request,
+    response::{Html, Redirect},
+};
 use serde::Deserialize;
 
 #[derive(Template)]
@@ -161,4 +167,13 @@ pub(super) async fn set_settings(
     let assignment = staff.member().assignment(&assignment).await?;
     staff.set_assignment(&assignment.slug, form.title.trim(), form.visible.is_some(), &settings).await?;
     Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))
+}
+
+pub(super) async fn set_suite(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+    request: Request,
+) -> Result<Redirect, Problem> {
+    let assignment = api::receive_suite(&staff, &assignment, request).await?;
+    Ok(see(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
 }

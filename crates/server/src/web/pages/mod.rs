@@ -57,6 +57,7 @@ pages! {
     post "/c/{course}/a/{assignment}" => submission::submit,
     get "/c/{course}/a/{assignment}/settings" => course::settings,
     post "/c/{course}/a/{assignment}/settings" => course::set_settings,
+    post "/c/{course}/a/{assignment}/suite" => course::set_suite,
     get "/c/{course}/a/{assignment}/class" => grades::class,
     post "/c/{course}/a/{assignment}/regrades" => grades::begin,
     get "/c/{course}/a/{assignment}/regrades/{id}" => grades::show_regrade,

@@ -119,13 +119,16 @@ async fn an_upload_sent_twice_is_one_submission(fresh: Fresh) {
     assert_eq!(place(form("k1", "#!grade AC 5\n")), first);
     assert_ne!(place(form("k1", "#!grade AC 6\n")), first);
     assert_ne!(place(form("k2", "#!grade AC 5\n")), first);
+    // Programs are large, in forms, too.
+    let large = place(form("k3", &format!("#!grade AC 5\n{}", "#".repeat(5_000_000))));
+    assert_eq!(ada.get(&format!("{large}/upload")).expect(200).body.len(), 5_000_013);
     let all = ada.get(path).expect(200).json();
-    assert_eq!(all.as_array().expect("a list").len(), 5);
+    assert_eq!(all.as_array().expect("a list").len(), 6);
     assert_eq!(all[0]["file_name"], "FOSSSim");
     // Nobody grades here, so that places count up.
     let ahead: Vec<_> = [0, 1, 2]
         .map(|index| {
-            let id = &all[4 - index]["id"];
+            let id = &all[5 - index]["id"];
             ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json()["ahead"].clone()
         })
         .into();

@@ -144,6 +144,13 @@ fn bodies_that_are_too_large_or_too_slow_are_given_up() {
         stream.write_all(chunk.as_bytes()).expect("a chunk");
         stream.write_all(chunk.as_bytes()).expect("a chunk");
         assert_eq!(Answer::read(&mut stream).expect("an answer").status, 413);
+        // A form that is nothing but names, and one whose file is too large.
+        let form = [("Content-Type", "multipart/form-data; boundary=x")];
+        let head_only = format!("--x\r\nContent-Disposition: form-data; name=\"{}", "x".repeat(90_000 * 10));
+        ada.send("POST", SUBMISSIONS, &form, head_only.as_bytes()).expect(400);
+        let file = "--x\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a\"\r\n\r\n";
+        let too_large = format!("{file}{}\r\n--x--\r\n", "#".repeat(100_001));
+        ada.send("POST", SUBMISSIONS, &form, too_large.as_bytes()).expect(413);
         // JSON has its own limit.
         let long = format!(r#"{{"name": "{}"}}"#, "x".repeat(2 << 20));
         ada.post_json("/api/v1/tokens", &long).expect(413);

@@ -102,6 +102,7 @@ const ROUTES: &[(&str, &str, For)] = &[
     ("post", "/c/{course}/a/{assignment}", Members),
     ("get", "/c/{course}/a/{assignment}/settings", Staff),
     ("post", "/c/{course}/a/{assignment}/settings", Staff),
+    ("post", "/c/{course}/a/{assignment}/suite", Staff),
     ("get", "/c/{course}/a/{assignment}/class", Staff),
     ("post", "/c/{course}/a/{assignment}/regrades", Staff),
     ("get", "/c/{course}/a/{assignment}/regrades/{id}", Staff),

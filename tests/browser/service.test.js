@@ -1,0 +1,148 @@
+// The grading server as a student and a teacher see it: real processes, Debian's Chromium, the real grader.
+// FOSSSIM_BIN names the folder with fosssim-oracle, fosssim-server and fosssim-sample; CHROMIUM the browser.
+import { strict as assert } from "node:assert";
+import { spawn, spawnSync } from "node:child_process";
+import { copyFileSync, linkSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+import { createInterface } from "node:readline";
+import { after, before, test } from "node:test";
+import { chromium } from "playwright-core";
+
+const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
+const programs = process.env.FOSSSIM_BIN ?? join(root, "target/debug");
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+// Without a sandbox nothing is graded, and a machine without one says so.
+const sandbox = spawnSync(join(programs, "fosssim-oracle"), ["doctor"]).status === 0;
+let browser, folder, server, address, link;
+
+before(async () => {
+  // Beside the programs, so that links will do. The sample is not beside this grader, which would refuse a copy of it.
+  folder = mkdtempSync(join(programs, "service-"));
+  for (const name of ["fosssim-oracle", "fosssim-server"]) linkSync(join(programs, name), join(folder, name));
+  for (const name of ["upload", "suite"]) mkdirSync(join(folder, name));
+  copyFileSync(join(programs, "fosssim-sample"), join(folder, "upload/fosssim-sample.pp-contact-reversed"));
+  const suite = 'schema = 1\nname = "One"\nhints = "full"\n[[group]]\nname = "Contacts"\nscenes = ["asset:ContinuousTimeTests/head-on-equal*"]\npoints = 10\n';
+  writeFileSync(join(folder, "suite/suite.toml"), suite);
+  assert.equal(spawnSync("tar", ["-C", join(folder, "suite"), "-czf", join(folder, "suite.tar.gz"), "suite.toml"]).status, 0);
+  server = spawn(join(folder, "fosssim-oracle"), ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--workers", "1"], { stdio: ["ignore", "pipe", "inherit"] });
+  const lines = createInterface({ input: server.stdout })[Symbol.asyncIterator]();
+  address = (await lines.next()).value.split(" ").at(-1);
+  link = (await lines.next()).value.split(" ").at(-1);
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+});
+after(async () => {
+  await browser?.close();
+  if (server && server.exitCode === null) {
+    const ended = new Promise((done) => server.once("exit", done));
+    server.kill("SIGTERM");
+    assert.equal(await ended, 0);
+  }
+  rmSync(folder, { recursive: true, force: true });
+});
+
+// Somebody's browser: complains about whatever a page complains about, and about requests to others.
+async function person({ script = true } = {}) {
+  const context = await browser.newContext({ javaScriptEnabled: script, viewport: { width: 1200, height: 1000 } });
+  const page = await context.newPage();
+  page.setDefaultTimeout(120_000);
+  const complaints = [];
+  page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("request", (request) => request.url().startsWith(address) || /^(data|blob):/.test(request.url()) || complaints.push(`request ${request.url()}`));
+  return { page, complaints, close: () => context.close() };
+}
+
+async function signIn(page, by) {
+  await page.goto(by);
+  await page.getByRole("button", { name: "Sign in" }).click();
+  await page.getByRole("heading", { name: "Courses" }).waitFor();
+}
+
+// Everybody can use the page, in light and dark.
+async function accessible(page) {
+  for (const colorScheme of ["dark", "light"]) {
+    await page.emulateMedia({ colorScheme });
+    await page.evaluate(axe + ";0");
+    const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+    const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+    assert.deepEqual(serious.map(({ id, nodes }) => `${page.url()} ${id}: ${nodes.map((node) => node.html).slice(0, 3).join(" ")}`), []);
+  }
+}
+
+test("a course from the first link to a regrade", { skip: !sandbox && "no sandbox here" }, async () => {
+  const teacher = await person();
+  const { page } = teacher;
+  await page.goto(`${address}/sign-in`);
+  await accessible(page);
+  await signIn(page, link);
+  await page.goto(`${address}/admin`);
+  await accessible(page);
+  const course = page.locator("form[action='/admin/courses']");
+  await course.getByLabel("Name in addresses").fill("physics");
+  await course.getByLabel("Title").fill("Physics <b>of</b> spheres");
+  await course.getByRole("button").click();
+  await page.getByRole("heading", { name: "Physics <b>of</b> spheres" }).waitFor();
+  await page.getByLabel("Name in addresses").fill("m1");
+  await page.getByLabel("Title").fill("Milestone one");
+  await page.getByRole("button", { name: "Make the assignment" }).click();
+  await page.getByLabel("An archive (zip, tar.gz)").setInputFiles(join(folder, "suite.tar.gz"));
+  await page.getByRole("button", { name: "Upload the suite" }).click();
+  await page.getByLabel("Students see it").check();
+  await accessible(page);
+  await page.getByRole("button", { name: "Save" }).click();
+  await page.getByRole("heading", { name: "Milestone one" }).waitFor();
+  await page.goto(`${address}/c/physics/members`);
+  await page.getByLabel("Login").fill("ada");
+  await page.getByLabel("Name").fill("Ada");
+  await page.getByRole("button", { name: "Save" }).click();
+  const invitation = await page.locator("[role=status] code").innerText();
+  await accessible(page);
+
+  // A student hands in a program with a mistake, watches its state, and reads what is wrong with it.
+  const student = await person();
+  await signIn(student.page, invitation);
+  await student.page.getByRole("link", { name: "Physics <b>of</b> spheres" }).click();
+  await student.page.getByRole("link", { name: "Milestone one" }).click();
+  await accessible(student.page);
+  await student.page.locator("#file").setInputFiles(join(folder, "upload/fosssim-sample.pp-contact-reversed"));
+  await student.page.getByRole("button", { name: "Hand in" }).click();
+  // The page follows by itself: nothing is clicked or loaded again from here.
+  await student.page.locator("pre.report").waitFor();
+  assert.equal(await student.page.locator("h2").first().innerText(), "wrong answer");
+  const report = await student.page.locator("pre.report").innerText();
+  assert.match(report, /0 of 10 points/);
+  assert.match(report, /head-on-equal-masses/);
+  await accessible(student.page);
+
+  // The essentials work without JavaScript.
+  const plain = await person({ script: false });
+  await plain.page.goto(`${address}/c/physics`);
+  await plain.page.waitForURL(`${address}/sign-in`);
+  await plain.close();
+
+  // The teacher sees the class, and what a regrade would change before it does.
+  await page.goto(`${address}/c/physics/a/m1/class`);
+  await page.getByRole("link", { name: "Submission 1 of ada" }).waitFor();
+  await accessible(page);
+  await page.getByLabel("Reason, as students will read it").fill("Nobody should fail this");
+  await page.getByRole("button", { name: "Grade all again" }).click();
+  await page.getByText("0 still to be graded").waitFor();
+  assert.match(await page.locator("[role=status]").innerText(), /1 submissions?, 0 still .* 0 grades would change/);
+  await accessible(page);
+  await page.getByRole("button", { name: "Apply" }).click();
+  await page.getByText("applied, by admin").waitFor();
+  await student.page.reload();
+  await student.page.getByText("Nobody should fail this").waitFor();
+  for (const place of ["/c/physics/queue", "/c/physics/audit", "/account", "/c/physics"]) {
+    await page.goto(address + place);
+    await accessible(page);
+  }
+  assert.deepEqual(teacher.complaints, []);
+  assert.deepEqual(student.complaints, []);
+  await teacher.close();
+  await student.close();
+});
