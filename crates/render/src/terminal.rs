@@ -7,6 +7,9 @@ use fosssim_num::polynomial::evaluate;
 /// Columns of dots that a plot of a terminal this wide may have, half of which are characters.
 const WIDEST: usize = 72;
 
+/// So many columns of dots a step has where there is room.
+const BROADEST: usize = 4;
+
 /// Rows of characters.
 const ROWS: usize = 5;
 
@@ -65,7 +68,9 @@ pub fn residuals(values: &[f64], tolerance: f64, columns: usize) -> Option<Strin
     let shown = values.iter().copied().map(rank).filter(|value| *value > 0.0 && value.is_finite());
     let (least, most) = shown.fold((tolerance, tolerance), |(least, most), value| (least.min(value), most.max(value)));
     let (low, high) = decades(least, most);
-    let columns = columns.min(WIDEST).min(values.len().div_ceil(2)).max(1);
+    let columns = columns.min(WIDEST);
+    let broad = (2 * columns / values.len()).clamp(1, BROADEST);
+    let columns = columns.min((broad * values.len()).div_ceil(2)).max(1);
     let mut dots = Dots::new(columns, ROWS);
     let height = 4 * ROWS - 1;
     let place = |value: f64| {
@@ -82,9 +87,11 @@ pub fn residuals(values: &[f64], tolerance: f64, columns: usize) -> Option<Strin
         let up = (share.clamp(0.0, 1.0) * height as f64).round() as usize;
         height - up
     };
-    let across = (2 * columns).min(values.len());
+    let across = (2 * columns).min(broad * values.len());
     for x in 0..across {
-        let range = x * values.len() / across..(x + 1) * values.len() / across;
+        // A column stands for several steps, or for a part of one.
+        let first = x * values.len() / across;
+        let range = first..((x + 1) * values.len() / across).max(first + 1);
         let value = values[range].iter().copied().map(rank).fold(0.0, f64::max);
         if value > 0.0 {
             (place(value)..=height).for_each(|y| dots.set(x, y));
@@ -98,36 +105,41 @@ pub fn residuals(values: &[f64], tolerance: f64, columns: usize) -> Option<Strin
 }
 
 /// Polynomials on the step, each scaled to its largest modulus: the first one solid, a second one dotted, and the line of
-/// zero. `None` where there is nothing to draw.
+/// zero. The rows reach as far as the curves do, and to zero. `None` where there is nothing to draw.
 #[must_use]
 pub fn curves(lists: &[&[f64]], columns: usize) -> Option<String> {
     let columns = columns.clamp(4, WIDEST / 2);
     let mut dots = Dots::new(columns, ROWS);
     let height = 4 * ROWS - 1;
     let across = 2 * columns;
-    let mut drawn = false;
     #[expect(clippy::cast_precision_loss, reason = "some dots")]
     let time = |x: usize| x as f64 / (across - 1) as f64;
-    for (number, list) in lists.iter().enumerate() {
+    let scaled = |list: &&[f64]| {
         let values: Vec<f64> = (0..across).map(|x| evaluate(list, time(x))).collect();
         let most = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |most, value| most.max(value.abs()));
-        if !(most > 0.0) {
-            continue;
-        }
-        drawn = true;
+        (most > 0.0).then(|| values.into_iter().map(|value| value / most).collect::<Vec<f64>>())
+    };
+    let lines: Vec<Option<Vec<f64>>> = lists.iter().map(scaled).collect();
+    let finite = || lines.iter().flatten().flatten().copied().filter(|value| value.is_finite());
+    let (low, high) = finite().fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+    if high <= low {
+        return None;
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "some dots"
+    )]
+    let row = |value: f64| ((high - value) / (high - low) * height as f64).round() as usize;
+    for (number, values) in lines.iter().enumerate() {
         let mut before = None;
-        for (x, value) in values.into_iter().enumerate() {
+        for (x, &value) in values.iter().flatten().enumerate() {
             if !value.is_finite() {
                 before = None;
                 continue;
             }
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                clippy::cast_precision_loss,
-                reason = "some dots"
-            )]
-            let y = ((0.5 - 0.5 * value / most) * height as f64).round() as usize;
+            let y = row(value);
             // The line goes on without gaps; a second one is dotted.
             let from = before.filter(|_| number == 0).unwrap_or(y);
             if number == 0 || x % 3 == 0 {
@@ -136,10 +148,11 @@ pub fn curves(lists: &[&[f64]], columns: usize) -> Option<String> {
             before = Some(y);
         }
     }
-    (0..across).step_by(4).for_each(|x| dots.set(x, height / 2));
-    let labels = [(0, "+".to_owned()), (ROWS / 2, "0".to_owned()), (ROWS - 1, "-".to_owned())];
+    let zero = row(0.0);
+    (0..across).step_by(4).for_each(|x| dots.set(x, zero));
+    let labels = [(zero / 4, "0".to_owned()), (0, "+".to_owned()), (ROWS - 1, "-".to_owned())];
     let remarks = [(ROWS - 1, "t = 0 to 1".to_owned())];
-    drawn.then(|| dots.lines(&labels, &remarks))
+    Some(dots.lines(&labels, &remarks))
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use std::{
 };
 
 /// The two ends of a terminal.
-fn terminal() -> (File, OwnedFd) {
+pub(super) fn terminal() -> (File, OwnedFd) {
     let (mut main, mut side) = (0, 0);
     let size = libc::winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
     // SAFETY: both numbers are written before they are used, and belong to nobody else.

@@ -2,5 +2,6 @@
 mod bars;
 mod colours;
 mod completion;
+mod plots;
 mod scenes;
 mod usage;
