@@ -4,7 +4,7 @@ use crate::{
     rulings::Ruling,
     track::{Track, Window},
 };
-use fosssim_judge::{Detail, Finding};
+use fosssim_judge::{Detail, Finding, budget::Budget};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Detection, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, State},
@@ -134,6 +134,7 @@ pub fn gather<R: Read>(
     let mut reader = Lenient::new(trace, layout).with_limit(record_memory(scene));
     let mut free = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut own = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut work = Budget::new(scene, false);
     let (mut mid, mut end) = (LenientFrame::default(), LenientFrame::default());
     let mut evidence = Evidence {
         layout,
@@ -187,14 +188,14 @@ pub fn gather<R: Read>(
         let mut count = Count::new(mid_state);
         let done = if is_close {
             let mut watch = Watch::new(scene, step, mid_state, &end, &wanted);
-            let done = own.step(&mut (&mut watch, &mut count)).is_ok();
+            let done = work.step(&mut own, &mut (&mut watch, &mut count)).is_ok();
             if watch.close_up.actual_contacts.is_empty() {
                 watch.close_up.actual_contacts.clone_from(&mid.impulses);
             }
             evidence.close_ups.push(watch.close_up);
             done
         } else {
-            own.step(&mut count).is_ok()
+            work.step(&mut own, &mut count).is_ok()
         };
         if !done {
             break;

@@ -5,6 +5,8 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+pub mod budget;
+mod contacts;
 mod differing;
 pub mod fair;
 mod finding;

@@ -4,6 +4,7 @@
 //! own state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
 //! reported, and in which order, does not depend on the number of threads.
 use super::{
+    budget::{Budget, FLOOR},
     fair::{self, Context, Reach, Records, StepJudgement},
     outcome::{Damage, Outcome, Stop, Unreadable},
     parity::{Options, Progress, StepFindings, WrongStep},
@@ -13,13 +14,13 @@ use super::{
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{SearchCounts, Simulation, State, StepError},
-    trace::{Cause, Layout, Lenient, LenientFrame, record_memory},
+    trace::{Cause, Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
 };
 use std::{
     io::Read,
     sync::{
         Mutex,
-        atomic::{AtomicUsize, Ordering},
+        atomic::{AtomicU64, AtomicUsize, Ordering},
     },
 };
 
@@ -54,6 +55,10 @@ struct Slot {
     error: Option<StepError>,
     /// Whether more polynomials would have to be compared than were kept.
     beyond_limit: bool,
+    /// Whether it was judged to its end.
+    is_done: bool,
+    /// What judging it took, in detection calls.
+    work: u64,
 }
 
 /// What one thread needs to judge a step.
@@ -77,18 +82,19 @@ pub(super) fn judge<R: Read + Send>(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {
-    judge_within(record_memory(scene), scene, trace, options, progress)
+    judge_within((record_memory(scene), FLOOR), scene, trace, options, progress)
 }
 
-/// As [`judge`], with so much memory for the lists of a record, in bytes.
-fn judge_within<R: Read + Send>(
-    memory: usize,
+/// As [`judge`], with so much memory for the lists of a record, in bytes, and so much work for every trace.
+pub(super) fn judge_within<R: Read + Send>(
+    (memory, work): (usize, u64),
     scene: &Scene,
     trace: R,
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {
     let mut replay = Replay::new(scene, Lenient::new(trace, Layout::of(scene)).with_limit(memory), options.fair);
+    replay.budget = replay.budget.with_floor(work);
     if let Err(stop) = replay.read_initial() {
         replay.outcome.damage = replay.damage.take();
         replay.outcome.stop = Some(stop);
@@ -115,14 +121,14 @@ fn judge_within<R: Read + Send>(
         let mut stop_after = None;
         let at_once = pool.is_some() && current.bytes <= LARGE_BATCH_BYTES;
         match &pool {
-            None => judge_batch(&current, &mut workers[..1], &replay.shape),
+            None => judge_batch(&current, &mut workers[..1], &replay.shape, replay.budget.rest()),
             Some(pool) => {
-                let shape = replay.shape;
+                let (shape, rest) = (replay.shape, replay.budget.rest());
                 let read_on = at_once && stop.is_none() && !replay.complete();
                 let reader = &mut replay;
                 pool.install(|| {
                     rayon::join(
-                        || judge_batch(&current, &mut workers, &shape),
+                        || judge_batch(&current, &mut workers, &shape, rest),
                         || {
                             if read_on {
                                 stop_after = reader.read_batch(&mut next);
@@ -131,6 +137,9 @@ fn judge_within<R: Read + Send>(
                     );
                 });
             }
+        }
+        if current.work() > replay.budget.rest() && replay.budget.widen() {
+            judge_batch(&current, &mut workers, &replay.shape, replay.budget.rest());
         }
         if replay.deliver(&mut current, progress, options) {
             break;
@@ -178,6 +187,8 @@ struct Replay<'a, R> {
     steps_read: u32,
     /// What leads nowhere by the fair rules, if they are asked.
     reach: Option<Reach<'a>>,
+    /// What work is left.
+    budget: Budget<'a>,
     /// Damage of the record that could not be read at last.
     damage: Option<Damage>,
     /// Whether a record of the steps delivered so far, or the first one, is damaged.
@@ -196,6 +207,7 @@ impl<'a, R: Read> Replay<'a, R> {
             state_at: 0,
             steps_read: 0,
             reach: fair.then(|| Reach::new(scene)),
+            budget: Budget::new(scene, fair),
             damage: None,
             damaged: false,
             outcome: Outcome {
@@ -261,7 +273,7 @@ impl<'a, R: Read> Replay<'a, R> {
                 self.damage = slot.damage.take();
                 return Some(stop);
             }
-            batch.bytes += 8 * slot.end.polynomials.coefficients.len() + self.shape.layout.state_bytes();
+            batch.bytes += memory(&slot.end).max(memory(&slot.mid)) + self.shape.layout.state_bytes();
             batch.filled += 1;
         }
         None
@@ -272,6 +284,7 @@ impl<'a, R: Read> Replay<'a, R> {
         slot.damage = None;
         slot.error = None;
         slot.beyond_limit = false;
+        (slot.is_done, slot.work) = (false, 0);
         copy_state(&mut slot.before, &self.state);
         slot.before_at = self.state_at;
         let mut damage = None;
@@ -312,6 +325,9 @@ impl<'a, R: Read> Replay<'a, R> {
             if outcome.damage.is_none() {
                 outcome.damage = slot.damage.take();
             }
+            if !self.budget.spend(slot.work) {
+                slot.error = Some(StepError::Work { step: slot.step });
+            }
             if let Some(error) = slot.error {
                 outcome.stop = Some(Stop::Step(error));
                 return true;
@@ -334,7 +350,17 @@ impl<'a, R: Read> Replay<'a, R> {
                         let (step, before, end) = (slot.step, &slot.before, &slot.end);
                         let records = Records { step, frame, before, mid, end };
                         let known = (!slot.is_put_off).then(|| std::mem::take(&mut slot.fair));
-                        slot.fair = reach.judge(context, records, slot.result.identical, known);
+                        let identical = slot.result.identical;
+                        let (mut judged, mut work) =
+                            reach.judge(context, records, identical, known, self.budget.rest());
+                        if work > self.budget.rest() && self.budget.widen() {
+                            (judged, work) = reach.judge(context, records, identical, None, self.budget.rest());
+                        }
+                        if !self.budget.spend(work) {
+                            outcome.stop = Some(Stop::Step(StepError::Work { step: slot.step }));
+                            return true;
+                        }
+                        slot.fair = judged;
                     }
                     judgement.add(&slot.fair);
                 }
@@ -398,15 +424,39 @@ fn beyond_limit(slot: &Slot, layout: Layout) -> Stop {
     }
 }
 
-/// Judges the steps of a batch, each by the next free worker.
-fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &Shape<'_>) {
+impl Batch {
+    /// What judging it took so far.
+    fn work(&mut self) -> u64 {
+        self.slots[..self.filled].iter_mut().map(|slot| lock(slot).work).sum()
+    }
+}
+
+/// What a record's lists take, in bytes.
+fn memory(frame: &LenientFrame) -> usize {
+    let LenientFrame { impulses, polynomials, .. } = frame;
+    8 * polynomials.coefficients.len() + 8 * polynomials.ends.len() + size_of::<LoggedImpulse>() * impulses.len()
+}
+
+/// Judges the steps of a batch that are not done, each by the next free worker, until they take more work than is left.
+///
+/// Steps are begun in their order, and a step that is begun is done, or has alone taken more than is left. So the first
+/// step that the budget does not reach is always among those that were begun, whatever the number of threads.
+fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &Shape<'_>, rest: u64) {
     let slots = &batch.slots[..batch.filled];
-    let next = AtomicUsize::new(0);
+    let (next, work) = (AtomicUsize::new(0), AtomicU64::new(0));
     let run = |worker: &mut Worker| {
-        while let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) {
+        while work.load(Ordering::Relaxed) <= rest {
+            let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
             // Every index is handed out once, so the lock is always free.
             let mut slot = slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            judge_step(&mut slot, worker, shape);
+            if !slot.is_done {
+                let begin = worker.simulation.work();
+                worker.simulation.limit_work(begin.saturating_add(rest));
+                judge_step(&mut slot, worker, shape);
+                slot.work = worker.simulation.work() - begin;
+                slot.is_done = slot.work <= rest;
+            }
+            work.fetch_add(slot.work, Ordering::Relaxed);
         }
     };
     match workers {
@@ -430,6 +480,7 @@ fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
     let layout = shape.layout;
     let frame = u64::from(*step) * u64::from(layout.records_per_step());
     let mid = layout.polynomials.then_some(&*mid);
+    (*error, *beyond_limit) = (None, false);
     let mut tally = Tally::new((*step, frame), end, mid.map(|mid| &mid.state), shape.logs_impulses, buffers, result);
     match simulation.step(&mut tally) {
         Ok(()) => {
@@ -455,6 +506,7 @@ fn sum_of_searches(workers: &[Worker]) -> SearchCounts {
         sum.searched += counts.searched;
         sum.excluded += counts.excluded;
         sum.disagreements += counts.disagreements;
+        sum.fruitless += counts.fruitless;
     }
     sum
 }
@@ -471,7 +523,9 @@ fn lock(slot: &mut Mutex<Slot>) -> &mut Slot {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{finding::Kind, samples::changed};
     use fosssim_model::trace::{Frame, Reader, Recorder, Writer};
+    use fosssim_num::vector::Vec2;
 
     /// So many balls that a pass logs more than the reader's window holds.
     fn crowd() -> Scene {
@@ -484,6 +538,44 @@ mod tests {
             <collision type="continuous-time"/>{balls}</scene>"#
         );
         fosssim_model::scene::read("crowd", xml.as_bytes()).expect("a scene").scene
+    }
+
+    /// Memory: a batch holds as many records as fit, whatever their lists hold.
+    #[test]
+    fn a_batch_counts_all_lists() {
+        let scene = crate::samples::scene(crate::samples::BOUNCE);
+        let scene = Scene { duration: 100.0, ..scene };
+        let impulse = LoggedImpulse { kind: 2, first: 0, second: 0, normal: Vec2::zeros(), time: 0.5 };
+        for (impulses, polynomials) in [(20_000, 0), (0, 100_000)] {
+            let trace = changed(&scene, |frames| {
+                for frame in &mut frames[1..21] {
+                    frame.impulses = vec![impulse; impulses];
+                    (0..polynomials).for_each(|_| frame.polynomials.push(&[]));
+                }
+            });
+            let mut replay = Replay::new(&scene, Lenient::new(&trace[..], Layout::of(&scene)), true);
+            replay.read_initial().expect("a first record");
+            let mut batch = Batch::default();
+            assert!(replay.read_batch(&mut batch).is_none());
+            assert!(batch.filled == 1 && batch.bytes > 500_000, "{} steps, {} bytes", batch.filled, batch.bytes);
+        }
+    }
+
+    /// As many contacts as fit into a record are told apart without comparing each with all others.
+    #[test]
+    fn a_crowd_of_contacts_is_judged() {
+        let scene = crate::samples::scene(crate::samples::BOUNCE);
+        let of = |second| LoggedImpulse { kind: 9, first: 0, second, normal: Vec2::zeros(), time: 0.5 };
+        let trace = changed(&scene, |frames| {
+            for frame in &mut frames[1..3] {
+                frame.impulses.extend((0..500_000).map(of).chain([of(7), of(7)]));
+            }
+        });
+        let outcome = crate::samples::judged(&scene, &trace);
+        assert_eq!(outcome.counts.get(Kind::SuperfluousCollision), 500_002);
+        let fair = outcome.fair.expect("asked");
+        let counts = [Kind::SuperfluousCollision, Kind::RepeatedCollision].map(|kind| fair.counts.get(kind));
+        assert_eq!(counts, [500_000, 2]);
     }
 
     #[test]
@@ -504,7 +596,7 @@ mod tests {
         let longer = writer.finish().expect("memory").0;
         for threads in [1, 2] {
             let options = Options { threads, ..Options::default() };
-            let judge = |memory, trace: &[u8]| judge_within(memory, &scene, trace, &options, &mut ());
+            let judge = |memory, trace: &[u8]| judge_within((memory, FLOOR), &scene, trace, &options, &mut ());
             let whole = judge(usize::MAX, &right);
             assert!(whole.stop.is_none() && whole.counts.total() == 0, "{whole:?}");
             let Some(Stop::Trace { step: 1, frame: 2, cause: Unreadable::Limit, message, .. }) = judge(0, &right).stop

@@ -4,6 +4,7 @@
 //! as it is known, so nothing of the reference's log is stored. Only at the end of the step is it known whether the
 //! two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
 use super::{
+    contacts::{Contacts, key, logged_key},
     differing::{differing, factor},
     finding::{Detail, Finding, Kind, PolynomialPlace, Rescaled, Role},
     outcome::{Counts, Residuals},
@@ -190,16 +191,20 @@ impl<'a> Tally<'a> {
         let theirs = &self.frame.impulses;
         self.identical &=
             own.len() == theirs.len() && own.iter().zip(theirs).all(|(own, logged)| same_impulse(own, logged));
-        for expected in own.iter().filter(|own| !theirs.iter().any(|logged| same_pair(own, logged))) {
+        let by_pair = Contacts::of(theirs);
+        let logged = |own: &Impulse| key(own.pair).and_then(|key| by_pair.about(key).next());
+        let mut own_keys: Vec<_> = own.iter().filter_map(|own| key(own.pair)).collect();
+        own_keys.sort_unstable();
+        for expected in own.iter().filter(|own| logged(own).is_none()) {
             self.result.remarks.push(Remark::Missed(*expected));
             self.result.record(self.finding(Detail::MissedCollision { expected: *expected }));
         }
-        for actual in theirs.iter().filter(|logged| !own.iter().any(|own| same_pair(own, logged))) {
+        for actual in theirs.iter().filter(|logged| own_keys.binary_search(&logged_key(logged)).is_err()) {
             self.result.remarks.push(Remark::Superfluous(*actual));
             self.result.record(self.finding(Detail::SuperfluousCollision { actual: *actual }));
         }
         for expected in &own {
-            let Some(actual) = theirs.iter().find(|logged| same_pair(expected, logged)) else { continue };
+            let Some(actual) = logged(expected).map(|index| &theirs[index]) else { continue };
             let residual = length(actual.normal - expected.normal);
             // Parity's exception: a NaN normal passes, because the original asks whether the distance is larger.
             if residual > PARITY_NORMAL {
@@ -365,9 +370,7 @@ pub(super) fn accumulate(total: &mut Residuals, step: &[(f64, f64)]) {
 
 /// Whether both name the same pair of objects; the time is never compared.
 fn same_pair(own: &Impulse, logged: &LoggedImpulse) -> bool {
-    own.pair.kind.code() == logged.kind
-        && i64::from(own.pair.first) == i64::from(logged.first)
-        && i64::from(own.pair.second) == i64::from(logged.second)
+    key(own.pair) == Some(logged_key(logged))
 }
 
 /// Whether both are the same impulse bit for bit, the time included.

@@ -24,12 +24,24 @@ use super::{
 /// With more than ten polynomials whose sets are as ragged as can be; a detection has at most four.
 #[inline]
 pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
+    first_time_counted(polynomials, &mut 0)
+}
+
+/// [`first_time`], which adds the steps that led to no zero to `fruitless` ([`Zeros::fruitless`]).
+///
+/// # Errors
+/// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
+///
+/// # Panics
+/// As [`first_time`].
+#[inline]
+pub fn first_time_counted(polynomials: &[Polynomial], fruitless: &mut u64) -> Result<f64, DoesNotTerminate> {
     let lists = polynomials.iter().map(Polynomial::coefficients);
     // Two polynomials, of degree five at most, meet in five intervals at most; four of them in nine.
     match polynomials.len() {
-        0..=2 => intersected::<5>(lists),
-        3..=4 => intersected::<9>(lists),
-        _ => intersected::<32>(lists),
+        0..=2 => intersected::<5>(lists, fruitless),
+        3..=4 => intersected::<9>(lists, fruitless),
+        _ => intersected::<32>(lists, fruitless),
     }
 }
 
@@ -41,19 +53,22 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
 /// # Panics
 /// With more than ten lists whose sets are as ragged as can be.
 pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
-    intersected::<32>(lists.into_iter())
+    intersected::<32>(lists.into_iter(), &mut 0)
 }
 
 /// The intersection of the positive sets and its first time, with room for `CAPACITY` intervals.
 #[inline]
-fn intersected<'a, const CAPACITY: usize>(mut lists: impl Iterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
+fn intersected<'a, const CAPACITY: usize>(
+    mut lists: impl Iterator<Item = &'a [f64]>,
+    fruitless: &mut u64,
+) -> Result<f64, DoesNotTerminate> {
     let Some(first) = lists.next() else { return Ok(f64::INFINITY) };
     let mut set = Intervals::<CAPACITY>::new();
-    for &interval in positive_set(first)?.as_slice() {
+    for &interval in counted(first, fruitless)?.as_slice() {
         set.push(interval);
     }
     for list in lists {
-        set = set.intersection(&positive_set(list)?);
+        set = set.intersection(&counted(list, fruitless)?);
     }
     Ok(set.next_time(0.0))
 }
@@ -69,12 +84,17 @@ pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
 /// # Panics
 /// With more than [`MAX_DEGREE`]` + 1` coefficients.
 pub fn positive_set(coefficients: &[f64]) -> Result<PositiveSet, DoesNotTerminate> {
+    counted(coefficients, &mut 0)
+}
+
+fn counted(coefficients: &[f64], fruitless: &mut u64) -> Result<PositiveSet, DoesNotTerminate> {
     let mut set = PositiveSet::new();
     let zeros = match coefficients.len() {
         0 => return Ok(set),
         1 => Zeros::default(),
         _ => rpoly::zeros(coefficients)?,
     };
+    *fruitless += u64::from(zeros.fruitless());
     let mut storage = [0.0; MAX_DEGREE];
     let breaks = sorted_real_parts(&zeros, &mut storage);
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {

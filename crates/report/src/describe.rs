@@ -2,6 +2,10 @@
 use fosssim_judge::PairWords;
 use fosssim_model::sim::StepError;
 
+/// What is said when judging a trace would take too long.
+const BEYOND_BUDGET: &str = "up to here, judging took many times the work of the scene's own run, which is as much as a \
+                             trace may ask for";
+
 /// The step of a computation without result, and what happened there.
 #[must_use]
 pub fn step_error(error: &StepError) -> (u32, String) {
@@ -13,5 +17,6 @@ pub fn step_error(error: &StepError) -> (u32, String) {
         StepError::VortexHessian { step } => {
             (*step, "a vortex force has no Hessian, which implicit integrators need".to_owned())
         }
+        StepError::Work { step } => (*step, BEYOND_BUDGET.to_owned()),
     }
 }

@@ -234,7 +234,7 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
 fn step_failed(error: &StepError) -> u8 {
     match error {
         StepError::VortexHessian { .. } => complain(NO_VORTEX_HESSIAN),
-        StepError::RootSearch { .. } | StepError::Newton { .. } => {
+        StepError::RootSearch { .. } | StepError::Newton { .. } | StepError::Work { .. } => {
             let (step, words) = step_error(error);
             complain(&format!("step {step} has no result: {words}\n"))
         }

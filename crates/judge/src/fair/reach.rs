@@ -83,24 +83,29 @@ impl<'a> Reach<'a> {
     }
 
     /// Judges a step with a state that is out of the ordinary. `known` is its judgement, if it starts from ordinary states;
-    /// else it is judged only if the reference gets there, too. Steps are asked about in their order.
+    /// else it is judged only if the reference gets there, too. Steps are asked about in their order. Besides the judgement
+    /// it says how much work that took, which ends soon beyond `most_work`.
     pub fn judge(
         &mut self,
         context: &Context<'_>,
         records: Records<'_>,
         identical: bool,
         known: Option<StepJudgement>,
-    ) -> StepJudgement {
+        most_work: u64,
+    ) -> (StepJudgement, u64) {
         self.run_to(records.step);
         let is_lost = self.run.as_ref().is_some_and(|run| run.is_lost);
         let found = (!is_lost).then(|| self.beyond_reach(&records)).flatten();
         match (known, found) {
-            (Some(judged), Some(detail)) if judged.total() == 0 => judged.also(records, detail),
-            (Some(judged), _) => judged,
-            (None, Some(detail)) => StepJudgement::default().also(records, detail),
+            (Some(judged), Some(detail)) if judged.total() == 0 => (judged.also(records, detail), 0),
+            (Some(judged), _) => (judged, 0),
+            (None, Some(detail)) => (StepJudgement::default().also(records, detail), 0),
             (None, None) => {
                 let simulation = self.other.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::WhereNeeded));
-                judge(context, simulation, records, identical)
+                let begin = simulation.work();
+                simulation.limit_work(begin.saturating_add(most_work));
+                let judged = judge(context, simulation, records, identical);
+                (judged, simulation.work() - begin)
             }
         }
     }

@@ -5,7 +5,10 @@
 //! what the integrator makes of it, before any response. So the first pass of each step is looked at, and in hybrid scenes the
 //! first pass of the geometric part, which starts from the mid record.
 use super::polynomial::{Body, Motion, Sample};
-use fosssim_judge::fair::{compare::compare, formulas};
+use fosssim_judge::{
+    budget::Budget,
+    fair::{compare::compare, formulas},
+};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Decision, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, Stage, State},
@@ -34,6 +37,7 @@ pub(super) fn samples(scene: &Scene, trace: impl Read) -> Vec<Sample> {
         return Vec::new();
     }
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut budget = Budget::new(scene, false);
     for step in 1..=layout.steps {
         if gathered.is_full() || !read(&mut reader, &mut mid) || !read(&mut reader, &mut end) {
             break;
@@ -42,7 +46,7 @@ pub(super) fn samples(scene: &Scene, trace: impl Read) -> Vec<Sample> {
         simulation.set_steps_done(step - 1);
         let mut gatherer = Gatherer::new(scene, step, &mid, &end.polynomials, &mut gathered);
         // A step without result is a trace gone wild; what was gathered stays.
-        let _ = simulation.step(&mut gatherer);
+        let _ = budget.step(&mut simulation, &mut gatherer);
         before.state.clone_from(&end.state);
     }
     gathered.kinds.into_iter().flat_map(|kind| kind.samples).collect()

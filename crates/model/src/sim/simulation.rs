@@ -40,7 +40,20 @@ pub struct SearchCounts {
     pub excluded: u64,
     /// Audit only: a certificate excluded an impact that the root finder found. Must stay zero.
     pub disagreements: u64,
+    /// Steps of root searches that led to no zero ([`Zeros::fruitless`](fosssim_num::rpoly::Zeros::fruitless)).
+    pub fruitless: u64,
 }
+
+impl SearchCounts {
+    /// What these calls cost, counted in calls that a certificate excludes. It is the same on every machine.
+    #[must_use]
+    pub const fn work(&self) -> u64 {
+        self.calls + SEARCH_WORK * self.searched + self.fruitless
+    }
+}
+
+/// A root search takes as long as so many detection calls without one.
+const SEARCH_WORK: u64 = 16;
 
 /// Why a step has no result. The original hangs or goes on with garbage here.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -62,6 +75,12 @@ pub enum StepError {
     /// A vortex force has no Hessian, which implicit integrators need (scene-format.md 6).
     #[error("step {step}: vortexforce has no Hessian, so it can't be used with an implicit integrator")]
     VortexHessian {
+        /// The step, from 1.
+        step: u32,
+    },
+    /// More work than was allowed ([`Simulation::limit_work`]).
+    #[error("step {step}: from these states collision handling takes far longer than in a run of the scene")]
+    Work {
         /// The step, from 1.
         step: u32,
     },
@@ -152,6 +171,17 @@ impl Simulation {
     #[must_use]
     pub fn search_counts(&self) -> SearchCounts {
         self.handler.counts()
+    }
+
+    /// What all steps so far have cost ([`SearchCounts::work`]).
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.handler.counts().work()
+    }
+
+    /// Lets steps end with [`StepError::Work`] after the detection pass that takes [`Simulation::work`] beyond this.
+    pub fn limit_work(&mut self, most: u64) {
+        self.handler.limit_work(most);
     }
 }
 

@@ -1,6 +1,10 @@
 //! What a step's decisions and contacts are charged for.
 use super::Follower;
-use crate::{fair::contact, finding::Detail};
+use crate::{
+    contacts::{key, logged_key},
+    fair::contact,
+    finding::Detail,
+};
 use fosssim_model::{
     sim::{Decision, Impulse, Pair, Stage, Time},
     trace::LoggedImpulse,
@@ -83,15 +87,9 @@ impl Follower<'_> {
 
     /// The logged impulse that this decision is about.
     fn logged(&mut self, pair: Pair) -> Option<LoggedImpulse> {
-        let same = |logged: &LoggedImpulse| {
-            logged.kind == pair.kind.code()
-                && i64::from(logged.first) == i64::from(pair.first)
-                && i64::from(logged.second) == i64::from(pair.second)
-        };
-        let all = self.records.end.impulses.iter().enumerate();
-        let (index, logged) = all.clone().find(|(index, logged)| !self.used[*index] && same(logged))?;
+        let index = self.contacts.about(key(pair)?).find(|index| !self.used[*index])?;
         self.used[index] = true;
-        Some(*logged)
+        Some(self.records.end.impulses[index])
     }
 
     /// Follows a logged decision.
@@ -139,11 +137,8 @@ impl Follower<'_> {
                 continue;
             }
             let actual = self.records.end.impulses[index];
-            let earlier = self.records.end.impulses[..index].iter();
-            let repeats = |other: &LoggedImpulse| {
-                (other.kind, other.first, other.second) == (actual.kind, actual.first, actual.second)
-            };
-            let detail = if earlier.clone().any(repeats) && !self.is_hybrid() {
+            let repeats = self.contacts.about(logged_key(&actual)).next() < Some(index);
+            let detail = if repeats && !self.is_hybrid() {
                 Detail::RepeatedCollision { actual }
             } else {
                 Detail::SuperfluousCollision { actual }

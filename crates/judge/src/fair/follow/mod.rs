@@ -11,7 +11,10 @@ use super::{
     probe::Sensitivity,
     step::{Context, Records, StepJudgement},
 };
-use crate::finding::{Detail, Finding, Part, PolynomialPlace};
+use crate::{
+    contacts::Contacts,
+    finding::{Detail, Finding, Part, PolynomialPlace},
+};
 use decisions::Own;
 use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Stage, State, Zone};
 use fosssim_num::polynomial::Polynomial;
@@ -62,6 +65,8 @@ pub(super) struct Follower<'a> {
     factors: [[Option<f64>; 4]; 3],
     /// Polynomials that do not tell their factor, to be judged when others of their kind do.
     deferred: Vec<Deferred>,
+    /// The pairs of the logged impulses.
+    contacts: Contacts,
     /// Logged impulses that a decision has used.
     used: Vec<bool>,
     /// What the reference's own polynomials say about the call, where the logged ones are right, and others.
@@ -96,6 +101,7 @@ impl<'a> Follower<'a> {
             wrong_formulas: [[false; 4]; 3],
             factors: [[None; 4]; 3],
             deferred: Vec::new(),
+            contacts: Contacts::of(&records.end.impulses),
             used: vec![false; records.end.impulses.len()],
             own: None,
             expected: None,

@@ -5,6 +5,7 @@ use super::{
     compare::{Difference, Logged, ROUND_OFF, SINGLE_PRECISION, StepRecords, first_difference, same_polynomial},
 };
 use crate::student::{StepLog, World};
+use fosssim_judge::budget::Budget;
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation, State},
@@ -109,10 +110,11 @@ pub(super) fn scan(scene: &Scene, trace: impl Read) -> Scan {
     scanner.scan
 }
 
-struct Scanner<R> {
+struct Scanner<'a, R> {
     reader: Lenient<R>,
     layout: Layout,
     simulation: Simulation,
+    budget: Budget<'a>,
     capture: Capture,
     previous: LenientFrame,
     actual: StepRecords,
@@ -122,13 +124,14 @@ struct Scanner<R> {
     opening_memory: usize,
 }
 
-impl<R: Read> Scanner<R> {
-    fn new(scene: &Scene, trace: R) -> Self {
+impl<'a, R: Read> Scanner<'a, R> {
+    fn new(scene: &'a Scene, trace: R) -> Self {
         let layout = Layout::of(scene);
         Self {
             reader: Lenient::new(trace, layout).with_limit(record_memory(scene)),
             layout,
             simulation: Simulation::new(scene, RootSearch::WhereNeeded),
+            budget: Budget::new(scene, false),
             capture: Capture::new(&scene.collision),
             previous: LenientFrame::default(),
             actual: StepRecords::default(),
@@ -195,7 +198,7 @@ impl<R: Read> Scanner<R> {
         state.positions.copy_from_slice(&before.positions);
         state.velocities.copy_from_slice(&before.velocities);
         self.simulation.set_steps_done(step - 1);
-        if self.simulation.step(&mut self.capture).is_err() {
+        if self.budget.step(&mut self.simulation, &mut self.capture).is_err() {
             return;
         }
         self.actual.end.clone_from_frame(end);

@@ -4,7 +4,11 @@ use crate::{
     diagnose::{Explanation, explain, several},
     student::{self, Student, find},
 };
-use fosssim_model::scene::{Scene, original};
+use fosssim_model::{
+    scene::{Scene, original},
+    sim::State,
+    trace::{Frame, Layout, Writer},
+};
 
 /// Two balls that meet, an edge that swings about its fixed end, and a half-plane.
 const SCENE: &str = "<scene><duration time=\"1\"/><integrator type=\"symplectic-euler\" dt=\"0.05\"/>\
@@ -215,4 +219,25 @@ fn mistakes_of_several_scenes_are_settled_together() {
     let found: Vec<String> =
         several([one.as_slice(), one.as_slice(), two.as_slice()], &[]).into_iter().map(|found| found.key).collect();
     assert_eq!(found, ["pp-no-two", "response-sign"]);
+}
+
+/// States from which the reference's rounds of impulses never end, in the scene's own terms: it is given up.
+#[test]
+fn a_trace_that_leads_nowhere_is_left() {
+    let text = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>
+        <collision type="hybrid" COR="1" maxiters="2000000000" k="0" thickness="0.01"/>
+        <particle m="1" px="0" py="100" vx="1" vy="0" fixed="0" radius="0.2"/>
+        <particle m="1" px="-0.25" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>
+        <particle m="1" px="0.25" py="0" vx="0" vy="0" fixed="1" radius="0.2"/></scene>"#;
+    let scene = original::read(text.as_bytes()).expect("a scene").scene;
+    let layout = Layout::of(&scene);
+    let state =
+        |y| State { positions: vec![0.0, y, -0.25, 0.0, 0.25, 0.0], velocities: vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0] };
+    let mut writer = Writer::new(Vec::new(), layout);
+    writer.frame(&Frame { state: state(100.0), ..Frame::default() });
+    for _ in 1..layout.records() {
+        writer.frame(&Frame { state: state(0.0), ..Frame::default() });
+    }
+    let trace = writer.finish().expect("written").0;
+    assert!(explain(&scene, &trace).iter().all(|one| one.samples <= 2), "only the first step has a result");
 }

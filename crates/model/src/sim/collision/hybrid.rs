@@ -29,7 +29,7 @@ pub(super) struct HybridScratch {
 /// Handles the impacts of a step. The synchronisation point lies after the impulses.
 ///
 /// # Errors
-/// [`StepError::RootSearch`]
+/// [`StepError::RootSearch`], [`StepError::Work`]
 #[expect(clippy::too_many_arguments, reason = "the parts of Handler, borrowed one by one")]
 pub(super) fn handle<O: Observer>(
     bodies: &Bodies,

@@ -56,7 +56,7 @@ impl Handler {
     /// Handles the collisions of step `step`, which began at positions `q_start` and whose integration ended in `state`.
     ///
     /// # Errors
-    /// [`StepError::RootSearch`]; the state is unspecified then.
+    /// [`StepError::RootSearch`] and [`StepError::Work`]; the state is unspecified then.
     pub fn handle<O: Observer>(
         &mut self,
         bodies: &Bodies,
@@ -80,6 +80,11 @@ impl Handler {
                 hybrid::handle(bodies, &self.law, max_iterations, detector, &mut self.hybrid, q_start, state, observer)
             }
         }
+    }
+
+    /// Most work, over all steps.
+    pub fn limit_work(&mut self, most: u64) {
+        self.detector.limit_work(most);
     }
 
     /// Counts of root searches so far.

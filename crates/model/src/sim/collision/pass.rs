@@ -13,7 +13,7 @@ use super::{
 };
 use fosssim_num::{
     certificate::excludes_unit_interval,
-    first_time::first_time,
+    first_time::first_time_counted,
     polynomial::Polynomial,
     vector::{Vec2, at, put},
 };
@@ -32,6 +32,8 @@ pub(super) enum Reaction {
 pub(super) struct Detector {
     search: RootSearch,
     counts: SearchCounts,
+    /// A pass that takes the counts' work beyond this is the last.
+    most_work: u64,
     step: u32,
     passes: u32,
     displacements: Vec<f64>,
@@ -45,6 +47,7 @@ impl Detector {
         Self {
             search,
             counts: SearchCounts::default(),
+            most_work: u64::MAX,
             step: 0,
             passes: 0,
             displacements: Vec::new(),
@@ -63,6 +66,11 @@ impl Detector {
         self.passes
     }
 
+    /// Bounds the work of all steps together.
+    pub fn limit_work(&mut self, most: u64) {
+        self.most_work = most;
+    }
+
     /// Counts of root searches, over all steps.
     pub fn counts(&self) -> SearchCounts {
         self.counts
@@ -72,7 +80,8 @@ impl Detector {
     /// before the next pair is looked at.
     ///
     /// # Errors
-    /// [`StepError::RootSearch`] for a pair whose search would never end.
+    /// [`StepError::RootSearch`] for a pair whose search would never end, [`StepError::Work`] beyond the work that is
+    /// allowed.
     pub fn run<O: Observer>(
         &mut self,
         bodies: &Bodies,
@@ -93,6 +102,9 @@ impl Detector {
         }
         let hits = way.hits;
         observer.end_pass(pass, hits);
+        if self.counts.work() > self.most_work {
+            return Err(StepError::Work { step: self.step });
+        }
         Ok(())
     }
 
@@ -212,7 +224,8 @@ impl Detector {
             }
         }
         self.counts.searched += 1;
-        let time = first_time(polynomials).map_err(|_| StepError::RootSearch { step: self.step, pair })?;
+        let time = first_time_counted(polynomials, &mut self.counts.fruitless)
+            .map_err(|_| StepError::RootSearch { step: self.step, pair })?;
         if excluded && time <= 1.0 {
             self.counts.disagreements += 1;
         }

@@ -1,0 +1,178 @@
+//! How much work judging one trace may take.
+//!
+//! Steps are judged from the trace's own states, so a trace chooses what the reference has to compute: states from which
+//! every round of impulses finds new collisions cost as many detection passes as the scene allows rounds, thousands of
+//! times what the scene's own run costs, and the fair rules repeat such steps. Work is counted in detection calls
+//! ([`SearchCounts::work`](fosssim_model::sim::SearchCounts::work)), not measured by a clock: the same bytes have the same
+//! verdict on every machine.
+use fosssim_model::{
+    scene::Scene,
+    sim::{Observer, RootSearch, Simulation, StepError},
+};
+
+/// What every trace may ask for, however simple its scene is: about a second's work. Nearly all traces stay below it, and
+/// the scene's own run need not be known.
+pub(crate) const FLOOR: u64 = 10_000_000;
+
+/// Beyond that, so many times the scene's own run by the original's rules ...
+const PARITY: u64 = 10;
+/// ... and where the fair rules may repeat steps: at most 26 times, of which the trace of a wrong program needs 11.
+const FAIR: u64 = 40;
+
+/// What is left for one trace.
+#[derive(Debug)]
+pub struct Budget<'a> {
+    scene: &'a Scene,
+    factor: u64,
+    rest: u64,
+    is_wide: bool,
+}
+
+impl<'a> Budget<'a> {
+    /// For judging a trace of this scene by the original's rules, or also by the fair ones. Who simulates steps besides, to
+    /// explain or to show them, takes as much as the original's rules may.
+    #[must_use]
+    pub fn new(scene: &'a Scene, fair: bool) -> Self {
+        Self { scene, factor: if fair { FAIR } else { PARITY }, rest: FLOOR, is_wide: false }
+    }
+
+    /// The same, where every trace may ask for so much.
+    pub(crate) fn with_floor(self, floor: u64) -> Self {
+        Self { rest: floor, ..self }
+    }
+
+    /// What is left.
+    #[must_use]
+    pub fn rest(&self) -> u64 {
+        self.rest
+    }
+
+    /// Takes `work` away; false, if there is not so much.
+    pub fn spend(&mut self, work: u64) -> bool {
+        if work > self.rest {
+            self.widen();
+        }
+        let rest = self.rest.checked_sub(work);
+        self.rest = rest.unwrap_or(0);
+        rest.is_some()
+    }
+
+    /// Simulates one more step from the trace's own state.
+    ///
+    /// # Errors
+    /// [`StepError`]; of kind `Work`, when nothing is left.
+    pub fn step(&mut self, simulation: &mut Simulation, observer: &mut impl Observer) -> Result<(), StepError> {
+        if self.rest < FLOOR / 2 {
+            self.widen();
+        }
+        let begin = simulation.work();
+        simulation.limit_work(begin.saturating_add(self.rest));
+        let result = simulation.step(observer);
+        self.spend(simulation.work() - begin);
+        result
+    }
+
+    /// Adds what the scene's own run allows, once. Whether it added anything.
+    pub fn widen(&mut self) -> bool {
+        if std::mem::replace(&mut self.is_wide, true) {
+            return false;
+        }
+        let own = of_scene(self.scene).saturating_mul(self.factor);
+        self.rest = self.rest.saturating_add(own);
+        own > 0
+    }
+}
+
+/// What the scene's own run costs.
+fn of_scene(scene: &Scene) -> u64 {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    for _ in 0..scene.steps() {
+        if simulation.step(&mut ()).is_err() {
+            break;
+        }
+    }
+    simulation.work()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        outcome::{Outcome, Overall, Stop},
+        parity::Options,
+        replay::judge_within,
+        samples::{changed, run, scene, written},
+    };
+
+    /// A ball that moves between two posts; where they overlap it, each round of impulses throws it from one to the other.
+    fn posts(start: f64, rounds: u32) -> Scene {
+        let post = |x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>"#);
+        scene(&format!(
+            r#"<scene><duration time="4"/><integrator type="explicit-euler" dt="0.1"/>
+            <collision type="hybrid" COR="1" maxiters="{rounds}" k="0" thickness="0.01"/>
+            <particle m="1" px="0" py="{start}" vx="1" vy="0" fixed="0" radius="0.2"/>{}{}</scene>"#,
+            post(-0.25),
+            post(0.25)
+        ))
+    }
+
+    /// A trace of that scene whose every step but the first begins between the posts.
+    fn squeezed(scene: &Scene) -> Vec<u8> {
+        changed(scene, |frames| {
+            for frame in &mut frames[1..] {
+                frame.state.positions[..2].copy_from_slice(&[0.0, 0.0]);
+                frame.state.velocities[..2].copy_from_slice(&[1.0, 0.0]);
+            }
+        })
+    }
+
+    fn judged(floor: u64, scene: &Scene, trace: &[u8], fair: bool, threads: usize) -> Outcome {
+        let options = Options { fair, threads, ..Options::default() };
+        judge_within((usize::MAX, floor), scene, trace, &options, &mut ())
+    }
+
+    /// The step at which judging was given up.
+    fn given_up(outcome: &Outcome) -> Option<u32> {
+        match outcome.stop {
+            Some(Stop::Step(StepError::Work { step })) => Some(step),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn a_step_without_end_is_given_up() {
+        let scene = posts(100.0, 2_000_000_000);
+        let trace = squeezed(&scene);
+        for fair in [false, true] {
+            let outcome = judged(FLOOR, &scene, &trace, fair, 1);
+            assert_eq!((given_up(&outcome), outcome.overall), (Some(2), Overall::None), "{:?}", outcome.stop);
+            assert_eq!(outcome.steps_judged, 1);
+        }
+    }
+
+    #[test]
+    fn where_judging_is_given_up_does_not_depend_on_threads() {
+        let scene = posts(100.0, 2000);
+        let trace = squeezed(&scene);
+        for (fair, floor) in [(false, 150_000), (true, 1_500_000)] {
+            let alone = judged(floor, &scene, &trace, fair, 1);
+            let step = given_up(&alone).expect("given up");
+            assert!(step > 2, "{step}");
+            for threads in [2, 5] {
+                let outcome = judged(floor, &scene, &trace, fair, threads);
+                assert_eq!((given_up(&outcome), outcome.wrong_steps), (Some(step), alone.wrong_steps));
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_scene_itself_takes_is_always_allowed() {
+        let scene = posts(0.0, 20_000);
+        let trace = written(&scene, &run(&scene, ()));
+        let floor = of_scene(&scene) / 2;
+        for fair in [false, true] {
+            let outcome = judged(floor, &scene, &trace, fair, 2);
+            assert_eq!((given_up(&outcome), outcome.overall), (None, Overall::Passed));
+        }
+    }
+}
