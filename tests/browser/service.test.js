@@ -117,6 +117,18 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   assert.match(report, /0 of 10 points/);
   assert.match(report, /head-on-equal-masses/);
   await accessible(student.page);
+  // The report itself is a page of nobody: its viewer works, and it reaches neither cookies nor this site.
+  const frame = student.page.frameLocator("iframe.report");
+  await frame.locator("html[data-ready]").waitFor({ state: "attached" });
+  assert.match(await frame.locator("body").innerText(), /head-on-equal-masses/);
+  const origin = await student.page.frames()[1].evaluate(() => {
+    try {
+      return [self.origin, document.cookie];
+    } catch (error) {
+      return [self.origin, error.name];
+    }
+  });
+  assert.deepEqual(origin, ["null", "SecurityError"]);
 
   // The essentials work without JavaScript.
   const plain = await person({ script: false });

@@ -68,7 +68,8 @@ impl Admin {
         Ok(rows.iter().map(Account::read).collect::<Result<_, DbError>>()?)
     }
 
-    /// Makes an account, or changes whether it may do everything, and returns a link that signs in once.
+    /// Makes an account, or changes whether it may do everything, and returns a link that signs in once. One that was shut is
+    /// open again.
     ///
     /// # Errors
     /// When a name is none.
@@ -86,7 +87,9 @@ impl Admin {
         let row = transaction
             .one(
                 "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
-                 ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin RETURNING id",
+                 ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin,
+                    disabled_at = NULL
+                 RETURNING id",
                 values![login, name, is_admin],
             )
             .await?;

@@ -149,6 +149,17 @@ pub(super) async fn new_link(
     Ok(secret)
 }
 
+/// Whether a link would sign somebody in.
+pub(super) async fn is_link(transaction: &mut Transaction, link: &str) -> Result<bool, DbError> {
+    let row = transaction
+        .row(
+            "SELECT account FROM sign_in_link WHERE digest = ? AND used_at IS NULL AND expires_at > {now}",
+            values![digest(link)],
+        )
+        .await?;
+    Ok(row.is_some())
+}
+
 /// Uses up a link, and says whose it was.
 pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Result<Option<i64>, DbError> {
     let row = transaction

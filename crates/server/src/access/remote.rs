@@ -8,7 +8,7 @@ use crate::{
     store::{Artefact, Digest},
     task::{Outcome, Suite, Task},
     values,
-    worker::{Answer, Desk, DeskError, LocalDesk},
+    worker::{Answer, Desk, DeskError, LocalDesk, REPORTS},
 };
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -34,13 +34,6 @@ pub struct Claimed {
     /// Whether nothing else may run beside it.
     pub alone: bool,
 }
-
-/// The reports that workers may bring, and what they hold: not theirs to say.
-const FILES: [(&str, &str); 3] = [
-    ("grade.json", "application/json"),
-    ("report.txt", "text/plain; charset=utf-8"),
-    ("report.html", "text/html; charset=utf-8"),
-];
 
 /// The largest report.
 const MAX_FILE: u64 = 256 << 20;
@@ -161,7 +154,8 @@ impl Remote {
         let mut transaction = self.house.0.database.read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {
-            let Some((_, media_type)) = FILES.iter().find(|(name, _)| *name == file.name) else {
+            // What a report may be called, and what it holds, is not the worker's to say.
+            let Some((_, _, media_type)) = REPORTS.iter().find(|(_, name, _)| *name == file.name) else {
                 return Err(Problem::invalid(format!("no report is called {}", plain(&file.name, 60))));
             };
             if !names.insert(file.name.clone()) {

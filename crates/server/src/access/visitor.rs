@@ -37,6 +37,12 @@ impl Visitor {
     /// # Errors
     /// When it is unknown, used or too old.
     pub async fn sign_in_by_link(&self, link: &str) -> Result<Session, Problem> {
+        // Only who has a link keeps others from writing.
+        let mut transaction = self.house.0.database.read().await?;
+        if !identity::is_link(&mut transaction, link).await? {
+            return Err(Problem::unknown_secret("link"));
+        }
+        drop(transaction);
         let mut transaction = self.house.0.database.begin().await?;
         let Some(account) = identity::use_link(&mut transaction, link).await? else {
             return Err(Problem::unknown_secret("link"));
@@ -51,8 +57,10 @@ impl Visitor {
     /// # Errors
     /// When it is unknown or revoked.
     pub async fn sign_in_by_token(&self, token: &str) -> Result<Session, Problem> {
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.house.0.database.read().await?;
         let account = identity::account_of_token(&mut transaction, token).await?;
+        drop(transaction);
+        let mut transaction = self.house.0.database.begin().await?;
         let session = identity::begin_session(&mut transaction, account.id).await?;
         transaction.commit().await?;
         Ok(session)
@@ -64,6 +72,11 @@ impl Visitor {
     /// When the database does not answer.
     pub async fn sign_out(&self) -> Result<(), Problem> {
         if let Some(session) = &self.session {
+            let mut transaction = self.house.0.database.read().await?;
+            if identity::account_of_session(&mut transaction, session).await?.is_none() {
+                return Ok(());
+            }
+            drop(transaction);
             let mut transaction = self.house.0.database.begin().await?;
             identity::end_session(&mut transaction, session).await?;
             transaction.commit().await?;

@@ -14,6 +14,6 @@ pub use desk::{Answer, Desk, DeskError, Job};
 pub use grader::{Graded, Grader, GraderFault, NewFile};
 pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalDesk;
-pub use program::Program;
+pub use program::{Program, REPORTS};
 pub use remote::RemoteDesk;
 pub use slots::{Options, work};

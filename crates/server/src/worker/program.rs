@@ -28,8 +28,16 @@ const MESSAGE: usize = 2000;
 const SCHEMA: u32 = 3;
 
 /// The reports that a grading writes: format, file, media type.
-const REPORTS: [(&str, &str, &str); 2] =
-    [("json", "grade.json", "application/json"), ("text", "report.txt", "text/plain; charset=utf-8")];
+pub const REPORTS: [(&str, &str, &str); 8] = [
+    ("json", "grade.json", "application/json"),
+    ("text", "report.txt", "text/plain; charset=utf-8"),
+    ("html", "report.html", "text/html; charset=utf-8"),
+    ("junit", "junit.xml", "application/xml"),
+    ("csv", "scenes.csv", "text/csv; charset=utf-8"),
+    ("markdown", "report.md", "text/markdown; charset=utf-8"),
+    ("gradescope", "gradescope.json", "application/json"),
+    ("prairielearn", "prairielearn.json", "application/json"),
+];
 
 /// The program `fosssim-oracle`, or one that does as it does.
 #[derive(Debug, Clone)]

@@ -134,7 +134,7 @@ pub(super) async fn report(
 pub(in crate::web) fn report_response(file: &FileInfo, bytes: Vec<u8>) -> Response {
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
     let policy = if file.media_type.starts_with("text/html") {
-        "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+        "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
     } else {
         "sandbox; default-src 'none'"
     };

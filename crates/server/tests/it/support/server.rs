@@ -22,6 +22,7 @@ while [ $# -gt 0 ]; do
     case $1 in
         json=*) json=${1#json=} ;;
         text=*) text=${1#text=} ;;
+        html=*) html=${1#html=} ;;
         --rules) rules=$2 ;;
         --suite) suite=$2 ;;
     esac
@@ -34,6 +35,7 @@ read -r _ code points < "$program"
 # By the other rules everything is worth half.
 [ "$rules" = parity ] && points=$((points / 2))
 printf '<script>alert(1)</script> %s by %s\n' "$(basename "$program")" "$(basename "$suite")" > "$text"
+echo '<script>document.title = document.cookie</script>' > "$html"
 cat > "$json" <<END
 {"schema": 3, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
  "max_points": 100, "groups": [{"scenes": [{"code": "$code"}]}]}]}

@@ -1,7 +1,7 @@
 //! What students and teachers do, from the first link to a regrade.
 use crate::support::{
     engines::{Fresh, on_both_engines},
-    server::{Answer, JSON, Server, program},
+    server::{Answer, Client, JSON, Server, program},
 };
 
 on_both_engines!(
@@ -11,6 +11,7 @@ on_both_engines!(
     a_regrade_changes_nothing_until_it_is_applied,
     a_discarded_regrade_leaves_no_trace_in_grades,
     what_was_accepted_survives_a_kill_of_the_server,
+    nobody_gains_or_loses_rights_by_an_old_link,
 );
 
 async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
@@ -55,6 +56,9 @@ async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
     assert!(report.header("content-security-policy").expect("a policy").starts_with("sandbox"));
     assert_eq!(report.header("content-type"), Some("text/plain; charset=utf-8"));
     assert_eq!(report.header("x-content-type-options"), Some("nosniff"));
+    let page = ada.get(&format!("/c/physics/s/{second}/report/report.html")).expect(200);
+    let policy = page.header("content-security-policy").expect("a policy");
+    assert!(policy.starts_with("sandbox allow-scripts") && !policy.contains("same-origin"), "{policy}");
     let upload = ada.get(&format!("/api/v1/courses/physics/submissions/{second}/upload")).expect(200);
     assert_eq!(upload.body, program("AC", 100));
     assert_eq!(upload.header("content-disposition"), Some("attachment; filename=\"FOSSSim\""));
@@ -266,4 +270,50 @@ async fn what_was_accepted_survives_a_kill_of_the_server(fresh: Fresh) {
         let history = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json();
         assert_eq!(history.as_array().expect("a list").len(), 1, "graded once: {history}");
     }
+}
+
+async fn nobody_gains_or_loses_rights_by_an_old_link(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    server.course(&admin, "other");
+    let (teacher, colleague) =
+        (server.member(&admin, "physics", "teacher", "staff"), server.member(&admin, "other", "colleague", "staff"));
+    let ada = server.member(&teacher, "physics", "ada", "student");
+    let set = |by: &Client, course: &str, login: &str, role: &str| {
+        let wish = format!(r#"{{"name": "x", "role": "{role}"}}"#);
+        by.send("PUT", &format!("/api/v1/courses/{course}/members/{login}"), JSON, wish.as_bytes()).expect(200).json()
+    };
+    let link = |by: &Client, course: &str, login: &str| {
+        by.post_json(&format!("/api/v1/courses/{course}/members/{login}/link"), "{}")
+    };
+    // Staff signs in for their own students only, not for those who are more than that.
+    let old = link(&teacher, "physics", "ada").expect(200).json()["link"].as_str().expect("a link").to_owned();
+    let old = old.rsplit('/').next().expect("a secret").to_owned();
+    link(&teacher, "physics", "teacher").expect(403);
+    link(&teacher, "physics", "colleague").expect(404);
+    assert!(set(&colleague, "other", "ada", "student")["link"].is_null(), "no link for an account that was there");
+    link(&colleague, "other", "ada").expect(403);
+    link(&teacher, "physics", "ada").expect(403);
+    // A link that was made before is void, and so is what was made with one once a student becomes staff.
+    server.visitor().post_form(&format!("/welcome/{old}"), "").expect(401);
+    ada.get("/api/v1/me").expect(200);
+    set(&colleague, "other", "ada", "staff");
+    ada.get("/api/v1/me").expect(401);
+    // Nobody's staff throws administrators or other staff out.
+    set(&teacher, "physics", "admin", "staff");
+    set(&teacher, "physics", "colleague", "staff");
+    set(&teacher, "physics", "colleague", "student");
+    admin.get("/api/v1/me").expect(200);
+    colleague.get("/api/v1/me").expect(200);
+    link(&teacher, "physics", "admin").expect(403);
+    link(&teacher, "physics", "colleague").expect(403);
+    // Who is shut out stays out until somebody opens the account again.
+    admin.send("DELETE", "/api/v1/accounts/colleague", &[], b"").expect(204);
+    colleague.get("/api/v1/me").expect(401);
+    admin.send("DELETE", "/api/v1/accounts/admin", &[], b"").expect(409);
+    let wish = br#"{"name": "Colleague"}"#;
+    let again = admin.send("PUT", "/api/v1/accounts/colleague", JSON, wish).expect(200).json();
+    let again = again["link"].as_str().expect("a link").rsplit('/').next().expect("a secret").to_owned();
+    server.visitor().welcome(&again).get("/api/v1/me").expect(200);
 }
