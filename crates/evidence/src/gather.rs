@@ -192,6 +192,10 @@ pub fn gather<R: Read>(
             if watch.close_up.actual_contacts.is_empty() {
                 watch.close_up.actual_contacts.clone_from(&mid.impulses);
             }
+            // Who watches comes first, and has the step go on with the trace's mid record: what it should hold is kept there.
+            if let (Some(expected), Some(mid)) = (&watch.close_up.expected_mid, mid_state) {
+                count.apart = apart(expected, mid);
+            }
             evidence.close_ups.push(watch.close_up);
             done
         } else {
@@ -203,12 +207,12 @@ pub fn gather<R: Read>(
         let ruling = rulings.get(step as usize - 1);
         let is_wrong = ruling.is_some_and(wrong);
         seen_wrong |= is_wrong;
-        let apart = free_goes_on && largest(&free.state().positions, &end.state.positions) > APART;
+        let is_apart = free_goes_on && largest(&free.state().positions, &end.state.positions) > APART;
         let class = match ruling {
             None => Class::Unknown,
             Some(ruling) if ruling.damaged => Class::Unknown,
             Some(_) if is_wrong => Class::Wrong,
-            Some(_) if seen_wrong && apart => Class::Inherited,
+            Some(_) if seen_wrong && is_apart => Class::Inherited,
             Some(_) => Class::Right,
         };
         evidence.steps.push(Step {
@@ -235,6 +239,11 @@ fn close_steps(focus: &[Focus], first_wrong: Option<u32>, steps: u32) -> Vec<u32
         }
     }
     chosen
+}
+
+/// How far two states are apart: in positions and in velocities.
+fn apart(one: &State, other: &State) -> [f64; 2] {
+    [largest(&one.positions, &other.positions), largest(&one.velocities, &other.velocities)]
 }
 
 /// The largest distance of two lists' numbers; NaN where one of them is no number.
@@ -297,7 +306,7 @@ impl Observer for Count<'_> {
     fn synchronise(&mut self, state: &mut State) -> Resume {
         match self.mid {
             Some(mid) if mid.positions.len() == state.positions.len() => {
-                self.apart = [largest(&state.positions, &mid.positions), largest(&state.velocities, &mid.velocities)];
+                self.apart = apart(state, mid);
                 state.clone_from(mid);
                 Resume::Synchronised
             }

@@ -101,3 +101,14 @@ fn a_cut_trace_shows_what_is_there() {
     let (_, nothing) = judged(&scene, &[]);
     assert_eq!((nothing.submission.records, nothing.steps.len()), (0, 0));
 }
+
+/// The end of a hybrid step starts from the trace's own mid record, and may be right when that is wrong.
+#[test]
+fn a_hybrid_step_whose_impulses_are_wrong_has_a_residual() {
+    let scene = asset("ImpulsesTests/off-centre-on-turning-edge.xml");
+    let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "decision-alpha-margin"));
+    let first = outcome.account(Book::Fair).first_divergence.expect("wrong");
+    let step = &evidence.steps[first.step as usize - 1];
+    assert!(step.class == Class::Wrong && step.position > 0.1 && step.velocity > 0.1, "{step:?}");
+    assert!(evidence.steps.iter().filter(|other| other.class != Class::Wrong).all(|other| other.position < 1e-10));
+}

@@ -87,3 +87,51 @@ pub fn read(folder: &Path, name: &str) -> Option<String> {
 fn file(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{name}.zst"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Verdict;
+    use fosssim_judge::parity;
+    use fosssim_model::scene::original;
+
+    #[test]
+    fn a_card_is_kept_once_and_only_what_was_kept_is_read() {
+        let xml = b"<scene><duration time=\"0\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
+        let scene = original::read(xml).expect("a scene").scene;
+        let task = SceneTask { name: "a/b".to_owned(), xml: xml.to_vec(), scene, recording: None };
+        let outcome = parity::judge(&task.scene, &[][..], &parity::Options::default(), &mut ());
+        let result = SceneResult::without_run("a/b", 0, Verdict::WrongAnswer, "wrong");
+        let judged = Judged {
+            task: &task,
+            result: &result,
+            outcome: &outcome,
+            rulings: &[],
+            trace: &[],
+            is_cut: false,
+            rules: Rules::Fair,
+            hints: Hints::Full,
+        };
+        let folder = tempfile::tempdir().expect("a folder");
+        let cards = folder.path().join("cards");
+        let keep = |text: &'static str| {
+            let draw = move |_: &Judged<'_>| (!text.is_empty()).then(|| text.to_owned());
+            Cards { folder: &cards, draw: &draw }.keep(&judged).expect("written")
+        };
+        assert_eq!(keep(""), None);
+        assert!(!cards.exists(), "no folder for nothing");
+        let (one, again, other) = (keep("one").expect("a card"), keep("one"), keep("other").expect("a card"));
+        assert_eq!((again.as_ref(), one == other), (Some(&one), false));
+        assert_eq!(fs::read_dir(&cards).expect("a folder").count(), 2);
+        assert_eq!((read(&cards, &one).as_deref(), read(&cards, &other).as_deref()), (Some("one"), Some("other")));
+        let lacks = |card: &str| {
+            let result = SceneResult { card: Some(card.to_owned()), ..result.clone() };
+            Cards { folder: &cards, draw: &|_| None }.lack(&result)
+        };
+        assert!(!lacks(&one));
+        fs::write(file(&cards, &one), zstd::encode_all(&b"another"[..], 1).expect("packed")).expect("written");
+        fs::remove_file(file(&cards, &other)).expect("removed");
+        assert_eq!((read(&cards, &one), read(&cards, &other), read(&cards, "../x")), (None, None, None));
+        assert!(lacks(&other));
+    }
+}

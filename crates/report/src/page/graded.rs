@@ -5,6 +5,7 @@ use crate::{
     number::counted,
 };
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
+use fosssim_mistakes::diagnose::Explanation;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
@@ -14,7 +15,7 @@ pub const BUDGET: usize = 2_950_000;
 /// So much of it may go to pictures and tables before the first motion has room.
 const STILL: usize = BUDGET / 3 * 2;
 
-/// So many characters of what a program printed are shown of a scene, and of all scenes together.
+/// So many characters of what a program printed are shown of a scene, and so many bytes of the page go to all scenes'.
 const OUTPUT: usize = 2_000;
 const OUTPUTS: usize = 200_000;
 
@@ -104,9 +105,10 @@ impl Graded<'_> {
             out += "<h2>Scenes to look at</h2>\n";
         }
         out += &left_out(&cards, &rooms);
+        let likely: Vec<Explanation> = likely_mistakes(self.grade).into_iter().map(|(mistake, _)| mistake).collect();
         let mut outputs = if self.grade.shows_output { OUTPUTS } else { 0 };
         for (number, ((scene, card), room)) in told.iter().zip(&cards).zip(&rooms).enumerate() {
-            out += &article(scene, card.as_ref(), *room, number == 0, &mut outputs);
+            out += &article(scene, &likely, (card.as_ref(), *room), number == 0, &mut outputs);
         }
         let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_told(scene)).collect();
         if !rest.is_empty() {
@@ -217,7 +219,13 @@ fn left_out(cards: &[Option<Card>], rooms: &[Room]) -> String {
     )
 }
 
-fn article(scene: &SceneGrade, card: Option<&Card>, room: Room, open: bool, outputs: &mut usize) -> String {
+fn article(
+    scene: &SceneGrade,
+    likely: &[Explanation],
+    (card, room): (Option<&Card>, Room),
+    open: bool,
+    outputs: &mut usize,
+) -> String {
     let key = key(&scene.scene);
     let look = if scene.verdict.is_accepted() { "good" } else { "bad" };
     let mut out = format!(
@@ -240,6 +248,7 @@ fn article(scene: &SceneGrade, card: Option<&Card>, room: Room, open: bool, outp
             lines.iter().map(|line| format!("<li>{}</li>", text(line))).collect::<String>()
         );
     }
+    out += &over_all(scene, likely);
     out += &mistakes(&scene.explanations);
     match (card, room) {
         (None, _) => {}
@@ -263,6 +272,19 @@ fn article(scene: &SceneGrade, card: Option<&Card>, room: Room, open: bool, outp
     out + "</article>\n"
 }
 
+/// Which of the submission's likely mistakes is meant where a scene alone can't tell it apart from another, which is told first.
+fn over_all(scene: &SceneGrade, likely: &[Explanation]) -> String {
+    let meant = likely.iter().find(|one| one.is_named_in(&scene.explanations));
+    let first = scene.explanations.first();
+    match (meant, first) {
+        (Some(meant), Some(first)) if meant.key != first.key => format!(
+            "<p>All scenes together: <strong>{}</strong> This one alone does not tell it from the following:</p>\n",
+            text(&meant.what)
+        ),
+        _ => String::new(),
+    }
+}
+
 /// A key that another scene's name does not have.
 pub(super) fn key(name: &str) -> String {
     Sha256::digest(name.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
@@ -273,12 +295,17 @@ fn printed(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();
     }
-    let shown: String = output.chars().take(OUTPUT.min(*room)).collect();
-    *room -= shown.len().min(*room);
+    let shown: String = output.chars().take(OUTPUT).collect();
     let cut = if shown.len() < output.len() { "\n[cut short]" } else { "" };
+    // Hostile text grows when it is written out: what counts is its length on the page.
+    let shown = text(&shown);
+    if shown.len() > *room {
+        *room = 0;
+        return "<p class=\"hint\">What programs printed in this scene and in the next ones has no room on this page.</p>\n".to_owned();
+    }
+    *room -= shown.len();
     format!(
         "<details class=\"table\"><summary>{heading}</summary><pre tabindex=\"0\" role=\"region\" \
-         aria-label=\"{heading}\">{}{cut}</pre></details>\n",
-        text(&shown)
+         aria-label=\"{heading}\">{shown}{cut}</pre></details>\n"
     )
 }

@@ -118,8 +118,8 @@ fn the_motion_is_exact() {
     assert!(trace.windows(state).any(|window| window == last));
 }
 
-/// A scene's grade, and the card that is drawn of its trace, with hints of this level.
-fn graded(scene: &Scene, id: &str, hints: Hints) -> String {
+/// The card that is drawn of a wrong trace with hints of this level, and what is said in words.
+fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let trace = of_mistake(scene, id);
     let mut nobody = ();
     let mut rulings = Rulings::new(&mut nobody);
@@ -151,13 +151,24 @@ fn graded(scene: &Scene, id: &str, hints: Hints) -> String {
     let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, summary);
     result.details = first.and_then(|first| hints.first_divergence(first)).into_iter().collect();
     result.explanations = explanations;
+    (card, result)
+}
+
+/// The page of a submission with these results, all of which have the same card.
+fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
     let stakes = Stakes { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
     let grade = Grade {
-        groups: vec![score::group("Group", stakes, vec![(result, false)])],
+        groups: vec![score::group("Group", stakes, results.into_iter().map(|result| (result, false)).collect())],
         verdict: Verdict::WrongAnswer,
+        shows_output: true,
         ..crate::grade::samples::good()
     };
-    Graded { grade: &grade, card: &|_| card.clone(), class: None }.html()
+    Graded { grade: &grade, card: &|_| card.cloned(), class: None }.html()
+}
+
+fn graded(scene: &Scene, id: &str, hints: Hints) -> String {
+    let (card, result) = drawn(scene, id, hints);
+    page_of(vec![result], card.as_ref())
 }
 
 /// What a level hides is not in the file at all: neither as text, nor in the viewer's data.
@@ -200,5 +211,30 @@ fn what_the_hints_hide_is_not_in_the_file() {
         ["id=\"reference-", "id=\"what-", "Coefficients", "First divergence", "differs", "data-plot", "Proof", row.what]
     {
         assert!(full.contains(shown), "{shown}");
+    }
+}
+
+/// What has no room is left out, scene by scene, and the page says so.
+#[test]
+fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
+    let scene = asset("HolisticTests/crowd-of-twenty-balls.xml");
+    let (card, result) = drawn(&scene, "failsafe-angular-overwritten", Hints::Full);
+    let noisy = "\u{202e}\"".repeat(2000);
+    for count in [1, 40] {
+        let name = |number: usize| SceneResult {
+            scene: format!("Group/{number}"),
+            stdout: noisy.clone(),
+            stderr: noisy.clone(),
+            ..result.clone()
+        };
+        let html = page_of((0..count).map(name).collect(), card.as_ref());
+        assert!(html.len() < 3_000_000, "{count}: {}", html.len());
+        assert_eq!(html.matches("<article").count(), count);
+        let with = html.matches("id=\"submission-").count();
+        let without = html.matches("motion has no room").count() + html.matches("motion have no room").count();
+        assert_eq!(with + without, count);
+        assert_eq!(html.contains("The page would grow beyond 3 MB"), count > 1);
+        assert_eq!(html.contains("What programs printed in this scene and in the next ones"), count > 1);
+        assert!(with > 0 && html.contains("Coefficients"), "{with}");
     }
 }
