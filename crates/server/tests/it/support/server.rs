@@ -73,7 +73,7 @@ impl Server {
         };
         let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
         let folder = temp.path().join("data");
-        let (child, output, url) = Self::spawn(&folder, &grader, &database, "127.0.0.1:0", &options);
+        let (child, output, url) = Self::spawn(&folder, &grader, &database, "127.0.0.1:0", &options).expect("a server");
         Self { child, output, url, folder, options, database, _temp: temp }
     }
 
@@ -83,7 +83,7 @@ impl Server {
         database: &str,
         listen: &str,
         options: &[String],
-    ) -> (Child, BufReader<ChildStdout>, String) {
+    ) -> Result<(Child, BufReader<ChildStdout>, String), String> {
         let log = fs::File::options().create(true).append(true).open(folder.with_file_name("log")).expect("a log");
         let mut child = Command::new(env!("CARGO_BIN_EXE_fosssim-server"))
             .args(["serve", "--listen", listen, "--grader"])
@@ -101,11 +101,14 @@ impl Server {
         let mut output = BufReader::new(child.stdout.take().expect("its output"));
         let mut line = String::new();
         output.read_line(&mut line).expect("a line");
-        let url = line.trim().strip_prefix("Listening on ").unwrap_or_else(|| {
-            panic!("{line:?}: {}", fs::read_to_string(folder.with_file_name("log")).unwrap_or_default())
-        });
-        let url = url.to_owned();
-        (child, output, url)
+        match line.trim().strip_prefix("Listening on ") {
+            Some(url) => Ok((child, output, url.to_owned())),
+            None => {
+                child.wait().expect("wait");
+                let log = fs::read_to_string(folder.with_file_name("log")).unwrap_or_default();
+                Err(format!("{line:?}: {log}"))
+            }
+        }
     }
 
     pub(crate) fn grader(&self) -> PathBuf {
@@ -140,7 +143,15 @@ impl Server {
     /// Starts it again at the same place.
     pub(crate) fn resume(&mut self) {
         let listen = self.url.strip_prefix("http://").expect("an address").to_owned();
-        let (child, output, _) = Self::spawn(&self.folder, &self.grader(), &self.database, &listen, &self.options);
+        let start = Instant::now();
+        let (child, output, _) = loop {
+            match Self::spawn(&self.folder, &self.grader(), &self.database, &listen, &self.options) {
+                Ok(server) => break server,
+                // Somebody else's connection may have got the port meanwhile.
+                Err(error) => assert!(start.elapsed() < Duration::from_secs(120), "{error}"),
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        };
         (self.child, self.output) = (child, output);
     }
 
