@@ -3,4 +3,5 @@
 mod flows;
 mod hostile;
 mod roles;
+mod upgrade;
 mod workers;

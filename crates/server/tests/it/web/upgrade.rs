@@ -1,0 +1,65 @@
+//! A newer server on an older database.
+use crate::support::{
+    engines::{Fresh, run},
+    server::Server,
+};
+use fosssim_server::{
+    db::{self, Address, Database},
+    values,
+};
+
+#[test]
+fn the_database_is_copied_before_its_tables_change() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite").with_tables().await;
+        // As the first version left it.
+        let mut transaction = fresh.database.begin().await.expect("a transaction");
+        for statement in [
+            "DROP TABLE session",
+            "DROP TABLE token",
+            "DROP TABLE sign_in_link",
+            "DROP TABLE upload_key",
+            "DROP TABLE job_file",
+            "DROP INDEX event_assignment",
+            "DROP INDEX campaign_assignment",
+            "DELETE FROM schema_change WHERE number > 1",
+            "INSERT INTO account (login, name, created_at) VALUES ('ada', 'Ada', {now})",
+        ] {
+            transaction.execute(statement, values![]).await.expect("a statement");
+        }
+        transaction.commit().await.expect("commit");
+        let mut server = Server::start(&fresh, &["--workers", "0"]);
+        let admin = server.admin();
+        let accounts = admin.get("/api/v1/accounts").expect(200).json();
+        assert_eq!(accounts[0]["login"], "ada", "what was there stays there");
+        let backups = server.folder.join("backups");
+        let copies = || -> Vec<_> {
+            let entries = std::fs::read_dir(&backups).expect("a folder").map(|entry| entry.expect("an entry").path());
+            // SQLite keeps files of its own beside a database that is open.
+            entries.filter(|path| path.extension().is_some_and(|extension| extension == "db")).collect()
+        };
+        let made = copies();
+        let [copy] = made.as_slice() else { panic!("{made:?}") };
+        // The copy is a whole database of the old version.
+        let old = Database::open(&Address::Sqlite(copy.clone())).await.expect("the copy");
+        assert_eq!(db::version(&old).await.expect("a version"), 1);
+        let mut transaction = old.read().await.expect("a transaction");
+        let row = transaction.one("SELECT name FROM account WHERE login = 'ada'", values![]).await.expect("a row");
+        assert_eq!(row.text("name").expect("a name"), "Ada");
+        drop(transaction);
+        // Started again it changes nothing, and copies nothing.
+        assert!(server.stop().success());
+        server.resume();
+        admin.get("/api/v1/me").expect(200);
+        assert_eq!(copies(), made);
+        // A restored backup is brought up to date by itself.
+        old.close().await;
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = folder.path().join("restored.db");
+        std::fs::copy(copy, &place).expect("a copy");
+        let restored = Database::open(&Address::Sqlite(place)).await.expect("the restored one");
+        db::migrate(&restored).await.expect("tables");
+        assert_eq!(db::version(&restored).await.expect("a version"), db::LATEST);
+        restored.close().await;
+    });
+}
