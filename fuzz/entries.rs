@@ -2,13 +2,15 @@
 use fosssim_oracle::{
     diagnose,
     judge::{Book, Ruling, parity},
+    sandbox,
     scene::{Collision, Scene, original},
     sim::{RootSearch, Simulation},
+    suite::{self, config, journal},
     trace::{
         Digests, Frame, Indexed, Layout, Lenient, LenientFrame, Reader, Recorder, Summary, TraceError, Writer, compare,
     },
 };
-use std::io::Cursor;
+use std::{io::Cursor, time::Duration};
 
 /// The scenes of the `trace` target, one per collision type.
 pub const SCENES: [&str; 5] = [
@@ -120,15 +122,27 @@ pub fn extreme(choice: usize, value: f64) -> Vec<u8> {
     writer.finish().expect("writing to memory").0
 }
 
-/// Judges a whole trace by both rule books and explains it. The first byte chooses the scene, the rest is the trace; what is
-/// missing at its end comes from the scene's recording, so that a few bytes make a whole trace.
-pub fn judge(bytes: &[u8]) {
-    let Some((&choice, start)) = bytes.split_first() else { return };
+/// A scene, the trace of it that these bytes make, and its recording. The first byte chooses the scene, the rest is the
+/// trace; what is missing at its end comes from the recording, so that a few bytes make a whole trace.
+fn whole(bytes: &[u8]) -> Option<(Scene, Vec<u8>, Vec<u8>)> {
+    let (&choice, start) = bytes.split_first()?;
     let xml = SCENES[usize::from(choice) % SCENES.len()];
     let scene = original::read(xml.as_bytes()).expect("our own scene").scene;
     let (_, recorded, _) = record(&scene, usize::MAX).expect("writing to memory");
     let trace = [start, recorded.get(start.len()..).unwrap_or_default()].concat();
+    Some((scene, trace, recorded))
+}
 
+/// Explains a whole trace.
+pub fn explain(bytes: &[u8]) {
+    let Some((scene, trace, recorded)) = whole(bytes) else { return };
+    let explanations = diagnose::explain(&scene, &trace);
+    assert!(trace != recorded || explanations.is_empty(), "nothing is wrong with the recording: {explanations:?}");
+}
+
+/// Judges a whole trace by both rule books.
+pub fn judge(bytes: &[u8]) {
+    let Some((scene, trace, _)) = whole(bytes) else { return };
     let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
     let outcome = parity::judge(&scene, &trace[..], &options, &mut ());
     for book in [Book::Parity, Book::Fair] {
@@ -146,8 +160,39 @@ pub fn judge(bytes: &[u8]) {
             assert!(frame.state.positions.iter().chain(&frame.state.velocities).all(finite), "no physics, no points");
         }
     }
-    let explanations = diagnose::explain(&scene, &trace);
-    assert!(trace != recorded || explanations.is_empty(), "nothing is wrong with the recording: {explanations:?}");
+}
+
+/// Reads a suite. What is wrong with it is told with places that the text has.
+pub fn suite(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    match config::read(text) {
+        Ok(suite) => {
+            let total: f64 = suite.groups.iter().map(|group| group.points).sum();
+            assert!(total.is_finite() && total >= 0.0, "points are numbers: {total}");
+            assert!(suite.groups.iter().all(|group| group.scenes.len() == group.positions.len()));
+        }
+        Err(error) => {
+            let text = error.to_string();
+            assert!(!text.trim().is_empty(), "a refusal without a reason");
+        }
+    }
+}
+
+/// Reads a line of the journal. What is kept again is the same.
+pub fn journal(bytes: &[u8]) {
+    let Some((key, result)) = journal::read_line(bytes) else { return };
+    let again = journal::line(&key, "submission", &result);
+    let (same_key, same) = journal::read_line(&again).expect("our own line is sound");
+    // Times are kept as binary fractions of a second.
+    let timeless = |result: suite::SceneResult| {
+        format!("{:?}", suite::SceneResult { cpu: Duration::ZERO, wall: Duration::ZERO, ..result })
+    };
+    assert_eq!((same_key, timeless(same)), (key, timeless(result)));
+}
+
+/// Reads messages between the grader and its supervisor.
+pub fn wire(bytes: &[u8]) -> usize {
+    sandbox::read_messages(bytes)
 }
 
 /// Number of records and of bytes behind them, or what is wrong.

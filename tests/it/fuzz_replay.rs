@@ -1,5 +1,8 @@
 //! The fuzzer's seeds, replayed as ordinary tests through the fuzz targets' own functions.
-use fosssim_oracle::scene::original;
+use fosssim_oracle::{
+    scene::original,
+    suite::{config, journal},
+};
 use std::path::{Path, PathBuf};
 
 #[path = "../../fuzz/entries.rs"]
@@ -39,7 +42,36 @@ fn judge_seeds_do_no_harm() {
     for (path, bytes) in seeds("judge") {
         eprintln!("{}", path.display());
         entries::judge(&bytes);
+        entries::explain(&bytes);
     }
+}
+
+#[test]
+fn suite_seeds_do_no_harm() {
+    let mut accepted = 0;
+    for (path, bytes) in seeds("suite") {
+        eprintln!("{}", path.display());
+        entries::suite(&bytes);
+        accepted += usize::from(std::str::from_utf8(&bytes).is_ok_and(|text| config::read(text).is_ok()));
+    }
+    assert!(accepted > 1, "{accepted} seeds are suites");
+}
+
+#[test]
+fn journal_seeds_do_no_harm() {
+    let mut kept = 0;
+    for (path, bytes) in seeds("journal") {
+        eprintln!("{}", path.display());
+        entries::journal(&bytes);
+        kept += usize::from(journal::read_line(&bytes).is_some());
+    }
+    assert!(kept > 1, "{kept} seeds keep a result");
+}
+
+#[test]
+fn wire_seeds_do_no_harm() {
+    let messages: usize = seeds("wire").iter().map(|(_, bytes)| entries::wire(bytes)).sum();
+    assert!(messages > 5, "{messages} messages in all seeds");
 }
 
 /// Every collision type with states of every absurd size is among the seeds of the judge.

@@ -116,8 +116,7 @@ impl Journal {
                 }
                 sound += length as u64;
                 // A line that somebody damaged costs its own result only.
-                let entry = serde_json::from_slice::<Entry>(&line).ok();
-                if let Some((key, result)) = entry.and_then(Entry::into_result) {
+                if let Some((key, result)) = read_line(&line) {
                     found.insert(key, result);
                 }
             }
@@ -148,8 +147,7 @@ impl Journal {
         if matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
             return Ok(());
         }
-        let mut line = serde_json::to_vec(&Entry::new(key, submission, result)).unwrap_or_default();
-        line.push(b'\n');
+        let line = line(key, submission, result);
         let before = self.file.stream_position().unwrap_or(0);
         let written = self.file.write_all(&line).and_then(|()| self.file.flush());
         written.map_err(|source| {
@@ -161,6 +159,20 @@ impl Journal {
         self.found.insert(key.clone(), result.clone());
         Ok(())
     }
+}
+
+/// The line that keeps a result, with its end.
+#[must_use]
+pub fn line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
+    let mut line = serde_json::to_vec(&Entry::new(key, submission, result)).unwrap_or_default();
+    line.push(b'\n');
+    line
+}
+
+/// The result that a line keeps; `None` where the line is damaged.
+#[must_use]
+pub fn read_line(line: &[u8]) -> Option<(Key, SceneResult)> {
+    serde_json::from_slice::<Entry>(line).ok()?.into_result()
 }
 
 /// One line of the file. Points are not part of it: they follow from the suite.

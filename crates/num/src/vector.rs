@@ -2,7 +2,7 @@
 //!
 //! [`Vec2`] is nalgebra's `Vector2<f64>`: sums, differences, `scalar * vector` and `dot` (`x*x' + y*y'`) round as the
 //! specification says. **Never divide a `Vec2` by a scalar and never call its `normalize`**: nalgebra divides each
-//! component, the original multiplies by the reciprocal (`simulation.md`, conventions). Use [`over`] and [`unit`].
+//! component, the original multiplies by the reciprocal (`simulation.md`, conventions). Use [`over`] and [`unit`](fn@unit).
 
 /// A point or a direction in the plane, in the scene's length unit; x to the right, y up.
 pub type Vec2 = nalgebra::Vector2<f64>;

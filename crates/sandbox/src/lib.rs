@@ -43,6 +43,8 @@ pub use outcome::{Captured, Ended, Outcome, StartProblem, Stream};
 pub use own::is_own;
 pub use running::{Canceller, Running, TraceReader, TraceTooLong};
 pub use supervisor::supervisor_main;
+#[doc(hidden)]
+pub use wire::read_messages;
 
 /// Has this process's own writes beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
 /// instead of ending it. The programs that it runs keep the signal, which then ends them.

@@ -198,9 +198,30 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     if length > LONGEST_MESSAGE {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "a message of the supervisor is out of step"));
     }
-    let mut body = vec![0; usize::try_from(length).map_err(io::Error::other)?];
-    from.read_exact(&mut body)?;
+    // The length is a claim: memory grows as bytes arrive.
+    let mut body = Vec::new();
+    if from.take(length).read_to_end(&mut body)? as u64 != length {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
     Ok(serde_json::from_slice(&body)?)
+}
+
+/// Reads as many messages of each kind as these bytes hold, and asks that each be the same once it was sent: for the fuzz target.
+/// The number of messages.
+#[doc(hidden)]
+#[must_use]
+pub fn read_messages(bytes: &[u8]) -> usize {
+    fn all<T: Serialize + DeserializeOwned + PartialEq + std::fmt::Debug>(mut bytes: &[u8]) -> usize {
+        let mut count = 0;
+        while let Ok(message) = receive::<T>(&mut bytes) {
+            let mut sent = Vec::new();
+            send(&mut sent, &message).expect("memory");
+            assert_eq!(receive::<T>(&sent[..]).ok().as_ref(), Some(&message));
+            count += 1;
+        }
+        count
+    }
+    all::<Order>(bytes) + all::<Event>(bytes) + all::<Probe>(bytes)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Reports as one HTML file: the essentials as text and SVG, the motion viewer on top.
 //!
 //! The file asks for nothing else: no network, no second file. Its policy allows the one script and the one style sheet by
-//! their digests, and nothing that is evaluated; whatever a submission, a scene or a path says is text ([`markup`]). Without
+//! their digests, and nothing that is evaluated; whatever a submission, a scene or a path says is text (`markup`). Without
 //! script everything but the viewer is there, and prints.
 
 mod call;

@@ -2,8 +2,8 @@
 //!
 //! Pure functions over samples: the inputs of a detection and what the submission logged. A guess counts by how many
 //! samples it reproduces to round-off, right ones included. Guesses are, from simple to intricate: the whole list of
-//! coefficients ([`structure`]: reversed, negated, cut, exchanged), the inputs ([`inputs`]: end positions, radii squared
-//! apart), misunderstandings with a formula of their own ([`specials`]), one letter of a formula ([`slips`]), and the terms of single coefficients ([`terms`]: sparse least squares over
+//! coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (`inputs`: end positions, radii squared
+//! apart), misunderstandings with a formula of their own (`specials`), one letter of a formula (`slips`), and the terms of single coefficients (`terms`: sparse least squares over
 //! the products of dot products, with weights that are multiples of 1/4). Correct polynomials are those of
 //! collisions.md 2, up to a positive factor each; the quintic may be the supplied one or the mathematically right one.
 //!

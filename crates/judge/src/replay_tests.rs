@@ -1,0 +1,88 @@
+//! Batches and limits, tried from inside.
+use super::*;
+use crate::{finding::Kind, samples::changed};
+use fosssim_model::trace::{Frame, Reader, Recorder, Writer};
+use fosssim_num::vector::Vec2;
+
+/// So many balls that a pass logs more than the reader's window holds.
+fn crowd() -> Scene {
+    let ball = |number: usize| {
+        format!(r#"<particle m="1" px="{number}" py="0" vx="0" vy="0.{number:03}" fixed="0" radius="0.1"/>"#)
+    };
+    let balls: String = (0..120).map(ball).collect();
+    let xml = format!(
+        r#"<scene><duration time="0.2"/><integrator type="explicit-euler" dt="0.1"/>
+            <collision type="continuous-time"/>{balls}</scene>"#
+    );
+    fosssim_model::scene::read("crowd", xml.as_bytes()).expect("a scene").scene
+}
+
+/// Memory: a batch holds as many records as fit, whatever their lists hold.
+#[test]
+fn a_batch_counts_all_lists() {
+    let scene = crate::samples::scene(crate::samples::BOUNCE);
+    let scene = Scene { duration: 100.0, ..scene };
+    let impulse = LoggedImpulse { kind: 2, first: 0, second: 0, normal: Vec2::zeros(), time: 0.5 };
+    for (impulses, polynomials) in [(20_000, 0), (0, 100_000)] {
+        let trace = changed(&scene, |frames| {
+            for frame in &mut frames[1..21] {
+                frame.impulses = vec![impulse; impulses];
+                (0..polynomials).for_each(|_| frame.polynomials.push(&[]));
+            }
+        });
+        let mut replay = Replay::new(&scene, Lenient::new(&trace[..], Layout::of(&scene)), true);
+        replay.read_initial().expect("a first record");
+        let mut batch = Batch::default();
+        assert!(replay.read_batch(&mut batch).is_none());
+        assert!(batch.filled == 1 && batch.bytes > 500_000, "{} steps, {} bytes", batch.filled, batch.bytes);
+    }
+}
+
+/// As many contacts as fit into a record are told apart without comparing each with all others.
+#[test]
+fn a_crowd_of_contacts_is_judged() {
+    let scene = crate::samples::scene(crate::samples::BOUNCE);
+    let of = |second| LoggedImpulse { kind: 9, first: 0, second, normal: Vec2::zeros(), time: 0.5 };
+    let trace = changed(&scene, |frames| {
+        for frame in &mut frames[1..3] {
+            frame.impulses.extend((0..500_000).map(of).chain([of(7), of(7)]));
+        }
+    });
+    let outcome = crate::samples::judged(&scene, &trace);
+    assert_eq!(outcome.counts.get(Kind::SuperfluousCollision), 500_002);
+    let fair = outcome.fair.expect("asked");
+    let counts = [Kind::SuperfluousCollision, Kind::RepeatedCollision].map(|kind| fair.counts.get(kind));
+    assert_eq!(counts, [500_000, 2]);
+}
+
+#[test]
+fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
+    let scene = crowd();
+    let layout = Layout::of(&scene);
+    let mut simulation = Simulation::new(&scene, Default::default());
+    let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
+    (0..2).for_each(|_| simulation.step(&mut recorder).expect("a step"));
+    let right = recorder.finish().expect("memory").0;
+    // The same, with one polynomial more at the end of every list.
+    let (mut reader, mut writer) = (Reader::of_slice(&right, layout), Writer::new(Vec::new(), layout));
+    let mut frame = Frame::default();
+    while reader.next(&mut frame).expect("a frame") {
+        frame.polynomials.push(&[1.0]);
+        writer.frame(&frame);
+    }
+    let longer = writer.finish().expect("memory").0;
+    for threads in [1, 2] {
+        let options = Options { threads, ..Options::default() };
+        let judge = |memory, trace: &[u8]| judge_within((memory, FLOOR), &scene, trace, &options, &mut ());
+        let whole = judge(usize::MAX, &right);
+        assert!(whole.stop.is_none() && whole.counts.total() == 0, "{whole:?}");
+        let Some(Stop::Trace { step: 1, frame: 2, cause: Unreadable::Limit, message, .. }) = judge(0, &right).stop
+        else {
+            panic!("not judged")
+        };
+        assert!(message.contains("14280 polynomials, as many as it should have"), "{message}");
+        let wrong = judge(0, &longer);
+        assert!(wrong.stop.is_none() && wrong.wrong_steps == 2, "{wrong:?}");
+        assert!(wrong.examples[0].to_string().contains("14281 polynomials"), "{wrong:?}");
+    }
+}

@@ -1,0 +1,8 @@
+#![no_main]
+//! Fuzz target: see `journal` in `entries.rs`.
+
+#[path = "../entries.rs"]
+#[expect(dead_code, reason = "each target uses one of the entries")]
+mod entries;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| entries::journal(bytes));
