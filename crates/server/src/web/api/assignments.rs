@@ -15,6 +15,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::Deserialize;
+use std::path::Path;
 use utoipa::ToSchema;
 
 /// The largest archive of a suite.
@@ -88,13 +89,30 @@ pub(in crate::web) async fn receive_suite(
     request: Request,
 ) -> Result<Assignment, Problem> {
     let received = upload::receive(staff.member().house(), request, SUITE).await?;
-    let path = received.file.to_path_buf();
-    let looked = tokio::task::spawn_blocking(move || archive::look_through(&path, Limits::USUAL)).await;
-    let files = looked.map_err(|_| Problem::fault())?.map_err(|error| Problem::unusable(error.to_string()))?;
-    if !files.iter().any(|file| file.as_os_str() == "suite.toml") {
-        return Err(Problem::unusable("the archive has no suite.toml at its top"));
-    }
+    let (path, incoming) = (received.file.to_path_buf(), staff.member().house().incoming().to_owned());
+    let looked = tokio::task::spawn_blocking(move || check_suite(&path, &incoming)).await;
+    looked.map_err(|_| Problem::fault())??;
     staff.set_suite(assignment, &received.file).await
+}
+
+/// Whether an archive holds a suite that keeps to itself: its scenes lie in the archive, or come with the program. A worker
+/// would read any other file of its machine for it.
+fn check_suite(archive: &Path, incoming: &Path) -> Result<(), Problem> {
+    let folder = tempfile::tempdir_in(incoming)?;
+    archive::unpack(archive, folder.path(), Limits::USUAL).map_err(|error| Problem::unusable(error.to_string()))?;
+    let Ok(text) = std::fs::read_to_string(folder.path().join("suite.toml")) else {
+        return Err(Problem::unusable("the archive has no suite.toml at its top, in UTF-8"));
+    };
+    let suite: toml::Table =
+        text.parse().map_err(|error| Problem::unusable(format!("suite.toml is not understood: {error}")))?;
+    let groups = suite.get("group").and_then(toml::Value::as_array).into_iter().flatten();
+    let scenes = groups.filter_map(|group| group.get("scenes")?.as_array()).flatten().filter_map(toml::Value::as_str);
+    for scene in scenes {
+        if scene.starts_with('/') || scene.split('/').any(|part| part == "..") {
+            return Err(Problem::unusable(format!("the scene {scene} does not lie in the archive")));
+        }
+    }
+    Ok(())
 }
 
 /// How all students stand: which submission counts, and for what.

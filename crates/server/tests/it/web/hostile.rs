@@ -262,6 +262,26 @@ fn archives_can_not_leave_their_folder() {
 }
 
 #[test]
+fn suites_keep_to_themselves() {
+    run(async {
+        let (_fresh, server, admin, ada) = start(&["--workers", "0"]).await;
+        let path = "/api/v1/courses/physics/assignments/m1/suite";
+        let send = |suite: &str| admin.send("PUT", path, &[], &zip(&[("suite.toml", suite.as_bytes(), 0o644)]));
+        for scene in ["/etc/passwd", "../../fosssim.db", "scenes/../../x"] {
+            let suite = format!("schema = 1\n[[group]]\nname = 'a'\nscenes = ['asset:x', '{scene}']\n");
+            let answer = send(&suite).expect(422);
+            assert!(answer.text().contains("does not lie in the archive"), "{}", answer.text());
+        }
+        assert!(send("group = [").expect(422).text().contains("not understood"));
+        let without = zip(&[("deeper/suite.toml", b"schema = 1", 0o644)]);
+        assert!(admin.send("PUT", path, &[], &without).expect(422).text().contains("no suite.toml"));
+        send("schema = 1\n[[group]]\nname = 'a'\nscenes = ['asset:x', 'scenes/*.xml']\n").expect(200);
+        ada.send("PUT", path, &[], b"").expect(403);
+        assert_eq!(std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count(), 0);
+    });
+}
+
+#[test]
 fn addresses_lead_nowhere_else() {
     run(async {
         let (_fresh, server, _, ada) = start(&["--workers", "1"]).await;
