@@ -104,7 +104,7 @@ impl Grade {
     pub fn likely_mistakes(&self) -> Vec<(Explanation, usize)> {
         several(self.scenes().map(|scene| scene.explanations.as_slice()), &self.refuted)
             .into_iter()
-            .filter(|likely| likely.reproduced > 0)
+            .filter(|likely| likely.reproduced > 0 || likely.is_of_stage())
             .map(|likely| (likely.clone(), self.explained_by(&likely)))
             .collect()
     }

@@ -1,8 +1,8 @@
 //! Puts the explanations of a trace together.
 use super::{
-    Explanation, known,
-    known::{is_empty_stage, shows},
-    polynomial, samples,
+    Explanation,
+    known::{is_empty_stage, known_or_open, shows},
+    polynomial, samples, stages,
 };
 use crate::{
     plain::formula_in,
@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 /// A trace of another scene yields nothing but that question ([`Explanation::is_other_scene`]).
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    let mut known = known(scene, trace);
+    let (mut known, open) = known_or_open(scene, trace);
     if known.iter().any(Explanation::is_other_scene) {
         return known;
     }
@@ -49,8 +49,14 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
         // It reproduces the polynomials, too: what is said about them besides only follows from it.
         polynomials.clear();
     }
+    let stage = open.and_then(|scan| stages::explain(scene, scan.wrong.iter().chain(&scan.right)));
+    if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
+        // Where pairs come in another order, polynomials of one are not those of another.
+        polynomials.clear();
+    }
     let mut all = known;
     all.append(&mut polynomials);
+    all.extend(stage);
     // A stable sort: among equals the known mistake stays first.
     all.sort_by_key(|explanation| (explanation.key == "unexplained", !explanation.is_complete()));
     debug_assert!(all.iter().all(|one| formula_in(&one.what).is_none()), "a sentence gives a formula away: {all:?}");
@@ -80,9 +86,11 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
                 }
                 vote.last = Some(number);
                 vote.traces += 1;
-                vote.complete += usize::from(explanation.is_complete());
+                vote.complete += usize::from(explanation.is_complete() || explanation.is_of_stage());
                 vote.first += usize::from(rank == 0 && place == 0);
-                if rank == 0 && vote.told.is_none() {
+                // Of one finding, the words that say most.
+                if rank == 0 && vote.told.is_none_or(|told| told.details.is_empty() && !explanation.details.is_empty())
+                {
                     vote.told = Some(explanation);
                 }
                 vote.shared = vote.shared.or(Some(explanation));
@@ -124,6 +132,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         list.iter().filter_map(settle).collect()
     };
     let mut open: Vec<Vec<Explanation>> = traces.into_iter().map(kept).filter(|list| !list.is_empty()).collect();
+    keep_earliest_stage(&mut open);
     let mut covered = vec![false; open.len()];
     let mut found: Vec<Explanation> = unfinished(&open).into_iter().collect();
     let empty: Vec<String> = found.iter().flat_map(|one| one.same_as.clone()).collect();
@@ -145,6 +154,42 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         }
     }
     found
+}
+
+/// Leaves of what is said of stages only what concerns the earliest one: what is wrong behind it may follow. And a known mistake
+/// of that stage or a later one that explains fewer traces than there are of these is no more than like what is wrong.
+fn keep_earliest_stage(open: &mut Vec<Vec<Explanation>>) {
+    let Some(earliest) = open.iter().flatten().filter_map(Explanation::stage).min() else { return };
+    let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
+    let observed = open.iter().filter(|list| list.iter().any(is_of_it)).count();
+    let mut weak: Vec<&'static str> = Vec::new();
+    for row in CATALOGUE.iter().filter(|row| stage_of(row.area).is_some_and(|stage| stage >= earliest)) {
+        if open.iter().filter(|list| names_completely(list, row.id)).count() < observed {
+            weak.push(row.id);
+        }
+    }
+    // In another order, polynomials of one pair stand where those of another are looked for.
+    let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
+    let has_order = open.iter().flatten().any(|one| one.key == Explanation::ORDER);
+    for list in open.iter_mut() {
+        list.retain(|one| {
+            let is_weak = weak.contains(&one.key.as_str()) || (has_order && is_misread(one));
+            !is_weak && one.stage().is_none_or(|stage| stage == earliest)
+        });
+    }
+    open.retain(|list| !list.is_empty());
+}
+
+/// How early in a step mistakes of this part of the assignment are made, as [`Explanation::stage`] counts; nothing for
+/// polynomials and for the trace.
+const fn stage_of(area: Area) -> Option<usize> {
+    match area {
+        Area::Decision => Some(0),
+        Area::ContactVector => Some(1),
+        Area::Response | Area::ContinuousTime | Area::ImpulseLoop => Some(2),
+        Area::ImpactZones | Area::Failsafe => Some(3),
+        _ => None,
+    }
 }
 
 /// Keys of mistakes that [`several`] would tell and that these scenes speak against: the program was right there, and with the

@@ -26,6 +26,9 @@ impl Explanation {
     /// The key of stages that are still empty, told as one ([`several`](super::several)).
     pub const UNFINISHED: &'static str = "unfinished";
 
+    /// The key of pairs that are looked at in another order.
+    pub const ORDER: &'static str = "stage-order";
+
     /// The key of what is right but for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
@@ -55,6 +58,29 @@ impl Explanation {
         let stages = if self.key == Self::UNFINISHED { self.same_as.as_slice() } else { &[] };
         let is_meant = |key: &String| *key == self.key || stages.contains(key);
         explanations.iter().any(|one| is_meant(&one.key) || one.same_as.iter().any(is_meant))
+    }
+
+    /// Whether it says which stage of a step is wrong, which is an observation and no guess.
+    #[must_use]
+    pub fn is_of_stage(&self) -> bool {
+        self.stage().is_some()
+    }
+
+    /// How early in a step the stage is that it says is wrong: detection, contact vectors, responses and impulse rounds, zones.
+    pub(super) fn stage(&self) -> Option<usize> {
+        let stages: [&[&str]; 4] = [
+            &[
+                Self::ORDER,
+                "stage-contact-times",
+                "stage-contacts-missed",
+                "stage-contacts-superfluous",
+                "stage-decisions",
+            ],
+            &["stage-contact-vectors"],
+            &["stage-response", "stage-unresolved", "stage-rounds", "stage-handed-over", "stage-loop"],
+            &["stage-zones", "stage-stop", "stage-zone-rounds", "stage-failsafe"],
+        ];
+        stages.iter().position(|keys| keys.contains(&self.key.as_str()))
     }
 
     /// Whether it reproduces everything that was looked at.

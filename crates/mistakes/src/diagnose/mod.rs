@@ -9,9 +9,11 @@ mod explain;
 mod explanation;
 mod known;
 mod notation;
+pub mod outside;
 pub mod polynomial;
 mod probe;
 mod samples;
+mod stages;
 
 pub use crate::plain::formula_in;
 pub use explain::{common, explain, refuted, several};

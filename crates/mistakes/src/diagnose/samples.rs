@@ -12,7 +12,7 @@ use fosssim_judge::{
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Decision, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, Stage, State},
-    trace::{Layout, Lenient, LenientFrame, PolynomialLog, record_memory},
+    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, PolynomialLog, record_memory},
 };
 use fosssim_num::{polynomial::Polynomial, vector::at};
 use std::io::Read;
@@ -114,6 +114,15 @@ impl<'a> Gatherer<'a> {
         Self { scene, step, mid, log, gathered, sizes, next: None }
     }
 
+    /// Whether the submission lists a contact of this pair, which only `continuous-time` does.
+    fn is_hit(&self, pair: Pair) -> bool {
+        let is_pair = |impulse: &LoggedImpulse| {
+            (impulse.kind, impulse.first, impulse.second)
+                == (pair.kind.code(), pair.first.cast_signed(), pair.second.cast_signed())
+        };
+        matches!(self.scene.collision, Collision::ContinuousTime { .. }) && self.mid.impulses.iter().any(is_pair)
+    }
+
     fn motion(&self, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Motion {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let body = |particle| {
@@ -201,7 +210,8 @@ impl Observer for Gatherer<'_> {
         let (Some((pass, index)), Some(Sizes(sizes))) = (self.next, self.sizes) else { return };
         let size = sizes[row(pair.kind)];
         let lists = index..index + size;
-        self.next = Some((pass, lists.end));
+        // What comes behind a contact of the submission's own depends on a response that is not logged.
+        self.next = (!self.is_hit(pair)).then_some((pass, lists.end));
         if lists.end > self.log.len() {
             self.next = None;
             return;

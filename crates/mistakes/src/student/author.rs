@@ -1,5 +1,8 @@
 //! Who wrote a program: the mistakes that are made in it.
-use super::catalogue::{Area, Mistake};
+use super::{
+    catalogue::{Area, Mistake},
+    mutants::{Change, Mutant},
+};
 
 /// So many mistakes one student makes at most.
 const MOST: usize = 8;
@@ -9,6 +12,7 @@ const MOST: usize = 8;
 pub struct Student {
     mistakes: [Option<Mistake>; MOST],
     right_approach: bool,
+    mutant: Option<&'static Mutant>,
 }
 
 impl Student {
@@ -42,6 +46,17 @@ impl Student {
     #[must_use]
     pub fn with_right_approach(self) -> Self {
         Self { right_approach: true, ..self }
+    }
+
+    /// The same student, who makes a mistake that the catalogue does not have, too.
+    #[must_use]
+    pub fn with_mutant(self, mutant: &'static Mutant) -> Self {
+        Self { mutant: Some(mutant), ..self }
+    }
+
+    /// What the student changes that the catalogue does not have.
+    pub(super) fn change(self) -> Option<&'static Change> {
+        self.mutant.map(|mutant| &mutant.change)
     }
 
     /// Whether the particle-edge approach is mathematically right, not the supplied one.

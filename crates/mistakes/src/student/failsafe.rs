@@ -6,6 +6,8 @@ use fosssim_num::{
 
 use super::{
     catalogue::{Area, Mistake},
+    mutants::{Change, Turn},
+    rounding::single,
     world::{State, World},
     zones::Zone,
 };
@@ -52,6 +54,10 @@ fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
         }
         if mistake != Some(Mistake::FailsafeStopKeepsVelocity) {
             let stopped = at(&state.v, particle) * 0.0;
+            let stopped = match world.student.change() {
+                Some(Change::Stopped(change)) => change(at(&state.v, particle)),
+                _ => stopped,
+            };
             put(&mut state.v, particle, stopped);
         }
     }
@@ -67,14 +73,37 @@ struct Rigid<'a> {
     shift: Vec2,
     /// How far the body turns within the step, radians.
     angle: f64,
+    /// Its moment of inertia.
+    inertia: f64,
 }
 
 impl<'a> Rigid<'a> {
     fn new(world: &'a World, zone: &Zone, q_start: &'a [f64], state: &State) -> Self {
-        let mut rigid = Self { world, q_start, centre: Vec2::zeros(), shift: Vec2::zeros(), angle: 0.0 };
+        let mut rigid = Self { world, q_start, centre: Vec2::zeros(), shift: Vec2::zeros(), angle: 0.0, inertia: 0.0 };
         rigid.translation(zone, state);
         rigid.rotation(zone, state);
+        if let Some(Change::Rigid(change)) = world.student.change() {
+            let mut turn = rigid.turn(zone);
+            change(&mut turn);
+            (rigid.shift, rigid.angle) = (turn.shift, turn.angle);
+        }
         rigid
+    }
+
+    /// The motion, for what the catalogue does not have.
+    fn turn(&self, zone: &Zone) -> Turn {
+        let disc = |&particle: &usize| {
+            let particle = &self.world.scene.particles[particle];
+            particle.mass * particle.radius * particle.radius
+        };
+        Turn {
+            centre: self.centre,
+            shift: self.shift,
+            angle: self.angle,
+            inertia: self.inertia,
+            discs: zone.particles.iter().map(disc).sum(),
+            h: self.world.scene.time_step,
+        }
     }
 
     fn mistake(&self) -> Option<Mistake> {
@@ -103,8 +132,10 @@ impl<'a> Rigid<'a> {
             self.centre = student.add_scaled(self.centre, weight(Mistake::FailsafeCentreUnweighted), position);
             self.shift = student.add_scaled(self.shift, weight(Mistake::FailsafeMomentumUnweighted), motion);
             total += mass;
-            if self.mistake() == Some(Mistake::FailsafeMassInteger) {
-                total = total.trunc();
+            match self.mistake() {
+                Some(Mistake::FailsafeMassInteger) => total = total.trunc(),
+                Some(Mistake::FailsafeSumsSingle) => total = single(total),
+                _ => {}
             }
         }
         #[expect(clippy::cast_precision_loss, reason = "a number of particles")]
@@ -156,10 +187,18 @@ impl<'a> Rigid<'a> {
                 _ => student.dot(arm, arm),
             };
             inertia = student.add_product(inertia, weight(Mistake::FailsafeInertiaUnweighted), square);
+            match self.mistake() {
+                Some(Mistake::FailsafeAngularInteger) => momentum = momentum.trunc(),
+                Some(Mistake::FailsafeInertiaInteger) => inertia = inertia.trunc(),
+                Some(Mistake::FailsafeSumsSingle) => (momentum, inertia) = (single(momentum), single(inertia)),
+                _ => {}
+            }
         }
+        self.inertia = inertia;
         self.angle = match self.mistake() {
             Some(Mistake::FailsafeRotationSign) => -(momentum / inertia),
             Some(Mistake::FailsafeNoRotation) => 0.0,
+            Some(Mistake::FailsafeTinyTurnIgnored) if (momentum / inertia).abs() < 1e-3 => 0.0,
             Some(Mistake::FailsafeAnglePerStep) => momentum / inertia * self.world.scene.time_step,
             Some(Mistake::FailsafeNoInertia) => momentum,
             _ => momentum / inertia,
@@ -215,6 +254,12 @@ impl<'a> Rigid<'a> {
                 _ => put(&mut state.v, particle, over(x - start, h)),
             }
             put(&mut state.x, particle, x);
+            if let Some(Change::Moved(change)) = self.world.student.change() {
+                let (mut x, mut v) = (x, at(&state.v, particle));
+                change(start, &self.turn(zone), &mut x, &mut v);
+                put(&mut state.x, particle, x);
+                put(&mut state.v, particle, v);
+            }
         }
     }
 }

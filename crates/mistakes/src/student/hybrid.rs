@@ -3,6 +3,7 @@ use super::{
     catalogue::{Area, Mistake},
     detection, failsafe, impulses,
     integrators::StepFailure,
+    mutants::Change,
     world::{State, StepLog, World},
     zones::{self, Zone},
 };
@@ -37,6 +38,8 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
     let prediction = state.clone();
     let contacts = detection::pass(world, q_start, &state.x, log)?;
     let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
+    let most_rounds = if let Some(Change::GeometricRounds(most)) = student.change() { *most } else { u32::MAX };
+    let mut round = 0;
     if zones.is_empty() && student.makes(Mistake::GeometricStopsWhenEmpty) {
         return Ok(());
     }
@@ -49,10 +52,16 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
             let new: Vec<Zone> = zones.iter().filter(|zone| !moved.contains(zone)).cloned().collect();
             move_zones(world, q_start, &new, state);
             moved.clone_from(&zones);
+        } else if student.makes(Mistake::GeometricGrownStay) {
+            let is_new = |zone: &&Zone| moved.iter().all(|other| other.particles.is_disjoint(&zone.particles));
+            let new: Vec<Zone> = zones.iter().filter(is_new).cloned().collect();
+            move_zones(world, q_start, &new, state);
+            moved.clone_from(&zones);
         } else {
             move_zones(world, q_start, &zones, state);
         }
-        if student.makes(Mistake::GeometricOneRound) {
+        round += 1;
+        if student.makes(Mistake::GeometricOneRound) || round >= most_rounds {
             return Ok(());
         }
         let q_end = if student.makes(Mistake::GeometricDetectsPrediction) { &prediction.x } else { &state.x };

@@ -5,6 +5,7 @@ use super::{
     catalogue::{Area, Mistake},
     detection,
     integrators::StepFailure,
+    mutants::Change,
     response::respond,
     world::{Contact, State, StepLog, World},
 };
@@ -42,7 +43,8 @@ pub fn apply(
     let limit = limit(world, max_iterations);
     while rounds < limit {
         let contacts = detection::pass(world, &start, &state.x, log)?;
-        if contacts.is_empty() {
+        let enough = if let Some(Change::Enough(most)) = student.change() { *most } else { 0 };
+        if contacts.len() <= enough {
             if student.makes(Mistake::ImpulsesVelocityRestored) {
                 state.v.clone_from(&prediction.v);
             }
@@ -66,6 +68,9 @@ pub fn apply(
 
 /// How many rounds this program allows itself.
 fn limit(world: &World, max_iterations: i32) -> i32 {
+    if let Some(Change::Limit(change)) = world.student.change() {
+        return change(max_iterations);
+    }
     match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),
         Some(Mistake::ImpulsesOneMore) if max_iterations > 0 => max_iterations.saturating_add(1),
@@ -139,6 +144,9 @@ fn finish(
     state: &mut State,
     log: &mut StepLog,
 ) -> Result<bool, StepFailure> {
+    if let Some(Change::Failed(change)) = world.student.change() {
+        change(q_start, state);
+    }
     match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesDetectAfterLast) => {
             return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());

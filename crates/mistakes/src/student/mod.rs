@@ -21,6 +21,7 @@ mod hessians;
 mod hybrid;
 mod impulses;
 mod integrators;
+pub mod mutants;
 mod penalty;
 mod record;
 mod refused;

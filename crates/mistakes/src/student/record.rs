@@ -4,6 +4,7 @@ use super::{
     author::Student,
     catalogue::{Area, Mistake},
     integrators::StepFailure,
+    rounding::single,
     step::step,
     world::{Contact, Object, State, StepLog, World},
 };
@@ -100,9 +101,7 @@ fn integer(value: usize) -> i32 {
 
 fn numbers(student: Student, values: &[f64]) -> Vec<f64> {
     if student.makes(Mistake::LogSinglePrecision) {
-        #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float in the trace")]
-        let single = |value: &f64| f64::from(*value as f32);
-        values.iter().map(single).collect()
+        values.iter().map(|&value| single(value)).collect()
     } else {
         values.to_vec()
     }

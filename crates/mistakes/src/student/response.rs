@@ -4,7 +4,9 @@ use fosssim_num::vector::{Vec2, at, over, unit};
 
 use super::{
     catalogue::{Area, Mistake},
-    world::{Contact, Object, State, World, subtract},
+    mutants::{Change, Share},
+    rounding::single,
+    world::{Contact, Object, State, World, add, subtract},
 };
 
 /// The parts of the assignment whose mistakes are made here.
@@ -37,6 +39,7 @@ pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &St
 
 struct Response<'a> {
     world: &'a World,
+    contact: &'a Contact,
     q_start: &'a [f64],
     predicted: &'a State,
     result: &'a mut State,
@@ -49,7 +52,7 @@ struct Response<'a> {
 impl<'a> Response<'a> {
     fn new(
         world: &'a World,
-        contact: &Contact,
+        contact: &'a Contact,
         q_start: &'a [f64],
         predicted: &'a State,
         result: &'a mut State,
@@ -63,7 +66,7 @@ impl<'a> Response<'a> {
             _ => (1.0 + restitution(world)) / 2.0,
         };
         let bounce = if student.makes(Mistake::ResponseHalved) { f } else { 2.0 * f };
-        Self { world, q_start, predicted, result, u, bounce }
+        Self { world, contact, q_start, predicted, result, u, bounce }
     }
 
     /// The particle's mean velocity over the step.
@@ -81,7 +84,16 @@ impl<'a> Response<'a> {
         if self.world.fixed(particle) && !student.makes(Mistake::ResponseMovesFixed) {
             return;
         }
+        if let Some(Change::Respond(change)) = student.change() {
+            let (velocity, position) = (sign * (share / inertia) * self.u, sign * (moved / inertia) * self.u);
+            return self.respond(particle, *change, velocity, position);
+        }
         let sign = if student.makes(Mistake::ResponseSign) { -sign } else { sign };
+        let (share, moved) = if student.makes(Mistake::ResponseSinglePrecision) {
+            (single(share), single(moved))
+        } else {
+            (share, moved)
+        };
         if !student.makes(Mistake::ResponsePositionsOnly) {
             student.push(&mut self.result.v, particle, sign * (share / inertia), self.u);
         }
@@ -89,6 +101,20 @@ impl<'a> Response<'a> {
             let moved = if student.makes(Mistake::ResponsePositionNoStep) { share } else { moved };
             student.push(&mut self.result.x, particle, sign * (moved / inertia), self.u);
         }
+    }
+
+    /// What a mistake that the catalogue does not have makes of a change.
+    fn respond(&mut self, particle: usize, change: fn(&mut Share), velocity: Vec2, position: Vec2) {
+        let role = match self.contact.pair.object {
+            Object::Edge(index) if particle == self.world.scene.edges[index].second => 2,
+            _ => usize::from(particle != self.contact.pair.particle),
+        };
+        let before = self.velocity(particle);
+        let (pair, u, bounce) = (self.contact.pair, self.u, self.bounce);
+        let mut share = Share { role, pair, u, velocity, position, before, bounce };
+        change(&mut share);
+        add(&mut self.result.v, particle, share.velocity);
+        add(&mut self.result.x, particle, share.position);
     }
 
     fn particle_particle(&mut self, one: usize, two: usize) {
@@ -161,7 +187,14 @@ impl<'a> Response<'a> {
             return;
         }
         let h = self.world.scene.time_step;
-        let speed = student.dot(self.velocity(one), self.u);
+        let mut speed = student.dot(self.velocity(one), self.u);
+        if let Some(Change::Respond(change)) = student.change() {
+            let velocity = -self.bounce * speed * self.u;
+            return self.respond(one, *change, velocity, h * velocity);
+        }
+        if student.makes(Mistake::ResponseSinglePrecision) {
+            speed = single(speed);
+        }
         let mut sign = if student.makes(Mistake::ResponseSign) { -1.0 } else { 1.0 };
         if student.makes(Mistake::ResponseHalfPlaneHalved) {
             sign = 0.5;

@@ -3,6 +3,13 @@ use fosssim_num::vector::{Vec2, at, put};
 
 use super::{author::Student, catalogue::Mistake};
 
+/// A number as a `float` holds it.
+pub fn single(value: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float where a double belongs")]
+    let single = value as f32;
+    f64::from(single)
+}
+
 impl Student {
     /// `addend + a * b`.
     pub fn add_product(self, addend: f64, a: f64, b: f64) -> f64 {

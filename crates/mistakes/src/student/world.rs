@@ -5,7 +5,7 @@ use fosssim_num::{
     vector::{Vec2, at, put},
 };
 
-use super::{author::Student, catalogue::Mistake};
+use super::{author::Student, catalogue::Mistake, mutants::Change};
 
 /// Everything that stays as it is during a run.
 pub struct World {
@@ -89,7 +89,10 @@ impl World {
     /// Prepares a scene for this student's program.
     pub fn new(scene: Scene, student: Student) -> Self {
         let masses = scene.particles.iter().flat_map(|particle| [particle.mass, particle.mass]).collect();
-        let pairs = pairs(&scene, student);
+        let mut pairs = pairs(&scene, student);
+        if let Some(Change::Pairs(change)) = student.change() {
+            change(&mut pairs);
+        }
         Self { scene, student, masses, pairs }
     }
 

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{
     author::Student,
     catalogue::{Area, Mistake},
+    mutants::Change,
     world::{Contact, Object, World},
 };
 
@@ -39,17 +40,30 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
         }
         Object::HalfPlane(_) => half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag),
     }
-    Zone { particles, half_plane }
+    let mut zone = Zone { particles, half_plane };
+    if let Some(Change::Zone(change)) = student.change() {
+        change(contact, &mut zone);
+    }
+    zone
 }
 
 /// Joins zones until no two share a particle.
-pub fn merge(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
+pub fn merge(student: Student, zones: Vec<Zone>) -> Vec<Zone> {
     match student.mistake_in(HERE) {
         Some(Mistake::ZonesNotMerged) => return zones,
         Some(Mistake::ZonesAllInOne) => return everything(zones),
         Some(Mistake::ZonesUnionFind) => return disjoint_sets(&zones),
         _ => {}
     }
+    if let Some(Change::Zones(change)) = student.change() {
+        let mut merged = merged(student, zones);
+        change(&mut merged);
+        return merged;
+    }
+    merged(student, zones)
+}
+
+fn merged(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
     loop {
         let before = zones.len();
         let mut merged: Vec<Zone> = Vec::new();

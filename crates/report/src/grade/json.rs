@@ -31,6 +31,8 @@ struct GradeView {
     build: Option<BuildView>,
     /// The mistake that explains most wrong scenes, where several have explanations.
     likely_mistake: Option<ExplanationView>,
+    /// Up to three mistakes that explain the wrong scenes together.
+    likely_mistakes: Vec<ExplanationView>,
     groups: Vec<GroupView>,
 }
 
@@ -115,6 +117,7 @@ fn view(grade: &Grade) -> GradeView {
             output: plain(&build.output),
         }),
         likely_mistake: grade.likely_mistake().as_ref().map(ExplanationView::from),
+        likely_mistakes: grade.likely_mistakes().iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
         groups: grade.groups.iter().map(group).collect(),
     }
 }

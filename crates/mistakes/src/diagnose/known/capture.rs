@@ -8,13 +8,13 @@ use fosssim_model::{
 
 /// The observer that keeps a step.
 #[derive(Debug, Default)]
-pub(super) struct Capture {
+pub(in crate::diagnose) struct Capture {
     /// Whether the reference's impulses are logged; in `hybrid` they are not.
     logs_impulses: bool,
     has_mid: bool,
     pass: Option<Pass>,
     /// What the step logs; valid after it.
-    pub(super) records: StepRecords,
+    pub(in crate::diagnose) records: StepRecords,
     /// The pairs in the order of detection, with the pass and the index of their first polynomial.
     pub(super) detections: Vec<(Pair, Pass, usize)>,
     /// What happened, as bits (see [`Capture::events`]).
@@ -23,7 +23,7 @@ pub(super) struct Capture {
 
 impl Capture {
     /// For scenes of this collision type.
-    pub(super) fn new(collision: &Collision) -> Self {
+    pub(in crate::diagnose) fn new(collision: &Collision) -> Self {
         let has_mid = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
         let logs_impulses = !matches!(collision, Collision::Hybrid { .. });
         Self { logs_impulses, has_mid, ..Self::default() }

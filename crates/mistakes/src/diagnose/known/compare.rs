@@ -15,22 +15,22 @@ use fosssim_num::{
 
 /// How far numbers may be apart.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tolerance {
+pub(in crate::diagnose) struct Tolerance {
     /// Of a coefficient, relative to itself.
-    pub(super) coefficient: f64,
+    pub(in crate::diagnose) coefficient: f64,
     /// Of a coefficient, relative to the largest one of its polynomial: where the terms of a coefficient cancel, its
     /// round-off is that of the terms.
-    pub(super) floor: f64,
+    pub(in crate::diagnose) floor: f64,
     /// Of a coordinate or a velocity, relative to the largest one of its kind plus 1.
-    pub(super) state: f64,
+    pub(in crate::diagnose) state: f64,
     /// Of a contact vector, relative to its length plus 1.
-    pub(super) normal: f64,
+    pub(in crate::diagnose) normal: f64,
     /// Of a time of impact (fraction of the step). A double zero is known to about the root of the unit roundoff.
-    pub(super) time: f64,
+    pub(in crate::diagnose) time: f64,
 }
 
 /// Round-off.
-pub(super) const ROUND_OFF: Tolerance = Tolerance {
+pub(in crate::diagnose) const ROUND_OFF: Tolerance = Tolerance {
     coefficient: KNOWN_COEFFICIENT,
     floor: KNOWN_COEFFICIENT_FLOOR,
     state: KNOWN_STATE,
@@ -38,33 +38,37 @@ pub(super) const ROUND_OFF: Tolerance = Tolerance {
     time: KNOWN_TIME,
 };
 
+/// What nobody takes for round-off: a difference beyond this.
+pub(in crate::diagnose) const PLAIN: Tolerance =
+    Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
+
 /// What is left of a step when its states were rounded to single precision before and after.
 pub(super) const SINGLE_PRECISION: Tolerance =
     Tolerance { coefficient: 1e-4, floor: 1e-4, state: 1e-5, normal: 1e-2, time: 1e-1 };
 
 /// The numbers of one record.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Logged {
+pub(in crate::diagnose) struct Logged {
     /// Positions and velocities.
-    pub(super) state: State,
+    pub(in crate::diagnose) state: State,
     /// The impulse list.
-    pub(super) impulses: Vec<LoggedImpulse>,
+    pub(in crate::diagnose) impulses: Vec<LoggedImpulse>,
     /// The polynomial list, small leading coefficients dropped.
-    pub(super) polynomials: PolynomialLog,
+    pub(in crate::diagnose) polynomials: PolynomialLog,
 }
 
 /// The records of one step.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct StepRecords {
+pub(in crate::diagnose) struct StepRecords {
     /// The mid record, where scenes have one.
-    pub(super) mid: Option<Logged>,
+    pub(in crate::diagnose) mid: Option<Logged>,
     /// The end record.
-    pub(super) end: Logged,
+    pub(in crate::diagnose) end: Logged,
 }
 
 /// Where the records of a step part first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Difference {
+pub(in crate::diagnose) enum Difference {
     /// This polynomial of the end record.
     Polynomial(usize),
     /// The number of polynomials.
@@ -106,7 +110,7 @@ impl From<Record> for Logged {
 
 impl Logged {
     /// Memory that it takes, in bytes.
-    pub(super) fn bytes(&self) -> usize {
+    pub(in crate::diagnose) fn bytes(&self) -> usize {
         16 * self.state.positions.len()
             + size_of::<LoggedImpulse>() * self.impulses.len()
             + 8 * (self.polynomials.coefficients.len() + self.polynomials.ends.len())
@@ -114,7 +118,11 @@ impl Logged {
 }
 
 /// The first difference in the order in which a step computes; `None` when all is the same but for round-off.
-pub(super) fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<Difference> {
+pub(in crate::diagnose) fn first_difference(
+    expected: &StepRecords,
+    actual: &StepRecords,
+    by: &Tolerance,
+) -> Option<Difference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
     let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, by));
     if let Some(index) = wrong {
@@ -150,7 +158,7 @@ pub(super) fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by:
 }
 
 /// Whether one polynomial is a positive multiple of the other (highest power first, small leading coefficients dropped).
-pub(super) fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
+pub(in crate::diagnose) fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
     if multiple(expected, actual, 1.0, by) {
         return true;
     }
@@ -195,7 +203,7 @@ fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleranc
 }
 
 /// Whether two contacts are the same but for round-off.
-pub(super) fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
+pub(in crate::diagnose) fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
     let within = by.normal * (1.0 + largest(ours.normal));
     (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)
         && same_number(ours.normal.x, theirs.normal.x, within)
@@ -208,7 +216,7 @@ fn largest(v: Vec2) -> f64 {
 }
 
 /// The first particle whose position or velocity differs.
-fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
+pub(in crate::diagnose) fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
     let different = |ours: &[f64], theirs: &[f64]| {
         let largest = ours.iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, v| largest.max(v.abs()));
         let within = by.state * (1.0 + largest);

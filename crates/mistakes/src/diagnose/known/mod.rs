@@ -18,7 +18,12 @@ mod remedy;
 mod scan;
 mod several;
 
+pub(super) use capture::Capture;
+pub(super) use compare::{
+    Logged, ROUND_OFF, StepRecords, first_difference, same_impulse, same_polynomial, state_difference,
+};
 pub use refute::shows;
+pub(super) use scan::Sample;
 pub(super) use several::is_empty_stage;
 
 use super::{Explanation, notation};
@@ -43,45 +48,53 @@ use std::io::Read;
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
 pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
-    let scan = scan::scan(scene, trace);
+    known_or_open(scene, trace).0
+}
+
+/// The same, with the kept steps where no mistake explains all of them.
+pub(super) fn known_or_open(scene: &Scene, trace: impl Read) -> (Vec<Explanation>, Option<Scan>) {
+    let mut scan = scan::scan(scene, trace);
     if let Some(missing) = alignment::missing_record(scene, &scan) {
-        return vec![missing];
+        return (vec![missing], None);
     }
     if scan.foreign {
         let layout = Layout::of(scene);
         let has_length = !scan.longer && scan.records.is_none_or(|records| records == layout.records());
-        return vec![Explanation::of_other_scene(has_length)];
+        return (vec![Explanation::of_other_scene(has_length)], None);
     }
-    let padded = scan.padded;
-    let found = of_wrong_steps(scene, scan);
-    if !found.is_empty() || padded == 0 {
-        return found;
+    let (found, is_settled) = of_wrong_steps(scene, &mut scan);
+    if !found.is_empty() || scan.padded == 0 {
+        return (found, (!is_settled).then_some(scan));
     }
     // Reading drops what the course's library would have dropped, so such steps look right.
-    find("log-padded").map(|row| explain(row, (padded, padded))).into_iter().collect()
+    (find("log-padded").map(|row| explain(row, (scan.padded, scan.padded))).into_iter().collect(), None)
 }
 
-fn of_wrong_steps(scene: &Scene, scan: Scan) -> Vec<Explanation> {
+/// What the catalogue says, and whether that is all there is to say. May leave the steps as a program with the right approach
+/// sees them.
+fn of_wrong_steps(scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
-        return Vec::new();
+        return (Vec::new(), true);
     }
-    let supplied = best(scene, &scan, Correct::Supplied);
+    let supplied = best(scene, scan, Correct::Supplied);
     if supplied.complete {
-        return supplied.explanation.into_iter().collect();
+        return (supplied.explanation.into_iter().collect(), true);
     }
-    if let Some(several) = several::several(scene, &scan, Correct::Supplied) {
-        return together(scene, &scan, Correct::Supplied, &several);
+    if let Some(several) = several::several(scene, scan, Correct::Supplied) {
+        return (together(scene, scan, Correct::Supplied, &several), true);
     }
     // The fair rules accept the right approach as well as the supplied one; behind it may be a mistake of another kind.
-    let Some(scan) = scan.with_right_approach(scene) else { return supplied.explanation.into_iter().collect() };
-    let right = best(scene, &scan, Correct::RightApproach);
+    if !scan.take_right_approach(scene) {
+        return (supplied.explanation.into_iter().collect(), scan.wrong.is_empty());
+    }
+    let right = best(scene, scan, Correct::RightApproach);
     if right.complete {
-        return right.explanation.into_iter().collect();
+        return (right.explanation.into_iter().collect(), true);
     }
-    if let Some(several) = several::several(scene, &scan, Correct::RightApproach) {
-        return together(scene, &scan, Correct::RightApproach, &several);
+    if let Some(several) = several::several(scene, scan, Correct::RightApproach) {
+        return (together(scene, scan, Correct::RightApproach, &several), true);
     }
-    supplied.explanation.or(right.explanation).into_iter().collect()
+    (supplied.explanation.or(right.explanation).into_iter().collect(), false)
 }
 
 /// The explanations of several mistakes, which reproduce the same steps together. Empty stages are told first.
@@ -91,8 +104,13 @@ fn together(scene: &Scene, scan: &Scan, correct: Correct, several: &Several) -> 
     if let Some(first) = all.first_mut() {
         first.example = scan.wrong.first().map(|sample| example::example(scene, correct, sample));
     }
-    if let Some(last) = all.last_mut() {
-        last.same_as = several.same_as.iter().map(|row| row.id.to_owned()).collect();
+    for (explanation, others) in all.iter_mut().zip(&several.same_as) {
+        explanation.same_as = others.iter().map(|row| row.id.to_owned()).collect();
+    }
+    for (explanation, row) in all.iter_mut().zip(&several.rows) {
+        if is_empty_stage(row) {
+            explanation.same_as.extend(several.rivals.iter().map(|rival| rival.id.to_owned()));
+        }
     }
     all
 }

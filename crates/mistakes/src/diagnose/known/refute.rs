@@ -2,7 +2,7 @@
 use super::{
     candidates::resimulate,
     capture::Capture,
-    compare::{ROUND_OFF, first_difference, same_polynomial},
+    compare::{PLAIN, first_difference, same_polynomial},
 };
 use crate::student::{StepLog, Student, World, find};
 use fosssim_model::{
@@ -16,7 +16,8 @@ const WORK: u64 = 200_000;
 /// What a step costs besides its polynomials, in polynomials.
 const STEP_WORK: u64 = 10;
 
-/// Whether a program that makes this mistake of the catalogue logs something wrong on this scene. False also where looking for
+/// Whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which no judge
+/// takes for round-off. False also where looking for
 /// it would take too long.
 #[must_use]
 pub fn shows(scene: &Scene, key: &str) -> bool {
@@ -34,10 +35,10 @@ pub fn shows(scene: &Scene, key: &str) -> bool {
         work.set(work.get() + STEP_WORK + expected.len() as u64);
         let guard = |index: usize, coefficients: &[f64]| {
             work.set(work.get() + 1);
-            index < expected.len() && same_polynomial(coefficients, expected.get(index), &ROUND_OFF)
+            index < expected.len() && same_polynomial(coefficients, expected.get(index), &PLAIN)
         };
         let records = resimulate(&world, &before, StepLog { guard: Some(&guard), ..StepLog::default() });
-        if records.is_none_or(|records| first_difference(&capture.records, &records, &ROUND_OFF).is_some()) {
+        if records.is_none_or(|records| first_difference(&capture.records, &records, &PLAIN).is_some()) {
             return true;
         }
     }

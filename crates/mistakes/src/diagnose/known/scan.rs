@@ -32,13 +32,13 @@ const OPENING_MEMORY: usize = 4 << 20;
 
 /// A step that is kept.
 #[derive(Debug)]
-pub(super) struct Sample {
+pub(in crate::diagnose) struct Sample {
     /// Its number, from 1.
-    pub(super) step: u32,
+    pub(in crate::diagnose) step: u32,
     /// The submission's own state before it.
-    pub(super) before: State,
+    pub(in crate::diagnose) before: State,
     /// What the submission logged.
-    pub(super) records: StepRecords,
+    pub(in crate::diagnose) records: StepRecords,
     /// Where it differs first from the reference; `None` for right steps.
     pub(super) difference: Option<Difference>,
     /// What can only be seen with the record before.
@@ -60,11 +60,11 @@ pub(super) struct Context {
 
 /// What the trace has.
 #[derive(Debug, Default)]
-pub(super) struct Scan {
+pub(in crate::diagnose) struct Scan {
     /// Wrong steps, in their order.
-    pub(super) wrong: Vec<Sample>,
+    pub(in crate::diagnose) wrong: Vec<Sample>,
     /// Right steps, in their order.
-    pub(super) right: Vec<Sample>,
+    pub(in crate::diagnose) right: Vec<Sample>,
     /// The first records.
     pub(super) opening: Vec<Logged>,
     /// Records whose polynomials have small leading coefficients, which the course's library drops.
@@ -78,25 +78,25 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    /// The same steps as seen by a program whose particle-edge approach is mathematically right: many that were wrong are
-    /// right then. `None` when all are, or when the scene has no edge.
-    pub(super) fn with_right_approach(self, scene: &Scene) -> Option<Self> {
+    /// Sees the same steps as a program does whose particle-edge approach is mathematically right: many that were wrong are
+    /// right then. False when all are, or when the scene has no edge.
+    pub(super) fn take_right_approach(&mut self, scene: &Scene) -> bool {
         if scene.edges.is_empty() {
-            return None;
+            return false;
         }
         let world = World::new(scene.clone(), Correct::RightApproach.with(None));
-        let (mut wrong, mut right) = (Vec::new(), Vec::new());
-        for mut sample in self.wrong.into_iter().chain(self.right) {
+        let samples = std::mem::take(&mut self.wrong).into_iter().chain(std::mem::take(&mut self.right));
+        for mut sample in samples {
             let logged = sample.records.end.polynomials.len();
             // A few more than were logged show that there are too few; no more are of interest.
             let guard = |index: usize, _: &[f64]| index < 2 * logged + SPARE;
             let expected = resimulate(&world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
             let Some(expected) = expected else { continue };
             sample.difference = first_difference(&expected, &sample.records, &ROUND_OFF);
-            if sample.difference.is_some() { wrong.push(sample) } else { right.push(sample) }
+            if sample.difference.is_some() { self.wrong.push(sample) } else { self.right.push(sample) }
         }
-        right.truncate(MOST_RIGHT);
-        (!wrong.is_empty()).then_some(Self { wrong, right, ..Self::default() })
+        self.right.truncate(MOST_RIGHT);
+        !self.wrong.is_empty()
     }
 }
 

@@ -25,8 +25,10 @@ const STEP_WORK: u64 = 10;
 pub(super) struct Several {
     /// The rows: empty stages first, then in the order in which they were found.
     pub(super) rows: Vec<&'static Row>,
-    /// Rows that are as good as the last one.
-    pub(super) same_as: Vec<&'static Row>,
+    /// Rows that are as good, for each of these.
+    pub(super) same_as: Vec<Vec<&'static Row>>,
+    /// Rows that do without the empty stages.
+    pub(super) rivals: Vec<&'static Row>,
     /// The wrong steps that were tried, all of them reproduced.
     pub(super) samples: u64,
 }
@@ -34,7 +36,16 @@ pub(super) struct Several {
 /// The set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
 pub(super) fn several(scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
     let search = Search::new(scene, scan, correct);
-    search.starts().into_iter().find_map(|start| search.from(start))
+    let mut found = search.starts().into_iter().find_map(|start| search.from(start))?;
+    // What is not written may look like a mistake in what is.
+    if found.rows.iter().any(|row| is_empty_stage(row))
+        && let Some(other) = search.from(Vec::new())
+        && other.rows.len() <= found.rows.len()
+    {
+        let is_new = |row: &&&Row| found.rows.iter().all(|known| known.mistake != row.mistake);
+        found.rivals = other.rows.iter().chain(other.same_as.iter().flatten()).filter(is_new).copied().collect();
+    }
+    Some(found)
 }
 
 /// Whether a row is work that was not done at all.
@@ -109,23 +120,33 @@ impl<'a> Search<'a> {
 
     /// Adds rows to a set of empty stages until it reproduces everything.
     fn from(&self, mut set: Vec<&'static Row>) -> Option<Several> {
-        let mut alike = Vec::new();
+        // What was as good as each row when that was added.
+        let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.progress(&set);
         while best < self.goal() && set.iter().filter(|row| !is_empty_stage(row)).count() < MOST {
             let (row, progress, others) = self.next(&set, best)?;
             set.push(row);
-            (best, alike) = (progress, others);
+            best = progress;
+            alike.push(others);
         }
         if set.len() < 2 || best < self.goal() || !self.is_needed(&set) {
             return None;
         }
         let samples = self.confirmed(&set)?;
         let is_variant = |row: &&'static Row| row.kind == Kind::Variant;
-        if set.iter().chain(&alike).any(is_variant) {
+        if set.iter().chain(alike.last().into_iter().flatten()).any(is_variant) {
             return None;
         }
-        let same_as = if set.last().is_some_and(|last| is_empty_stage(last)) { Vec::new() } else { alike };
-        Some(Several { rows: set, same_as, samples })
+        for (index, others) in alike.iter_mut().enumerate() {
+            let with = |other: &Row| -> Vec<&'static Row> {
+                let other = CATALOGUE.iter().find(|row| row.mistake == other.mistake);
+                set.iter().enumerate().filter_map(|(at, row)| if at == index { other } else { Some(*row) }).collect()
+            };
+            let is_last = index + 1 == set.len();
+            others
+                .retain(|other| !is_empty_stage(set[index]) && (is_last || self.progress(&with(other)) >= self.goal()));
+        }
+        Some(Several { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
 
     /// Sets of empty stages to begin with: the one that carries furthest, and those detections without which the numbers of

@@ -5,6 +5,7 @@ use super::trimmed;
 use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
+    rounding::single,
     world::Object,
 };
 
@@ -26,11 +27,9 @@ pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> 
         Some(Mistake::HandoverNegated) => lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= -1.0),
         Some(Mistake::HandoverSwapped) => lists.swap(0, 1),
         Some(Mistake::HandoverZeros) => lists.iter_mut().flatten().for_each(|coefficient| *coefficient = 0.0),
-        Some(Mistake::HandoverSinglePrecision) => lists.iter_mut().flatten().for_each(|coefficient| {
-            #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float where a double belongs")]
-            let single = *coefficient as f32;
-            *coefficient = f64::from(single);
-        }),
+        Some(Mistake::HandoverSinglePrecision) => {
+            lists.iter_mut().flatten().for_each(|coefficient| *coefficient = single(*coefficient));
+        }
         Some(Mistake::HandoverPositionOnly) => lists.truncate(if edge { 3 } else { 1 }),
         Some(Mistake::HandoverApproachOnly) => lists = lists.split_off(lists.len() - 1),
         Some(Mistake::HandoverAlphaSwapped) if edge => lists.swap(1, 2),

@@ -11,6 +11,8 @@ use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
     integrators::StepFailure,
+    mutants::Change,
+    rounding::single,
     world::{Contact, Object, Pair, StepLog, World},
 };
 
@@ -27,6 +29,7 @@ mod quintic;
 mod wide;
 
 use frame::Frame;
+pub use particle_edge::alpha;
 
 /// Something round on its way through the step: it moves from `start` by `displacement`, evenly.
 #[derive(Clone, Copy)]
@@ -57,7 +60,7 @@ impl Body {
 }
 
 /// The two objects of a pair, ready for the formulas.
-enum Encounter {
+pub enum Encounter {
     /// Two particles.
     Particles(Body, Body),
     /// A particle, the edge's two endpoints, and the edge's radius.
@@ -109,6 +112,19 @@ impl Encounter {
         }
     }
 
+    /// How fast the objects approach each other at time `t`: their relative displacement along the contact vector.
+    fn closing(&self, t: f64) -> f64 {
+        let relative = match self {
+            Self::Particles(one, two) => one.displacement - two.displacement,
+            Self::Edge(bodies, _) => {
+                let [one, two, three] = bodies.map(|body| body.displacement);
+                one - two - particle_edge::alpha(bodies, t) * (three - two)
+            }
+            Self::HalfPlane(one, ..) => one.displacement,
+        };
+        relative.dot(&self.contact_vector(Student::default(), t))
+    }
+
     /// How close the centres may come.
     fn reach(&self) -> f64 {
         match self {
@@ -145,6 +161,9 @@ pub fn detect(
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }
+    if let Some(Change::Polynomials(change)) = student.change() {
+        change(&encounter, &mut lists);
+    }
     let polynomials = handover::hand_over(student, pair.object, lists);
     if polynomials.is_empty() {
         return Ok(None);
@@ -156,11 +175,28 @@ pub fn detect(
     {
         return Err(StepFailure::Refused);
     }
-    let time = first_time(&polynomials)?;
-    if !within_step(student, time, world.scene.time_step) {
+    let mut searched = polynomials;
+    if let Some(Change::Searched(change)) = student.change() {
+        change(&mut searched);
+    }
+    let mut time = first_time(&searched)?;
+    if let Some(Change::Time(change)) = student.change() {
+        time = change(time);
+    }
+    if student.makes(Mistake::ContactTimeSingle) {
+        time = single(time);
+    }
+    let counts = match student.change() {
+        Some(Change::Counts(counts)) => counts(&encounter, time),
+        _ => within_step(student, time, world.scene.time_step),
+    };
+    if !counts {
         return Ok(None);
     }
     let mut n = frame_of(student, pair).back(encounter.contact_vector(student, time));
+    if let Some(Change::Vector(change)) = student.change() {
+        n = change(&encounter, time, n);
+    }
     if matches!(encounter, Encounter::Edge(..)) && length(n) == 0.0 {
         return Ok(None);
     }
@@ -182,6 +218,9 @@ pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) ->
     for &pair in &world.pairs {
         contacts.extend(detect(world, pair, q_start, q_end, log)?);
     }
+    if let Some(Change::Contacts(change)) = world.student.change() {
+        change(&mut contacts);
+    }
     Ok(contacts)
 }
 
@@ -194,6 +233,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
         Some(Mistake::DecisionNoUpperBound) => time < f64::INFINITY,
         Some(Mistake::DecisionSeconds) => time <= time_step,
         Some(Mistake::DecisionHalfStep) => time <= 0.5,
+        Some(Mistake::DecisionTolerance) => time <= 1.0 + 1e-6,
         Some(Mistake::DecisionNever | Mistake::HostileForgedVerdict) => false,
         _ => time <= 1.0,
     }
@@ -215,6 +255,7 @@ fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
         (Some(Mistake::DecisionAlphaMargin), Encounter::Edge(bodies, _)) => {
             !(0.05..=0.95).contains(&particle_edge::alpha(bodies, time))
         }
+        (Some(Mistake::DecisionApproachMargin), _) => encounter.closing(time) <= 1e-6,
         (Some(Mistake::DecisionHalfPlaneOneSided), Encounter::HalfPlane(one, point, normal)) => {
             (one.start - point).dot(normal) < 0.0
         }

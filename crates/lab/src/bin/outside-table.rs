@@ -1,0 +1,34 @@
+//! What is told of programs whose mistake the catalogue does not have (`student::mutants`): a line on each, and the figures that
+//! `docs/fair.md` names. Ends with status 1 when something misleads.
+//!
+//! usage: `outside-table [PART-OF-A-NAME]`
+use std::process::ExitCode;
+
+use fosssim_oracle::{
+    diagnose::outside::{Rated, Rating, rated},
+    student::mutants::mutants,
+};
+use rayon::prelude::*;
+
+fn main() -> ExitCode {
+    let part = std::env::args().nth(1).unwrap_or_default();
+    let wanted: Vec<usize> =
+        mutants().enumerate().filter(|(_, mutant)| mutant.id.contains(&part)).map(|(number, _)| number).collect();
+    let all: Vec<Rated> = wanted.into_par_iter().flat_map_iter(|number| rated(move |other| other == number)).collect();
+    for one in &all {
+        println!("{:<32} {:<10} ({})", one.id, format!("{:?}", one.rating), one.what);
+        for told in &one.told {
+            println!("    {} [{}] {}", told.what, told.key, told.details.join(" | "));
+        }
+    }
+    let count = |rating: Rating| all.iter().filter(|one| one.rating == rating).count();
+    println!(
+        "\n{} mistakes: {} right, {} partly right, {} unknown, {} misleading",
+        all.len(),
+        count(Rating::Right),
+        count(Rating::Partly),
+        count(Rating::Unknown),
+        count(Rating::Misleading)
+    );
+    ExitCode::from(u8::from(count(Rating::Misleading) > 0))
+}

@@ -1,0 +1,100 @@
+//! What is told of programs whose mistake the catalogue does not have: the measure of explanations where they can't know.
+use super::{Explanation, explain, probe_scenes, refuted, several};
+use crate::student::{
+    self, Area, Student,
+    mutants::{Mutant, mutants},
+};
+use fosssim_judge::{
+    fair::Verdict,
+    parity::{Options, judge},
+};
+use fosssim_model::scene::Scene;
+
+/// How what is told of a mistake stands to it, from best to worst.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rating {
+    /// Where it is, and what it is.
+    Right,
+    /// Where it is.
+    Partly,
+    /// Nothing, or that nothing is known.
+    Unknown,
+    /// Something else.
+    Misleading,
+}
+
+/// What is told of the program of a mutant.
+#[derive(Debug)]
+pub struct Rated {
+    /// The mutant's name.
+    pub id: &'static str,
+    /// What is wrong with it.
+    pub what: &'static str,
+    /// How what is told stands to that.
+    pub rating: Rating,
+    /// What is told, the likeliest first.
+    pub told: Vec<Explanation>,
+}
+
+/// What is told of a program after it has run on the probe scenes.
+#[must_use]
+pub fn told_of(student: Student) -> Vec<Explanation> {
+    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let (mut explained, mut right): (Vec<Vec<Explanation>>, Vec<Scene>) = (Vec::new(), Vec::new());
+    for (_, scene) in probe_scenes() {
+        let trace = student::trace(&scene, student).unwrap_or_else(|(bytes, _)| bytes);
+        match judge(&scene, &trace[..], &options, &mut ()).fair {
+            Some(fair) if fair.verdict == Verdict::Accepted => right.push(scene),
+            _ => explained.push(explain(&scene, &trace)),
+        }
+    }
+    let traces: Vec<&[Explanation]> = explained.iter().map(Vec::as_slice).collect();
+    let refuted = refuted(&traces, &right.iter().collect::<Vec<_>>());
+    several(traces, &refuted)
+}
+
+/// Asks about the mutants with these numbers.
+pub fn rated(wanted: impl Fn(usize) -> bool) -> impl Iterator<Item = Rated> {
+    mutants().enumerate().filter(move |(number, _)| wanted(*number)).map(|(_, mutant)| {
+        let told = told_of(Student::default().with_mutant(mutant));
+        Rated { id: mutant.id, what: mutant.what, rating: overall(mutant, &told), told }
+    })
+}
+
+/// The best of what is told, unless something misleads.
+fn overall(mutant: &Mutant, told: &[Explanation]) -> Rating {
+    let ratings = || told.iter().map(|one| rating(mutant, one));
+    match ratings().max() {
+        Some(Rating::Misleading) => Rating::Misleading,
+        _ => ratings().min().unwrap_or(Rating::Unknown),
+    }
+}
+
+/// The place that explanations have to name for a mistake.
+fn place(mutant: &Mutant) -> &'static str {
+    match mutant.area {
+        Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane => mutant.kind,
+        Area::Decision => "detection",
+        Area::ContactVector => "contact vector",
+        Area::Response => "response",
+        Area::ImpulseLoop => "impulse loop",
+        Area::ImpactZones => "impact zones",
+        _ => "rigid failsafe",
+    }
+}
+
+fn rating(mutant: &Mutant, told: &Explanation) -> Rating {
+    let what = told.what.to_lowercase();
+    let named = &what[..what.find(':').unwrap_or(0)];
+    let kinds = ["particle-particle", "particle-edge", "particle-half-plane"];
+    let names_other_kind =
+        kinds.iter().any(|kind| named.contains(kind)) && !mutant.kind.is_empty() && !named.contains(mutant.kind);
+    let of_row = student::find(&told.key);
+    let is_there = of_row.map_or(named.contains(place(mutant)), |row| row.area == mutant.area);
+    if !is_there || names_other_kind {
+        return Rating::Misleading;
+    }
+    let all = format!("{} {} {}", told.key, told.what, told.details.join(" "));
+    let is_told = mutant.told_by.iter().any(|word| all.contains(word));
+    if of_row.is_none() && is_told { Rating::Right } else { Rating::Partly }
+}

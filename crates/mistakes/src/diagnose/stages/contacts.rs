@@ -1,0 +1,252 @@
+//! What the impulse lists of `continuous-time` say: contacts too many or too few, their vectors and times. And the order in
+//! which pairs are looked at.
+use super::{
+    ALIKE, Explanation, ROUND_OFF, common_value, observation, same_polynomial, sentence,
+    story::{Facts, Hit},
+    times,
+};
+use crate::diagnose::known::same_impulse;
+use fosssim_model::{sim::Stage, trace::LoggedImpulse};
+use fosssim_num::vector::{Vec2, length};
+
+const KINDS: [&str; 3] = ["particle-particle", "particle-edge", "particle-half-plane"];
+
+/// The pairs of the first pass in another order: all its polynomials are there.
+pub(super) fn order(facts: &[Facts]) -> Option<Explanation> {
+    let wrong: Vec<&Facts> = facts.iter().filter(|facts| facts.has_wrong_formula).collect();
+    let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
+    (permuted > 0 && 2 * permuted > wrong.len()).then(|| {
+        observation(
+            Explanation::ORDER,
+            "Detection: The polynomials are right, but the pairs are looked at in another order.".to_owned(),
+            vec!["per particle: the particles behind it, the edges that it is no end of, the half-planes".to_owned()],
+            permuted,
+        )
+    })
+}
+
+/// Whether nearly all pairs of the first pass are found as wholes, some of them out of their order. What a contact before
+/// them in the pass has moved is not found.
+fn is_permuted(facts: &Facts) -> bool {
+    let size = facts.pass_size();
+    let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
+    if theirs.len() < size {
+        return false;
+    }
+    let ends = facts.detections.iter().skip(1).map(|(_, first)| *first).chain([size]);
+    let mut left: Vec<(usize, usize, usize)> = facts
+        .detections
+        .iter()
+        .zip(ends)
+        .enumerate()
+        .take_while(|(_, (_, end))| *end <= size)
+        .map(|(number, ((_, first), end))| (number, *first, end))
+        .collect();
+    let pairs = left.len();
+    let (mut at, mut found, mut moved, mut misplaced, mut last) = (0, 0, 0, 0, 0);
+    while at < size {
+        let is_here = |&(_, first, end): &(usize, usize, usize)| {
+            at + end - first <= size
+                && (first..end)
+                    .all(|index| same_polynomial(ours.get(index), theirs.get(at + index - first), &ROUND_OFF))
+        };
+        // The one that belongs there first, then the next one in the order, for pairs that are alike.
+        let own = left.iter().position(|block| block.1 == at && is_here(block));
+        let later = left.iter().position(|block| block.0 >= last && is_here(block));
+        let Some(index) = own.or(later).or_else(|| left.iter().position(is_here)) else {
+            at += 1;
+            continue;
+        };
+        let (number, first, end) = left.remove(index);
+        found += 1;
+        moved += usize::from(first != at);
+        misplaced += usize::from(number < last);
+        last = number;
+        at += end - first;
+    }
+    let follows_contacts = matches!(facts.passes.first().map(|pass| pass.stage), Some(Stage::ContinuousTime));
+    let is_spoilt = follows_contacts && !facts.hits.is_empty() && 3 * found >= 2 * pairs && 3 * moved >= found;
+    misplaced > 0 && (found == pairs || is_spoilt)
+}
+
+/// What is known of the contacts of all steps.
+#[derive(Default)]
+struct Contacts {
+    /// Kind and time of impact.
+    right: Vec<(i32, f64)>,
+    missed: Vec<(i32, f64)>,
+    superfluous: Vec<(i32, f64)>,
+    vectors: Vec<(i32, Vec2, Vec2)>,
+    times: Vec<(f64, f64)>,
+}
+
+/// What is wrong with the contacts of `continuous-time`, whose polynomials are right.
+pub(super) fn detection(facts: &[Facts]) -> Option<Explanation> {
+    let mut contacts = Contacts::default();
+    for facts in facts {
+        if matches!(facts.passes.first().map(|pass| pass.stage), Some(Stage::ContinuousTime)) {
+            contacts.look(facts);
+        }
+    }
+    // A wrong time may make decisions wrong, too.
+    contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
+}
+
+impl Contacts {
+    /// Up to the first contact that is not the expected one; what comes behind it depends on that.
+    fn look(&mut self, facts: &Facts) {
+        let place = |theirs: &LoggedImpulse| {
+            facts.detections.iter().position(|(pair, _)| {
+                (pair.kind.code(), pair.first.cast_signed(), pair.second.cast_signed())
+                    == (theirs.kind, theirs.first, theirs.second)
+            })
+        };
+        let is_certain = |place: usize| {
+            let end = facts.detections.get(place + 1).map_or(facts.expected.end.polynomials.len(), |(_, first)| *first);
+            end <= facts.right_polynomials
+        };
+        let mut theirs = facts.actual.end.impulses.iter().peekable();
+        for hit in &facts.hits {
+            let next = theirs.peek().map(|theirs| (**theirs, place(theirs)));
+            match next {
+                Some((impulse, Some(at))) if at == hit.place => {
+                    if !is_certain(at) || !self.compare(hit, &impulse) {
+                        return;
+                    }
+                    theirs.next();
+                }
+                Some((impulse, Some(at))) if at < hit.place => {
+                    if is_certain(at) {
+                        self.superfluous.push((impulse.kind, impulse.time));
+                    }
+                    return;
+                }
+                Some((_, None)) => return,
+                _ => {
+                    if is_certain(hit.place) {
+                        self.missed.push((hit.pair.kind.code(), hit.time));
+                    }
+                    return;
+                }
+            }
+        }
+        if let Some(impulse) = theirs.next()
+            && place(impulse).is_some_and(is_certain)
+        {
+            self.superfluous.push((impulse.kind, impulse.time));
+        }
+    }
+
+    /// Whether vector and time are right.
+    fn compare(&mut self, hit: &Hit, impulse: &LoggedImpulse) -> bool {
+        let kind = hit.pair.kind.code();
+        let expected = LoggedImpulse { normal: hit.normal, time: hit.time, ..*impulse };
+        if same_impulse(&expected, impulse, &ROUND_OFF) {
+            self.right.push((kind, hit.time));
+            return true;
+        }
+        // The vector is taken at the time: where that is wrong, it has to be.
+        if same_impulse(&LoggedImpulse { normal: impulse.normal, ..expected }, impulse, &ROUND_OFF) {
+            self.vectors.push((kind, hit.normal, impulse.normal));
+        } else {
+            self.times.push((hit.time, impulse.time));
+        }
+        false
+    }
+
+    fn decisions(&self) -> Option<Explanation> {
+        let (key, listed, word) = match (self.missed.len(), self.superfluous.len()) {
+            (0, 0) => return None,
+            (_, 0) => ("stage-contacts-missed", &self.missed, "contacts that its polynomials show are not counted"),
+            (0, _) => (
+                "stage-contacts-superfluous",
+                &self.superfluous,
+                "contacts are counted that its polynomials do not show",
+            ),
+            _ => {
+                let all: Vec<(i32, f64)> = self.missed.iter().chain(&self.superfluous).copied().collect();
+                let what =
+                    "the polynomials are right, the decisions are not: contacts are missed, others are superfluous";
+                return Some(said("stage-decisions", "detection", &all, what, Vec::new()));
+            }
+        };
+        let mut details = Vec::new();
+        let kind = only_kind(listed);
+        let rivals: Vec<f64> = self
+            .right
+            .iter()
+            .filter(|(other, _)| kind.is_none_or(|kind| kind == *other))
+            .map(|(_, time)| *time)
+            .collect();
+        let (low, high) = range(listed.iter().map(|(_, time)| *time));
+        details.push(format!("times of impact of these ({}): {low:.4} to {high:.4}", listed.len()));
+        if !rivals.is_empty() {
+            let (low, high) = range(rivals.iter().copied());
+            details.push(format!("of those that are right ({}): {low:.4} to {high:.4}", rivals.len()));
+        }
+        Some(said(key, "detection", listed, word, details))
+    }
+
+    fn vectors(&self) -> Option<Explanation> {
+        if self.vectors.is_empty() {
+            return None;
+        }
+        let listed: Vec<(i32, f64)> = self.vectors.iter().map(|(kind, ..)| (*kind, 0.0)).collect();
+        let ratios: Vec<f64> = self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
+        let off = |(_, ours, theirs): &(i32, Vec2, Vec2)| {
+            let along = theirs.dot(ours) / ours.dot(ours) * ours;
+            length(theirs - along) > ALIKE * length(*theirs)
+        };
+        let right_angle =
+            |(_, ours, theirs): &(i32, Vec2, Vec2)| theirs.dot(ours).abs() <= ALIKE * length(*ours) * length(*theirs);
+        let what = if self.vectors.iter().all(right_angle) {
+            "it is perpendicular to what it should be"
+        } else if self.vectors.iter().any(off) {
+            "it has the wrong direction"
+        } else if ratios.iter().all(|&ratio| (ratio + 1.0).abs() <= ALIKE) {
+            "it points the other way round"
+        } else {
+            "it has the right direction, but not the right length"
+        };
+        let details = vec![format!("{} as long along the right one", times(&ratios))];
+        Some(said("stage-contact-vectors", "contact vector", &listed, what, details))
+    }
+
+    fn times(&self) -> Option<Explanation> {
+        if self.times.is_empty() {
+            return None;
+        }
+        let ratios: Vec<f64> =
+            self.times.iter().filter(|(ours, _)| *ours > 0.0).map(|(ours, theirs)| theirs / ours).collect();
+        let offsets: Vec<f64> = self.times.iter().map(|(ours, theirs)| theirs - ours).collect();
+        let mut details = Vec::new();
+        if !ratios.is_empty() {
+            details.push(format!("{} what they should be", times(&ratios)));
+        }
+        if let Some(offset) = common_value(&offsets) {
+            details.push(format!("off by {offset:.6}"));
+        }
+        details
+            .push("the time of impact goes into contact vector and response as the root finder returns it".to_owned());
+        let what = "Detection: The contacts are right, but not their times of impact.".to_owned();
+        Some(observation("stage-contact-times", what, details, self.times.len()))
+    }
+}
+
+/// The kind that all of these have.
+fn only_kind(listed: &[(i32, f64)]) -> Option<i32> {
+    let first = listed.first()?.0;
+    listed.iter().all(|(kind, _)| *kind == first).then_some(first)
+}
+
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
+fn said(key: &str, stage: &str, listed: &[(i32, f64)], what: &str, details: Vec<String>) -> Explanation {
+    let place = match only_kind(listed).and_then(|kind| usize::try_from(kind).ok()).and_then(|kind| KINDS.get(kind)) {
+        Some(kind) => format!("{} {stage}", sentence(kind)),
+        None => sentence(stage),
+    };
+    observation(key, format!("{place}: {}.", sentence(what)), details, listed.len())
+}

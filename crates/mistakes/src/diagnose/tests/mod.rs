@@ -1,0 +1,163 @@
+//! Programs with several mistakes, and with mistakes that the catalogue does not have, asked about on the probe scenes.
+use super::{
+    Explanation, explain,
+    outside::{Rated, Rating, rated, told_of},
+    probe_scenes,
+};
+use crate::student::{self, Area, CATALOGUE, Kind, Row, Student, mutants::mutants};
+
+/// What is said of a program that makes several mistakes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Said {
+    /// All of them, and nothing else.
+    All,
+    /// Some of them, and nothing else.
+    Some,
+    /// That nothing is known.
+    Nothing,
+    /// Something that the program does not do.
+    Wrong,
+}
+
+/// Programs with two or three mistakes of different parts of the assignment, every tenth of a long list.
+fn programs() -> Vec<Vec<&'static Row>> {
+    let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong && row.area != Area::Trace).collect();
+    let mut programs = Vec::new();
+    for number in 0..48_usize {
+        let one = rows[(number * 37) % rows.len()];
+        let two = rows[(number * 101 + 13) % rows.len()];
+        let three = rows[(number * 53 + 7) % rows.len()];
+        let mut program = vec![one];
+        for row in [two, three].into_iter().take(if number % 4 == 3 { 2 } else { 1 }) {
+            if program.iter().all(|other| other.area != row.area) {
+                program.push(row);
+            }
+        }
+        if program.len() > 1 {
+            programs.push(program);
+        }
+    }
+    programs
+}
+
+/// What is said of a program with these mistakes.
+fn said_of(program: &[&Row]) -> (Said, String) {
+    let student = program.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
+    let told = told_of(student);
+    let keys: Vec<String> =
+        told.iter().flat_map(|one| std::iter::once(&one.key).chain(&one.same_as)).cloned().collect();
+    let is_made = |one: &Explanation| match student::find(&one.key) {
+        Some(_) => program.iter().any(|row| row.id == one.key || one.same_as.iter().any(|id| id == row.id)),
+        None if one.key == Explanation::UNFINISHED => {
+            one.same_as.iter().all(|id| program.iter().any(|row| row.id == id))
+        }
+        // What is said of polynomials in general.
+        None => program.iter().any(|row| {
+            let place = row.place();
+            matches!(row.area, Area::Handover) || one.what.contains(place) || one.what.contains(&place.to_lowercase())
+        }),
+    };
+    let named = program.iter().filter(|row| keys.iter().any(|key| key == row.id)).count();
+    let said = match () {
+        () if told.is_empty() => Said::Nothing,
+        // What does the same everywhere can't be told apart.
+        () if !told.iter().all(is_made) => {
+            if does_the_same(program, &told) {
+                Said::Some
+            } else {
+                Said::Wrong
+            }
+        }
+        () if named == program.len() => Said::All,
+        () => Said::Some,
+    };
+    let ids: Vec<&str> = program.iter().map(|row| row.id).collect();
+    (said, format!("{ids:?}: {said:?}: {:?}", told.iter().map(|one| (&one.key, &one.same_as)).collect::<Vec<_>>()))
+}
+
+/// Whether a program with the mistakes that are told leaves the same traces.
+fn does_the_same(program: &[&Row], told: &[Explanation]) -> bool {
+    let stages = told.iter().filter(|one| one.key == Explanation::UNFINISHED).flat_map(|one| &one.same_as);
+    let rows: Vec<&Row> = told.iter().map(|one| &one.key).chain(stages).filter_map(|key| student::find(key)).collect();
+    let traces = |rows: &[&Row]| -> Vec<Vec<u8>> {
+        let student = rows.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
+        let bytes = |scene| student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes);
+        probe_scenes().iter().map(|(_, scene)| bytes(scene)).collect()
+    };
+    traces(&rows) == traces(program)
+}
+
+/// Two or three mistakes of different parts of the assignment: nothing is named that the program does not do, and in eight of
+/// ten something is.
+#[test]
+fn of_several_mistakes_some_are_named_and_no_other() {
+    let said: Vec<(Said, String)> = programs().iter().map(|program| said_of(program)).collect();
+    let count = |what: Said| said.iter().filter(|(said, _)| *said == what).count();
+    let (all, some, nothing, wrong) = (count(Said::All), count(Said::Some), count(Said::Nothing), count(Said::Wrong));
+    let lines: Vec<&String> = said.iter().filter(|(said, _)| *said != Said::All).map(|(_, line)| line).collect();
+    assert_eq!(wrong, 0, "of {}: {all} all, {some} some, {nothing} nothing, {wrong} wrong\n{lines:#?}", said.len());
+    assert!(10 * (all + some) >= 8 * said.len(), "{lines:#?}");
+}
+
+/// Mistakes that the catalogue does not have, one of four: nothing misleads, and in eight of ten something is said that
+/// helps. `crates/lab` has the table of all.
+#[test]
+fn of_unknown_mistakes_the_place_is_told_and_none_is_taken_for_another() {
+    let rated: Vec<Rated> = rated(|number| number % 4 == 1).collect();
+    let misleading: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Misleading).collect();
+    assert!(misleading.is_empty(), "{misleading:#?}");
+    let open: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Unknown).collect();
+    assert!(5 * open.len() <= rated.len() && rated.len() >= 15, "{open:#?}");
+}
+
+/// What is said of a mutant's trace of one probe scene.
+fn said_on(id: &str, probe: &str) -> Explanation {
+    let mutant = mutants().find(|mutant| mutant.id == id).expect("a mutant");
+    let (_, scene) = probe_scenes().into_iter().find(|(name, _)| name == probe).expect("a probe scene");
+    let trace = student::trace(&scene, Student::default().with_mutant(mutant)).expect("it comes to an end");
+    explain(&scene, &trace).into_iter().next().expect("an explanation")
+}
+
+#[test]
+fn the_first_wrong_stage_is_told_with_what_its_results_have_in_common() {
+    let cases = [
+        (
+            "order-kinds-apart",
+            "zones-of-all-kinds",
+            "Detection: The polynomials are right, but the pairs",
+            "per particle",
+        ),
+        ("root-time-late", "edges-struck", "Detection: The contacts are right, but not their times", "1.1 times"),
+        (
+            "vector-doubled",
+            "edges-struck",
+            "Particle-edge contact vector: It has the right direction",
+            "2 times as long",
+        ),
+        ("response-stronger", "edges-struck", "Collision response: ", "1.5 times what it should"),
+        (
+            "response-friction",
+            "edges-struck",
+            "Collision response: Velocities change also across",
+            "across the contact",
+        ),
+        ("loop-at-most-two", "rounds-enough", "Impulse loop: It makes fewer rounds", "2 detection passes where"),
+        ("rigid-half-turn", "zones-turn-little-and-far", "Rigid failsafe: They do not turn as far", "they turn 0."),
+        ("rigid-shrinks", "zones-turn-little-and-far", "Rigid failsafe: ", ""),
+        (
+            "rigid-velocity-halved",
+            "zones-turn-little-and-far",
+            "Rigid failsafe: Their velocities",
+            "0.5 times the motion",
+        ),
+    ];
+    let mut others = Vec::new();
+    for (id, probe, what, detail) in cases {
+        let said = said_on(id, probe);
+        let has_detail = detail.is_empty() || said.details.iter().any(|line| line.contains(detail));
+        if !said.what.contains(what) || !has_detail {
+            others.push(format!("{id} on {probe}: {} {:?}", said.what, said.details));
+        }
+    }
+    assert!(others.is_empty(), "{others:#?}");
+}
