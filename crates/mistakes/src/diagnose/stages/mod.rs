@@ -21,6 +21,9 @@ use story::{Facts, Teller};
 /// So many steps are looked at.
 const MOST_STEPS: usize = 120;
 
+/// And so many polynomials; about a microsecond each.
+const WORK: usize = 200_000;
+
 /// Ratios that are this close are the same.
 const ALIKE: f64 = 1e-6;
 
@@ -31,7 +34,16 @@ pub(super) fn explain<'a>(scene: &Scene, samples: impl Iterator<Item = &'a Sampl
         return None;
     }
     let mut teller = Teller::new(scene);
-    let facts: Vec<Facts> = samples.take(MOST_STEPS).filter_map(|sample| teller.tell(sample)).collect();
+    let mut work = 0;
+    let facts: Vec<Facts> = samples
+        .take(MOST_STEPS)
+        .take_while(|sample| {
+            let goes_on = work < WORK;
+            work += sample.records.end.polynomials.len();
+            goes_on
+        })
+        .filter_map(|sample| teller.tell(sample))
+        .collect();
     if facts.iter().all(|facts| !facts.is_wrong) {
         return None;
     }

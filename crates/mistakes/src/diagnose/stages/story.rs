@@ -1,6 +1,7 @@
 //! What the reference does in a step from the submission's own state, event by event.
 use super::{ROUND_OFF, Sample, first_difference, same_polynomial};
 use crate::diagnose::known::{Capture, Logged, StepRecords, state_difference};
+use fosssim_judge::budget::Budget;
 use fosssim_model::{
     scene::Scene,
     sim::{Decision, Detection, Observer, Pair, Pass, RootSearch, Simulation, Stage, State, Time, Zone},
@@ -120,15 +121,20 @@ impl Facts {
 }
 
 /// Lets the reference run steps.
-pub(super) struct Teller {
+pub(super) struct Teller<'a> {
+    budget: Budget<'a>,
     simulation: Simulation,
     observers: (Capture, Story),
 }
 
-impl Teller {
-    pub(super) fn new(scene: &Scene) -> Self {
+impl<'a> Teller<'a> {
+    pub(super) fn new(scene: &'a Scene) -> Self {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-        Self { simulation, observers: (Capture::new(&scene.collision), Story::default()) }
+        Self {
+            budget: Budget::new(scene, false),
+            simulation,
+            observers: (Capture::new(&scene.collision), Story::default()),
+        }
     }
 
     fn set(&mut self, sample: &Sample) {
@@ -139,10 +145,10 @@ impl Teller {
     /// The facts of a step; none where the reference has no result.
     pub(super) fn tell(&mut self, sample: &Sample) -> Option<Facts> {
         self.set(sample);
-        self.simulation.step(&mut Unhindered).ok()?;
+        self.budget.step(&mut self.simulation, &mut Unhindered).ok()?;
         let prediction = self.simulation.state().clone();
         self.set(sample);
-        self.simulation.step(&mut self.observers).ok()?;
+        self.budget.step(&mut self.simulation, &mut self.observers).ok()?;
         let (capture, story) = &mut self.observers;
         let story = std::mem::take(story);
         let (expected, actual) = (capture.records.clone(), sample.records.clone());
