@@ -1,7 +1,7 @@
 //! Mistakes that the catalogue does not have, for measuring what explanations say of what they can't know.
 //!
 //! Explanations never try these: a row here must not become a row of the catalogue, or the measure is gone. Each changes one
-//! thing at one of the [`Change`]s.
+//! thing at one of the `Change`s.
 mod coefficients;
 mod contacts;
 mod motions;
