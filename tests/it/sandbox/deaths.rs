@@ -52,7 +52,7 @@ fn a_program_dies_with_its_grader() {
         return;
     }
     let mut grader = std::process::Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "sandbox::a_program_dies_with_its_grader"])
+        .args(["--exact", "sandbox::deaths::a_program_dies_with_its_grader"])
         .env(ROLE, "1")
         .stdout(std::process::Stdio::null())
         .spawn()
