@@ -118,6 +118,15 @@ fn quarter_turns_and_mirrors_change_no_bit() {
     assert!(different.is_empty(), "{different:#?}");
 }
 
+/// Scenes of creeping bodies, and of edges in rigid zones.
+const ABOUT_THE_BOUND: [&str; 5] = [
+    "barely-closing",
+    "impact-exactly-past-step-end",
+    "rows-collected-over-many-rounds",
+    "small-and-large-turns-of-fractional-masses",
+    "funnel-of-fractional-masses",
+];
+
 /// Newton's method stops at an absolute bound, and coefficients are dropped at one.
 #[test]
 fn powers_of_two_as_unit_of_length_change_no_bit() {
@@ -133,9 +142,11 @@ fn powers_of_two_as_unit_of_length_change_no_bit() {
         .collect();
     let unexplained: Vec<&String> = cases.iter().filter(|case| case.1.1 == Some(false)).map(|case| &case.0).collect();
     assert!(unexplained.is_empty(), "{unexplained:#?}");
-    let whole = cases.iter().filter(|case| case.1.0 == case.2).count();
-    // Creeping bodies and edges of rigid zones have coefficients about the absolute bound below which the course's library drops them.
-    assert!(whole * 5 > cases.len() * 4, "{whole} of {} scenes stay the same to their end", cases.len());
+    // Made so that coefficients lie about the absolute bound below which the course's library drops them.
+    let is_about_the_bound = |name: &str| ABOUT_THE_BOUND.iter().any(|scene| name.contains(scene));
+    let others = cases.iter().filter(|case| !is_about_the_bound(&case.0));
+    let (whole, all) = (others.clone().filter(|case| case.1.0 == case.2).count(), others.count());
+    assert!(whole * 20 > all * 17, "{whole} of {all} scenes stay the same to their end");
 }
 
 /// Hears whether a decision hangs on round-off: on the coefficients by a few thousand roundings of the greatest, or on whether
