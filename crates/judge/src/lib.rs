@@ -10,6 +10,7 @@ mod contacts;
 mod differing;
 pub mod fair;
 mod finding;
+mod identical;
 mod outcome;
 pub mod parity;
 pub mod recorded;

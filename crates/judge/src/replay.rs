@@ -1,28 +1,27 @@
 //! Reads the trace step by step, has the steps judged in batches, and puts the results together in their order.
 //!
 //! Once a step's frames are in memory the step depends on nothing else: the reference starts from the submission's
-//! own state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
-//! reported, and in which order, does not depend on the number of threads.
+//! own state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. Steps that are
+//! the reference's byte for byte are judged as they are read (`identical`): that takes hardly longer than decoding them. What
+//! is reported, and in which order, does not depend on the number of threads.
+mod crew;
+
 use super::{
     budget::{Budget, FLOOR},
     fair::{self, Context, Reach, Records, StepJudgement},
+    identical::Identical,
     outcome::{Damage, Outcome, Stop, Unreadable},
     parity::{Options, Progress, StepFindings, WrongStep},
     rules::Book,
-    tally::{self, Buffers, StepResult, Tally},
+    tally::{self, StepResult},
 };
+use crew::Crew;
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{SearchCounts, Simulation, State, StepError},
+    sim::{RootSearch, State, StepError},
     trace::{Cause, Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
 };
-use std::{
-    io::Read,
-    sync::{
-        Mutex,
-        atomic::{AtomicU64, AtomicUsize, Ordering},
-    },
-};
+use std::{io::Read, sync::Mutex};
 
 /// A batch is full when its frames hold this many bytes ...
 const BATCH_BYTES: usize = 1 << 18;
@@ -30,9 +29,6 @@ const BATCH_BYTES: usize = 1 << 18;
 const LARGE_BATCH_BYTES: usize = 1 << 24;
 /// ... or this many steps.
 const BATCH_STEPS: usize = 256;
-/// More threads than this only cost memory: reading is sequential.
-const MOST_THREADS: usize = 8;
-
 /// One step as read, and what judging it yields.
 #[derive(Debug, Default)]
 struct Slot {
@@ -59,12 +55,8 @@ struct Slot {
     is_done: bool,
     /// What judging it took, in detection calls.
     work: u64,
-}
-
-/// What one thread needs to judge a step.
-struct Worker {
-    simulation: Simulation,
-    buffers: Buffers,
+    /// What was read, in bytes.
+    bytes: usize,
 }
 
 /// Steps in a row; slots are reused from batch to batch.
@@ -93,78 +85,19 @@ pub(super) fn judge_within<R: Read + Send>(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {
-    let mut replay = Replay::new(scene, Lenient::new(trace, Layout::of(scene)).with_limit(memory), options.fair);
+    let reader = Lenient::new(trace, Layout::of(scene)).with_limit(memory);
+    let mut replay = Replay::new(scene, reader, options.fair, options.root_search);
     replay.budget = replay.budget.with_floor(work);
-    if let Err(stop) = replay.read_initial() {
-        replay.outcome.damage = replay.damage.take();
-        replay.outcome.stop = Some(stop);
-        replay.outcome.conclude();
-        return replay.outcome;
-    }
-    replay.outcome.damage = replay.damage.take();
-    progress.begins();
-    let (mut current, mut next) = (Batch::default(), Batch::default());
-    let mut stop = replay.read_batch(&mut current);
-    // A trace that fits into one batch is judged before threads have started, unless somebody asks for them.
-    let is_short = stop.is_some() || replay.complete();
-    let threads = match options.threads {
-        0 if is_short => 1,
-        0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
-        given => given,
-    }
-    .min(MOST_THREADS);
-    let mut workers: Vec<Worker> = (0..threads)
-        .map(|_| Worker { simulation: Simulation::new(scene, options.root_search), buffers: Buffers::default() })
-        .collect();
-    let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten();
-    loop {
-        let mut stop_after = None;
-        let at_once = pool.is_some() && current.bytes <= LARGE_BATCH_BYTES;
-        match &pool {
-            None => judge_batch(&current, &mut workers[..1], &replay.shape, replay.budget.rest()),
-            Some(pool) => {
-                let (shape, rest) = (replay.shape, replay.budget.rest());
-                let read_on = at_once && stop.is_none() && !replay.complete();
-                let reader = &mut replay;
-                pool.install(|| {
-                    rayon::join(
-                        || judge_batch(&current, &mut workers, &shape, rest),
-                        || {
-                            if read_on {
-                                stop_after = reader.read_batch(&mut next);
-                            }
-                        },
-                    );
-                });
-            }
-        }
-        if current.work() > replay.budget.rest() && replay.budget.widen() {
-            judge_batch(&current, &mut workers, &replay.shape, replay.budget.rest());
-        }
-        if replay.deliver(&mut current, progress, options) {
-            break;
-        }
-        if let Some(stop) = stop {
-            if let Stop::Trace { step, .. } = stop {
-                progress.step_begins(step);
-            }
-            replay.outcome.damage = replay.outcome.damage.take().or(replay.damage.take());
-            replay.outcome.stop = Some(stop);
-            break;
-        }
-        if replay.outcome.steps_judged == replay.outcome.steps {
-            replay.outcome.trailing_bytes = replay.reader.has_more();
-            break;
-        }
-        if !at_once {
-            stop_after = replay.read_batch(&mut next);
-        }
-        stop = stop_after;
-        std::mem::swap(&mut current, &mut next);
-    }
-    replay.outcome.searches = sum_of_searches(&workers);
-    replay.outcome.conclude();
-    replay.outcome
+    replay.judge(options, progress)
+}
+
+/// As [`judge`], where no step is compared as bytes.
+#[cfg(test)]
+pub(super) fn judge_the_long_way(scene: &Scene, trace: &[u8], options: &Options) -> Outcome {
+    let reader = Lenient::new(trace, Layout::of(scene)).with_limit(record_memory(scene));
+    let mut replay = Replay::new(scene, reader, options.fair, options.root_search);
+    replay.identical.give_up();
+    replay.judge(options, &mut ())
 }
 
 /// Which parts of a step are compared.
@@ -178,6 +111,7 @@ struct Shape<'a> {
 
 /// The sequential side: the reader, the state that the next step starts from, and the outcome so far.
 struct Replay<'a, R> {
+    scene: &'a Scene,
     reader: Lenient<R>,
     shape: Shape<'a>,
     /// The end state of the last step that was read.
@@ -189,6 +123,8 @@ struct Replay<'a, R> {
     reach: Option<Reach<'a>>,
     /// What work is left.
     budget: Budget<'a>,
+    /// Judges what is the reference's byte for byte.
+    identical: Identical,
     /// Damage of the record that could not be read at last.
     damage: Option<Damage>,
     /// Whether a record of the steps delivered so far, or the first one, is damaged.
@@ -196,11 +132,66 @@ struct Replay<'a, R> {
     outcome: Outcome,
 }
 
-impl<'a, R: Read> Replay<'a, R> {
-    fn new(scene: &'a Scene, reader: Lenient<R>, fair: bool) -> Self {
+impl<'a, R: Read + Send> Replay<'a, R> {
+    /// Judges the trace from its beginning.
+    fn judge(mut self, options: &Options, progress: &mut dyn Progress) -> Outcome {
+        if let Err(stop) = self.read_initial() {
+            self.outcome.damage = self.damage.take();
+            self.outcome.stop = Some(stop);
+            self.outcome.conclude();
+            return self.outcome;
+        }
+        self.outcome.damage = self.damage.take();
+        progress.begins();
+        let (mut current, mut next) = (Batch::default(), Batch::default());
+        let mut stop = self.read_batch(&mut current);
+        let mut crew = Crew::new(self.scene, options);
+        loop {
+            // A trace that fits into one batch is judged before threads have started, unless somebody asks for them.
+            let is_last = stop.is_some() || self.complete();
+            let mut stop_after = None;
+            let at_once = !is_last && current.is_waiting() && current.bytes <= LARGE_BATCH_BYTES && crew.has_pool();
+            if at_once {
+                let (shape, rest) = (self.shape, self.budget.rest());
+                crew.judge_beside(&current, &shape, rest, || stop_after = self.read_batch(&mut next));
+            } else if current.is_waiting() {
+                crew.judge(&current, &self.shape, self.budget.rest(), is_last);
+            }
+            if current.work() > self.budget.rest() && self.budget.widen() && current.is_waiting() {
+                crew.judge(&current, &self.shape, self.budget.rest(), is_last);
+            }
+            if self.deliver(&mut current, progress, options) {
+                break;
+            }
+            if let Some(stop) = stop {
+                if let Stop::Trace { step, .. } = stop {
+                    progress.step_begins(step);
+                }
+                self.outcome.damage = self.outcome.damage.take().or(self.damage.take());
+                self.outcome.stop = Some(stop);
+                break;
+            }
+            if self.outcome.steps_judged == self.outcome.steps {
+                self.outcome.trailing_bytes = self.reader.has_more();
+                break;
+            }
+            if !at_once {
+                stop_after = self.read_batch(&mut next);
+            }
+            stop = stop_after;
+            std::mem::swap(&mut current, &mut next);
+        }
+        self.outcome.searches = self.identical.searches();
+        self.outcome.searches += crew.searches();
+        self.outcome.conclude();
+        self.outcome
+    }
+
+    fn new(scene: &'a Scene, reader: Lenient<R>, fair: bool, root_search: RootSearch) -> Self {
         let layout = Layout::of(scene);
         let logs_impulses = layout.impulses && !matches!(scene.collision, Collision::Hybrid { .. });
         Self {
+            scene,
             reader,
             shape: Shape { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
             state: State::default(),
@@ -208,6 +199,7 @@ impl<'a, R: Read> Replay<'a, R> {
             steps_read: 0,
             reach: fair.then(|| Reach::new(scene)),
             budget: Budget::new(scene, fair),
+            identical: Identical::new(scene, root_search),
             damage: None,
             damaged: false,
             outcome: Outcome {
@@ -273,7 +265,7 @@ impl<'a, R: Read> Replay<'a, R> {
                 self.damage = slot.damage.take();
                 return Some(stop);
             }
-            batch.bytes += memory(&slot.end).max(memory(&slot.mid)) + self.shape.layout.state_bytes();
+            batch.bytes += slot.bytes;
             batch.filled += 1;
         }
         None
@@ -285,6 +277,9 @@ impl<'a, R: Read> Replay<'a, R> {
         slot.error = None;
         slot.beyond_limit = false;
         (slot.is_done, slot.work) = (false, 0);
+        if self.read_identical(slot) {
+            return Ok(());
+        }
         copy_state(&mut slot.before, &self.state);
         slot.before_at = self.state_at;
         let mut damage = None;
@@ -308,8 +303,26 @@ impl<'a, R: Read> Replay<'a, R> {
         copy_state(&mut self.state, &slot.end.state);
         self.state_at = self.reader.record_offset();
         slot.end_at = self.state_at;
+        slot.bytes = memory(&slot.end).max(memory(&slot.mid)) + self.shape.layout.state_bytes();
         self.steps_read += 1;
         Ok(())
+    }
+
+    /// Reads a step and judges it, if it is the reference's byte for byte.
+    fn read_identical(&mut self, slot: &mut Slot) -> bool {
+        let (context, rest) = (self.shape.fair.as_ref(), self.budget.rest());
+        let Some(found) = self.identical.find(&mut self.reader, slot.step, &self.state, context, rest) else {
+            return false;
+        };
+        copy_state(&mut self.state, self.identical.state());
+        self.state_at = self.reader.record_offset();
+        slot.end_at = self.state_at;
+        self.steps_read += 1;
+        slot.result.set_identical();
+        slot.fair = found.fair.unwrap_or_default();
+        (slot.bytes, slot.work, slot.is_done) = (found.bytes, found.work, true);
+        (slot.is_extraordinary, slot.is_put_off) = (false, false);
+        true
     }
 
     /// Hands the batch's results on in the order of the steps. Whether judging is over.
@@ -425,6 +438,11 @@ fn beyond_limit(slot: &Slot, layout: Layout) -> Stop {
 }
 
 impl Batch {
+    /// Whether a step of it is still to be judged.
+    fn is_waiting(&mut self) -> bool {
+        self.slots[..self.filled].iter_mut().any(|slot| !lock(slot).is_done)
+    }
+
     /// What judging it took so far.
     fn work(&mut self) -> u64 {
         self.slots[..self.filled].iter_mut().map(|slot| lock(slot).work).sum()
@@ -435,80 +453,6 @@ impl Batch {
 fn memory(frame: &LenientFrame) -> usize {
     let LenientFrame { impulses, polynomials, .. } = frame;
     8 * polynomials.coefficients.len() + 8 * polynomials.ends.len() + size_of::<LoggedImpulse>() * impulses.len()
-}
-
-/// Judges the steps of a batch that are not done, each by the next free worker, until they take more work than is left.
-///
-/// Steps are begun in their order, and a step that is begun is done, or has alone taken more than is left. So the first
-/// step that the budget does not reach is always among those that were begun, whatever the number of threads.
-fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &Shape<'_>, rest: u64) {
-    let slots = &batch.slots[..batch.filled];
-    let (next, work) = (AtomicUsize::new(0), AtomicU64::new(0));
-    let run = |worker: &mut Worker| {
-        while work.load(Ordering::Relaxed) <= rest {
-            let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
-            // Every index is handed out once, so the lock is always free.
-            let mut slot = slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            if !slot.is_done {
-                let begin = worker.simulation.work();
-                worker.simulation.limit_work(begin.saturating_add(rest));
-                judge_step(&mut slot, worker, shape);
-                slot.work = worker.simulation.work() - begin;
-                slot.is_done = slot.work <= rest;
-            }
-            work.fetch_add(slot.work, Ordering::Relaxed);
-        }
-    };
-    match workers {
-        [worker] => run(worker),
-        workers => rayon::scope(|scope| {
-            let run = &run;
-            for worker in workers {
-                scope.spawn(move |_| run(worker));
-            }
-        }),
-    }
-}
-
-fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
-    let Slot {
-        step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, ..
-    } = slot;
-    let Worker { simulation, buffers } = worker;
-    copy_state(simulation.state_mut(), before);
-    simulation.set_steps_done(*step - 1);
-    let layout = shape.layout;
-    let frame = u64::from(*step) * u64::from(layout.records_per_step());
-    let mid = layout.polynomials.then_some(&*mid);
-    (*error, *beyond_limit) = (None, false);
-    let mut tally = Tally::new((*step, frame), end, mid.map(|mid| &mid.state), shape.logs_impulses, buffers, result);
-    match simulation.step(&mut tally) {
-        Ok(()) => {
-            *beyond_limit = layout.polynomials && tally.needs_more();
-            tally.finish(simulation.state(), layout.impulses, layout.polynomials);
-        }
-        Err(cause) => *error = Some(cause),
-    }
-    if let (Some(context), None, false) = (&shape.fair, &error, *beyond_limit) {
-        let records = Records { step: *step, frame, before, mid, end };
-        *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
-        *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
-        if !*is_put_off {
-            *judged = fair::judge(context, simulation, records, result.identical);
-        }
-    }
-}
-
-fn sum_of_searches(workers: &[Worker]) -> SearchCounts {
-    let mut sum = SearchCounts::default();
-    for counts in workers.iter().map(|worker| worker.simulation.search_counts()) {
-        sum.calls += counts.calls;
-        sum.searched += counts.searched;
-        sum.excluded += counts.excluded;
-        sum.disagreements += counts.disagreements;
-        sum.fruitless += counts.fruitless;
-    }
-    sum
 }
 
 fn copy_state(target: &mut State, source: &State) {

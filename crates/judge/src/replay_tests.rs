@@ -1,7 +1,10 @@
 //! Batches and limits, tried from inside.
 use super::*;
 use crate::{finding::Kind, samples::changed};
-use fosssim_model::trace::{Frame, Reader, Recorder, Writer};
+use fosssim_model::{
+    sim::Simulation,
+    trace::{Frame, Reader, Recorder, Writer},
+};
 use fosssim_num::vector::Vec2;
 
 /// So many balls that a pass logs more than the reader's window holds.
@@ -30,7 +33,8 @@ fn a_batch_counts_all_lists() {
                 (0..polynomials).for_each(|_| frame.polynomials.push(&[]));
             }
         });
-        let mut replay = Replay::new(&scene, Lenient::new(&trace[..], Layout::of(&scene)), true);
+        let mut replay =
+            Replay::new(&scene, Lenient::new(&trace[..], Layout::of(&scene)), true, RootSearch::WhereNeeded);
         replay.read_initial().expect("a first record");
         let mut batch = Batch::default();
         assert!(replay.read_batch(&mut batch).is_none());

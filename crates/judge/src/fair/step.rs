@@ -15,7 +15,7 @@ use crate::{
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Pair, PairKind, Pass, Simulation, State, StepError},
-    trace::LenientFrame,
+    trace::{Layout, LenientFrame},
 };
 use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::at};
 
@@ -31,6 +31,8 @@ pub(crate) struct Context<'a> {
     pub per_pass: usize,
     /// Pairs of one detection pass.
     pub pairs: usize,
+    /// Records of one step.
+    pub records_per_step: u32,
     /// States that need no look at the reference's own run.
     pub ordinary: Ordinary,
 }
@@ -45,7 +47,8 @@ impl<'a> Context<'a> {
         let edges: usize = (0..count).map(|particle| scene.edges.len() - ends(particle)).sum();
         let per_pass = count * count.saturating_sub(1) + 4 * edges + 2 * count * scene.half_planes.len();
         let pairs = count * count.saturating_sub(1) / 2 + edges + count * scene.half_planes.len();
-        Self { scene, per_pass, pairs, ordinary: Ordinary::of(scene) }
+        let records_per_step = Layout::of(scene).records_per_step();
+        Self { scene, per_pass, pairs, records_per_step, ordinary: Ordinary::of(scene) }
     }
 
     /// The particles of a pair: one, two, or three with an edge.
@@ -159,6 +162,13 @@ pub(crate) struct StepJudgement {
 }
 
 impl StepJudgement {
+    /// Of a step whose records are the reference's bit for bit, with so many polynomials in the end record.
+    pub fn identical(context: &Context<'_>, step: u32, polynomials: usize) -> Self {
+        let frame = u64::from(step) * u64::from(context.records_per_step);
+        let passes = polynomials.checked_div(context.per_pass).unwrap_or(0);
+        Self { step, frame, decisions: (passes * context.pairs) as u64, ..Self::default() }
+    }
+
     /// Adds a finding.
     pub(super) fn charge(&mut self, finding: Finding) {
         if self.findings.iter().any(|first| first.kind() == finding.kind()) {
@@ -245,9 +255,7 @@ pub(crate) fn judge(
 ) -> StepJudgement {
     let (step, frame) = (records.step, records.frame);
     let mut judged = if identical {
-        let passes = records.end.polynomials.len().checked_div(context.per_pass).unwrap_or(0);
-        let decisions = (passes * context.pairs) as u64;
-        StepJudgement { step, frame, decisions, ..StepJudgement::default() }
+        StepJudgement::identical(context, step, records.end.polynomials.len())
     } else {
         follow(context, simulation, records).unwrap_or_else(|_| StepJudgement {
             step,

@@ -11,10 +11,12 @@ mod collision;
 mod forces;
 mod integrators;
 mod observer;
+mod polynomial_bytes;
 #[cfg(test)]
 mod samples;
 mod simulation;
 
 pub use collision::{PairMotion, PointMotion};
-pub use observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, Time, Zone};
+pub use observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, Time, Wanted, Zone};
+pub use polynomial_bytes::PolynomialBytes;
 pub use simulation::{RootSearch, SearchCounts, Simulation, State, StepError};

@@ -1,5 +1,5 @@
 //! What the simulator tells while it computes: every detection call, pass, impulse and zone.
-use super::simulation::State;
+use super::{polynomial_bytes::PolynomialBytes, simulation::State};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
 /// Hears what happens inside a step. Every method does nothing by default.
@@ -17,6 +17,12 @@ pub trait Observer {
     fn begin_step(&mut self, _step: u32) {}
     /// A detection pass begins.
     fn begin_pass(&mut self, _pass: Pass) {}
+    /// What this observer wants to know of the pass's pairs; asked once or more in each pass. Unless it wants
+    /// [`Wanted::Calls`], `solve`, `decide` and `detection` are not called, and pairs are computed many at a time.
+    #[inline]
+    fn wanted(&mut self) -> Wanted<'_> {
+        Wanted::Calls
+    }
     /// The polynomials of a pair, trimmed, are about to be searched for a time of impact. An observer may put others in
     /// their place; search, decision and `detection` then go by those. Not called by `simple`, which has none.
     fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
@@ -43,8 +49,24 @@ pub trait Observer {
     fn end_step(&mut self, _step: u32, _state: &State) {}
 }
 
+/// What an observer wants to know of the pairs of a detection pass.
+#[derive(Debug)]
+pub enum Wanted<'a> {
+    /// Every call, one by one; it may steer them.
+    Calls,
+    /// The polynomials as a trace holds them, to be appended here.
+    Bytes(&'a mut PolynomialBytes),
+    /// Nothing.
+    Nothing,
+}
+
 /// The observer that hears nothing.
-impl Observer for () {}
+impl Observer for () {
+    #[inline]
+    fn wanted(&mut self) -> Wanted<'_> {
+        Wanted::Nothing
+    }
+}
 
 /// An observer that is lent hears the same.
 impl<O: Observer + ?Sized> Observer for &mut O {
@@ -53,6 +75,10 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     }
     fn begin_pass(&mut self, pass: Pass) {
         (**self).begin_pass(pass);
+    }
+    #[inline]
+    fn wanted(&mut self) -> Wanted<'_> {
+        (**self).wanted()
     }
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         (**self).solve(pair, q_start, q_end, polynomials);

@@ -52,6 +52,30 @@ impl SearchCounts {
     }
 }
 
+impl std::ops::AddAssign for SearchCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.calls += other.calls;
+        self.searched += other.searched;
+        self.excluded += other.excluded;
+        self.disagreements += other.disagreements;
+        self.fruitless += other.fruitless;
+    }
+}
+
+/// What was counted since `before`.
+impl std::ops::Sub for SearchCounts {
+    type Output = Self;
+    fn sub(self, before: Self) -> Self {
+        Self {
+            calls: self.calls - before.calls,
+            searched: self.searched - before.searched,
+            excluded: self.excluded - before.excluded,
+            disagreements: self.disagreements - before.disagreements,
+            fruitless: self.fruitless - before.fruitless,
+        }
+    }
+}
+
 /// A root search takes as long as so many detection calls without one.
 const SEARCH_WORK: u64 = 16;
 

@@ -12,6 +12,7 @@ use super::{
     frame::{LoggedImpulse, PolynomialLog},
     layout::Layout,
     source::Source,
+    step_bytes::StepBytes,
 };
 use crate::{
     scene::{Collision, Scene},
@@ -189,6 +190,32 @@ impl<R: Read> Lenient<R> {
         frame.note = self.note.take();
         self.record += 1;
         Ok(())
+    }
+
+    /// Goes past the records of a step if they are these bytes, and says so; otherwise nothing is read. Records that take
+    /// more memory than allowed are not gone past.
+    pub fn passes(&mut self, step: &StepBytes) -> bool {
+        if self.failed || step.memory() > self.limit {
+            return false;
+        }
+        let start = self.source.offset();
+        let (mut begin, mut records) = (start, 0);
+        for pieces in step.records() {
+            begin = self.source.offset();
+            if !pieces.into_iter().all(|piece| self.source.follow(piece)) {
+                let mut seen = usize::try_from(self.source.offset() - start).unwrap_or(usize::MAX);
+                self.source.unread(step.records().flatten().map(|piece| {
+                    let piece = &piece[..piece.len().min(seen)];
+                    seen -= piece.len();
+                    piece
+                }));
+                return false;
+            }
+            records += 1;
+        }
+        self.begin = begin;
+        self.record += records;
+        true
     }
 
     /// Number of records read.

@@ -16,9 +16,11 @@ mod index;
 mod labels;
 mod layout;
 mod lenient;
+mod log;
 mod reader;
 mod recorder;
 mod source;
+mod step_bytes;
 mod summary;
 mod writer;
 
@@ -34,5 +36,6 @@ pub use layout::Layout;
 pub use lenient::{Cause, Lenient, LenientFrame, Stop, record_memory};
 pub use reader::{FRAME_LIMIT, Reader, TRAILING_LIMIT};
 pub use recorder::Recorder;
+pub use step_bytes::StepBytes;
 pub use summary::{StepView, Summary};
 pub use writer::{Writer, Written};

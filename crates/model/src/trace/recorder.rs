@@ -3,12 +3,11 @@
 //! It decides only what reaches the trace and when (trace-format.md 2); it computes nothing. After the first eventful
 //! step it allocates nothing any more unless a step logs more than every step before.
 use super::{
-    encode,
-    frame::LoggedImpulse,
     layout::Layout,
-    writer::{Encoded, Writer, Written},
+    log::Log,
+    writer::{Writer, Written},
 };
-use crate::sim::{Detection, Impulse, Observer, Pass, Resume, Stage, State};
+use crate::sim::{Detection, Impulse, Observer, Pass, Resume, State, Wanted};
 use std::io::{self, Write};
 
 /// Writes a trace: hand it to [`Simulation::step`](crate::sim::Simulation::step) as the observer of every step, then
@@ -19,19 +18,16 @@ use std::io::{self, Write};
 pub struct Recorder<W: Write> {
     writer: Writer<W>,
     layout: Layout,
-    impulses: Encoded,
-    polynomials: Encoded,
-    /// Whether the responses of the current pass reach the trace: those of `hybrid` never do.
-    logs_impulses: bool,
+    log: Log,
 }
 
 impl<W: Write> Recorder<W> {
     /// Starts a trace with the record of the initial state, whose lists are empty. The stream needs no buffer.
     pub fn start(stream: W, layout: Layout, initial: &State) -> Self {
         let mut writer = Writer::new(stream, layout);
-        let (impulses, polynomials) = (Encoded::default(), Encoded::default());
-        writer.record(initial, &impulses, &polynomials);
-        Self { writer, layout, impulses, polynomials, logs_impulses: false }
+        let log = Log::default();
+        writer.record(initial, &log);
+        Self { writer, layout, log }
     }
 
     /// What has been written so far, what is still in the buffer included.
@@ -57,45 +53,42 @@ impl<W: Write> Recorder<W> {
 
 impl<W: Write> Observer for Recorder<W> {
     fn begin_step(&mut self, _step: u32) {
-        self.impulses.clear();
-        self.polynomials.clear();
-        self.logs_impulses = false;
+        self.log.begin_step();
     }
 
     fn begin_pass(&mut self, pass: Pass) {
-        self.logs_impulses = matches!(pass.stage, Stage::Simple | Stage::ContinuousTime);
+        self.log.begin_pass(pass);
+    }
+
+    #[inline]
+    fn wanted(&mut self) -> Wanted<'_> {
+        Wanted::Bytes(&mut self.log.polynomials)
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
-        for polynomial in detection.polynomials {
-            encode::polynomial(&mut self.polynomials.bytes, polynomial.coefficients());
-        }
-        self.polynomials.count += detection.polynomials.len();
+        self.log.detection(detection);
     }
 
     fn impulse(&mut self, impulse: &Impulse) {
-        if self.logs_impulses {
-            encode::impulse(&mut self.impulses.bytes, &LoggedImpulse::from(*impulse));
-            self.impulses.count += 1;
-        }
+        self.log.impulse(impulse);
     }
 
     fn synchronise(&mut self, state: &mut State) -> Resume {
         if self.layout.records_per_step() == 2 {
-            self.writer.record(state, &self.impulses, &self.polynomials);
+            self.writer.record(state, &self.log);
         }
         Resume::Own
     }
 
     fn end_step(&mut self, _step: u32, state: &State) {
-        self.writer.record(state, &self.impulses, &self.polynomials);
+        self.writer.record(state, &self.log);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::{Decision, Pair, PairKind, Time};
+    use crate::sim::{Decision, Pair, PairKind, Stage, Time};
     use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
     const PAIR: Pair = Pair { kind: PairKind::ParticleHalfPlane, first: 0, second: 3 };

@@ -95,6 +95,31 @@ impl<R: Read> Source<R> {
         self.offset += count as u64;
     }
 
+    /// Steps over the next bytes as far as they are those of `expected`, piece by piece. Whether they all are; if not, some of
+    /// those that are may have been stepped over, and [`Source::unread`] gives them back.
+    pub(crate) fn follow(&mut self, expected: &[u8]) -> bool {
+        let mut rest = expected;
+        while !rest.is_empty() {
+            let there = self.ensure(1).min(rest.len());
+            if there == 0 || self.window()[..there] != rest[..there] {
+                return false;
+            }
+            self.consume(there);
+            rest = &rest[there..];
+        }
+        true
+    }
+
+    /// Puts `bytes`, which were consumed last, in front of what follows.
+    pub(crate) fn unread<'a>(&mut self, bytes: impl Iterator<Item = &'a [u8]>) {
+        let mut buffer = Vec::new();
+        bytes.for_each(|piece| buffer.extend_from_slice(piece));
+        self.offset -= buffer.len() as u64;
+        buffer.extend_from_slice(self.window());
+        (self.start, self.end) = (0, buffer.len());
+        self.buffer = buffer;
+    }
+
     /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Gives how many there were;
     /// `None` when more follow.
     pub(crate) fn drain(&mut self, limit: u64) -> Option<u64> {
@@ -117,14 +142,17 @@ impl<R: Read> Source<R> {
     #[cold]
     fn fill(&mut self, wanted: usize) {
         if self.buffer.is_empty() {
-            // Small traces get a small buffer; one byte more shows the end of the stream in the same call.
+            // Small traces get a small buffer; one byte more shows the end of the stream in the same call. Memory that is
+            // not used stays untouched.
             let size = self.length.map_or(WINDOW as u64, |length| length.saturating_add(1).clamp(64, WINDOW as u64));
-            self.buffer.resize(usize::try_from(size).unwrap_or(WINDOW), 0);
-        }
-        if self.buffer.len() < wanted {
-            self.buffer.resize(WINDOW, 0);
+            self.buffer = vec![0; usize::try_from(size).unwrap_or(WINDOW)];
         }
         self.buffer.copy_within(self.start..self.end, 0);
+        if self.buffer.len() < wanted || self.buffer.len() > WINDOW {
+            // It was small, or holds what was given back and is consumed by now.
+            self.buffer.resize(WINDOW, 0);
+            self.buffer.shrink_to_fit();
+        }
         self.end -= self.start;
         self.start = 0;
         while self.end < wanted && !self.ended {
@@ -193,6 +221,24 @@ mod tests {
         assert_eq!(source.left(), Some(93));
         assert_eq!(source.drain(93), Some(93));
         assert_eq!(source.ensure(1), 0);
+    }
+
+    #[test]
+    fn what_was_followed_can_be_given_back() {
+        let bytes: Vec<u8> = (0..=255).cycle().take(3 * WINDOW).collect();
+        let mut source = Source::new(&bytes[..], None);
+        assert!(source.follow(&bytes[..2 * WINDOW]));
+        assert!(!source.follow(&[0; 9]) && !source.follow(&[&bytes[2 * WINDOW..], &[1]].concat()));
+        let count = usize::try_from(source.offset()).unwrap();
+        source.unread([&bytes[..7], &bytes[7..count]].into_iter());
+        assert_eq!((source.offset(), &source.window()[..9]), (0, &bytes[..9]));
+        let mut read = Vec::new();
+        while source.ensure(WINDOW) > 0 {
+            let there = source.window().len();
+            read.extend_from_slice(source.window());
+            source.consume(there);
+        }
+        assert!(read == bytes && source.offset() == bytes.len() as u64);
     }
 
     #[test]

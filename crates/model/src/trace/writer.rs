@@ -3,7 +3,7 @@
 //! [`Writer`] gathers records in a buffer and hands them to any `Write` in large pieces, so the stream below needs no
 //! buffer of its own. It counts what it wrote, keeps the first I/O error until [`Writer::finish`], and checks nothing:
 //! damaged traces for tests can be written, too.
-use super::{encode, frame::Frame, layout::Layout};
+use super::{encode, frame::Frame, layout::Layout, log::Log};
 use crate::sim::State;
 use std::io::{self, Write};
 
@@ -51,16 +51,22 @@ impl<W: Write> Writer<W> {
         self.end();
     }
 
-    /// Writes one record whose lists are encoded already.
-    pub(crate) fn record(&mut self, state: &State, impulses: &Encoded, polynomials: &Encoded) {
+    /// Writes one record whose lists are encoded already. A long list goes to the stream as it is, without a copy.
+    pub(super) fn record(&mut self, state: &State, log: &Log) {
         self.begin(state);
         if self.layout.impulses {
-            encode::count(&mut self.buffer, impulses.count);
-            self.buffer.extend_from_slice(&impulses.bytes);
+            encode::count(&mut self.buffer, log.impulses.count);
+            self.buffer.extend_from_slice(&log.impulses.bytes);
         }
         if self.layout.polynomials {
-            encode::count(&mut self.buffer, polynomials.count);
-            self.buffer.extend_from_slice(&polynomials.bytes);
+            encode::count(&mut self.buffer, log.polynomials.count());
+            let polynomials = log.polynomials.bytes();
+            if polynomials.len() < PIECE {
+                self.buffer.extend_from_slice(polynomials);
+            } else {
+                self.hand_on();
+                self.pass_on(polynomials);
+            }
         }
         self.end();
     }
@@ -102,13 +108,20 @@ impl<W: Write> Writer<W> {
     }
 
     fn hand_on(&mut self) {
+        let buffer = std::mem::take(&mut self.buffer);
+        self.pass_on(&buffer);
+        self.buffer = buffer;
+        self.buffer.clear();
+    }
+
+    /// Writes to the stream, past the buffer, which is empty or on its way.
+    fn pass_on(&mut self, bytes: &[u8]) {
         if self.error.is_none() {
-            match self.stream.write_all(&self.buffer) {
-                Ok(()) => self.written.bytes += self.buffer.len() as u64,
+            match self.stream.write_all(bytes) {
+                Ok(()) => self.written.bytes += bytes.len() as u64,
                 Err(error) => self.error = Some(error),
             }
         }
-        self.buffer.clear();
     }
 }
 

@@ -5,7 +5,7 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Time},
+        observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Time, Wanted},
         simulation::{RootSearch, SearchCounts, StepError},
     },
     particle_edge::{self, EdgeMotions},
@@ -201,8 +201,18 @@ impl Detector {
             time => Decision::Miss { time },
         };
         let Way { bodies, q_start, ref q_end, ref mut observer, .. } = *way;
-        let decision = observer.decide(pair, decision);
-        observer.detection(&Detection { pair, polynomials, decision, q_start, q_end });
+        let decision = match observer.wanted() {
+            Wanted::Calls => {
+                let decision = observer.decide(pair, decision);
+                observer.detection(&Detection { pair, polynomials, decision, q_start, q_end });
+                decision
+            }
+            Wanted::Bytes(bytes) => {
+                polynomials.iter().for_each(|polynomial| bytes.push(polynomial.coefficients()));
+                decision
+            }
+            Wanted::Nothing => decision,
+        };
         let Decision::Hit { time, normal } = decision else { return Ok(Reaction::Kept) };
         way.hits += 1;
         let reaction = (way.react)(way.observer, &Impulse { pair, normal, time }, way.q_end);

@@ -1,0 +1,187 @@
+//! Steps whose records are the reference's byte for byte: most of them, and nothing of them has to be decoded.
+//!
+//! The reference makes the step's records in the trace's own layout, from the trace's own state, and they are compared with
+//! what is read. Where they are equal, every comparison of the two books is known to find nothing; where anything hangs on
+//! more than that, or differs, the step goes the long way.
+use super::{
+    fair::{Context, StepJudgement},
+    tally::{SAFE_SUM, rejects_itself},
+};
+use fosssim_model::{
+    scene::Scene,
+    sim::{RootSearch, SearchCounts, Simulation, State},
+    trace::{Layout, Lenient, StepBytes},
+};
+use fosssim_num::polynomial::MAX_COEFFICIENTS;
+use std::io::Read;
+
+/// After a step that differs so many steps at most go the long way at once.
+const LONGEST_PAUSE: u32 = 63;
+
+/// Looks for such steps.
+pub(super) struct Identical {
+    simulation: Simulation,
+    bytes: StepBytes,
+    /// Steps that are not tried, because those before them differed: none after one that did not, and about twice as many
+    /// with each that did.
+    pause: u32,
+    /// How many of them are left.
+    skipped: u32,
+    /// Counts of the steps that were found.
+    searches: SearchCounts,
+}
+
+/// A step that was found.
+pub(super) struct Found {
+    /// What the reference has spent on it.
+    pub(super) work: u64,
+    /// Bytes of its records.
+    pub(super) bytes: usize,
+    /// What the fair rules say about it, if they are asked.
+    pub(super) fair: Option<StepJudgement>,
+}
+
+impl Identical {
+    /// Has tried no step yet.
+    pub(super) fn new(scene: &Scene, root_search: RootSearch) -> Self {
+        Self {
+            simulation: Simulation::new(scene, root_search),
+            bytes: StepBytes::new(Layout::of(scene)),
+            pause: 0,
+            skipped: 0,
+            searches: SearchCounts::default(),
+        }
+    }
+
+    /// Tries no step.
+    #[cfg(test)]
+    pub(super) fn give_up(&mut self) {
+        self.skipped = u32::MAX;
+    }
+
+    /// Counts of root searches, of the steps that were found.
+    pub(super) fn searches(&self) -> SearchCounts {
+        self.searches
+    }
+
+    /// The state at the end of the step that was found.
+    pub(super) fn state(&self) -> &State {
+        self.simulation.state()
+    }
+
+    /// Steps from `before`, spending `most_work` at most, and goes past the step's records if they are the reference's;
+    /// otherwise nothing is read.
+    pub(super) fn find<R: Read>(
+        &mut self,
+        reader: &mut Lenient<R>,
+        step: u32,
+        before: &State,
+        context: Option<&Context<'_>>,
+        most_work: u64,
+    ) -> Option<Found> {
+        if self.skipped > 0 {
+            self.skipped -= 1;
+            return None;
+        }
+        let counts = self.simulation.search_counts();
+        let is_found = self.step(step, before, context, counts.work().saturating_add(most_work))
+            && !self.hangs_on_size()
+            && reader.passes(&self.bytes);
+        if !is_found {
+            self.pause = (2 * self.pause + 1).min(LONGEST_PAUSE);
+            self.skipped = self.pause;
+            return None;
+        }
+        self.pause = 0;
+        let now = self.simulation.search_counts();
+        self.searches += now - counts;
+        let fair = context.map(|context| StepJudgement::identical(context, step, self.bytes.polynomials()));
+        Some(Found { work: now.work() - counts.work(), bytes: self.bytes.len(), fair })
+    }
+
+    /// Whether the step has a result and its states are nothing out of the ordinary.
+    fn step(&mut self, step: u32, before: &State, context: Option<&Context<'_>>, most_work: u64) -> bool {
+        let state = self.simulation.state_mut();
+        state.positions.clone_from(&before.positions);
+        state.velocities.clone_from(&before.velocities);
+        self.simulation.set_steps_done(step - 1);
+        self.simulation.limit_work(most_work);
+        let is_ordinary = |state: &State| context.is_none_or(|context| context.ordinary.holds(state));
+        is_ordinary(before)
+            && self.simulation.step(&mut self.bytes).is_ok()
+            && self.bytes.is_finite()
+            && self.bytes.mid().is_none_or(is_ordinary)
+            && is_ordinary(self.simulation.state())
+    }
+
+    /// Whether the original rejects a polynomial although it is the reference's.
+    fn hangs_on_size(&self) -> bool {
+        // Written so that what is not small for certain is looked at, one by one.
+        let all_small = self.bytes.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
+        !all_small && self.bytes.any(rejects_itself)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        parity::{self, Options},
+        replay::judge_the_long_way,
+        samples::{BOUNCE, ZONES, changed, relog, scene},
+    };
+    use fosssim_model::{scene::Scene, trace::Frame};
+
+    /// A ball beside a half-plane, so far away that the original rejects its own polynomials.
+    const LARGE: &str = r#"<scene>
+        <duration time="1"/><integrator type="explicit-euler" dt="0.1"/><collision type="continuous-time" COR="1"/>
+        <particle m="1" px="0" py="7654321.123" vx="0" vy="-1" fixed="0" radius="0.25"/>
+        <particle m="1" px="0.1" py="1.321" vx="0.3" vy="-1.7" fixed="0" radius="0.25"/>
+        <halfplane px="0" py="0" nx="0.37" ny="1.23"/>
+    </scene>"#;
+
+    /// Everything that both ways say, as text: it compares NaN, too.
+    fn judged(scene: &Scene, trace: &[u8]) -> [String; 2] {
+        let options = Options { fair: true, threads: 1, ..Options::default() };
+        let quickly = parity::judge(scene, trace, &options, &mut ());
+        let slowly = judge_the_long_way(scene, trace, &options);
+        [quickly, slowly].map(|outcome| format!("{outcome:?}"))
+    }
+
+    type Change = fn(&mut Vec<Frame>);
+
+    #[test]
+    fn both_ways_say_the_same_to_the_last_field() {
+        let changes: [Change; 10] = [
+            |_| {},
+            |frames| frames.truncate(3),
+            |frames| frames.push(frames[1].clone()),
+            |frames| frames[2].state.velocities[1] += 1e-3,
+            |frames| frames[1].state.positions[0] += 1e-13,
+            |frames| frames[3].state.positions[1] = f64::NAN,
+            |frames| frames[0].state.positions[0] = 1e9,
+            |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| 3.0 * c).collect())),
+            |frames| relog(&mut frames[1], |_, own| own.iter().map(|c| c + 1e-3).collect()),
+            |frames| frames[2].impulses.clear(),
+        ];
+        for text in [BOUNCE, ZONES, LARGE] {
+            let scene = scene(text);
+            for (number, change) in changes.into_iter().enumerate() {
+                let trace = changed(&scene, change);
+                let [quickly, slowly] = judged(&scene, &trace);
+                assert!(quickly == slowly, "change {number}: {quickly}\n{slowly}");
+            }
+            let mut cut = changed(&scene, |_| {});
+            cut.truncate(cut.len() - 5);
+            let [quickly, slowly] = judged(&scene, &cut);
+            assert!(quickly == slowly, "{quickly}\n{slowly}");
+        }
+    }
+
+    #[test]
+    fn what_the_original_rejects_of_itself_is_found() {
+        let scene = scene(LARGE);
+        let trace = changed(&scene, |_| {});
+        let outcome = parity::judge(&scene, &trace[..], &Options::default(), &mut ());
+        assert!(outcome.counts.total() > 0, "{outcome:?}");
+    }
+}

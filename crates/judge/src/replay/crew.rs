@@ -1,0 +1,143 @@
+//! The threads that judge what was read. Nothing of the results depends on how many there are.
+use super::{Batch, Shape, Slot, copy_state};
+use crate::{
+    fair::{self, Records},
+    parity::Options,
+    tally::{Buffers, Tally},
+};
+use fosssim_model::{
+    scene::Scene,
+    sim::{RootSearch, SearchCounts, Simulation},
+};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+
+/// More threads than this only cost memory: reading is sequential.
+const MOST_THREADS: usize = 8;
+
+/// What one thread needs to judge a step.
+struct Worker {
+    simulation: Simulation,
+    buffers: Buffers,
+}
+
+/// The threads that judge steps, and what each of them needs; started when there is something to do.
+pub(super) struct Crew<'a> {
+    scene: &'a Scene,
+    root_search: RootSearch,
+    /// How many are asked for; 0 leaves it to the machine.
+    threads: usize,
+    workers: Vec<Worker>,
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl<'a> Crew<'a> {
+    pub(super) fn new(scene: &'a Scene, options: &Options) -> Self {
+        let Options { threads, root_search, .. } = *options;
+        Self { scene, root_search, threads: threads.min(MOST_THREADS), workers: Vec::new(), pool: None }
+    }
+
+    /// Has all threads started. Whether there is more than one.
+    pub(super) fn has_pool(&mut self) -> bool {
+        let threads = match self.threads {
+            0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get).min(MOST_THREADS),
+            given => given,
+        };
+        self.hire(threads);
+        if threads > 1 && self.pool.is_none() {
+            self.pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok();
+        }
+        self.pool.is_some()
+    }
+
+    fn hire(&mut self, workers: usize) {
+        let worker =
+            || Worker { simulation: Simulation::new(self.scene, self.root_search), buffers: Buffers::default() };
+        self.workers.resize_with(workers.max(self.workers.len()), worker);
+    }
+
+    /// Judges a batch, beside which nothing is read; one that is the trace's last on one thread unless more are asked for.
+    pub(super) fn judge(&mut self, batch: &Batch, shape: &Shape<'_>, rest: u64, is_last: bool) {
+        if is_last && self.threads == 0 && self.pool.is_none() || !self.has_pool() {
+            self.hire(1);
+            judge_batch(batch, &mut self.workers[..1], shape, rest);
+        } else {
+            self.judge_beside(batch, shape, rest, || ());
+        }
+    }
+
+    /// Judges a batch on all threads, and does something else meanwhile.
+    pub(super) fn judge_beside(&mut self, batch: &Batch, shape: &Shape<'_>, rest: u64, other: impl FnOnce() + Send) {
+        let Some(pool) = &self.pool else { return };
+        let workers = &mut self.workers[..];
+        pool.install(|| rayon::join(|| judge_batch(batch, workers, shape, rest), other));
+    }
+
+    /// Counts of root searches.
+    pub(super) fn searches(&self) -> SearchCounts {
+        let mut sum = SearchCounts::default();
+        self.workers.iter().for_each(|worker| sum += worker.simulation.search_counts());
+        sum
+    }
+}
+
+/// Judges the steps of a batch that are not done, each by the next free worker, until they take more work than is left.
+///
+/// Steps are begun in their order, and a step that is begun is done, or has alone taken more than is left. So the first
+/// step that the budget does not reach is always among those that were begun, whatever the number of threads.
+fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &Shape<'_>, rest: u64) {
+    let slots = &batch.slots[..batch.filled];
+    let (next, work) = (AtomicUsize::new(0), AtomicU64::new(0));
+    let run = |worker: &mut Worker| {
+        while work.load(Ordering::Relaxed) <= rest {
+            let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
+            // Every index is handed out once, so the lock is always free.
+            let mut slot = slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            if !slot.is_done {
+                let begin = worker.simulation.work();
+                worker.simulation.limit_work(begin.saturating_add(rest));
+                judge_step(&mut slot, worker, shape);
+                slot.work = worker.simulation.work() - begin;
+                slot.is_done = slot.work <= rest;
+            }
+            work.fetch_add(slot.work, Ordering::Relaxed);
+        }
+    };
+    match workers {
+        [worker] => run(worker),
+        workers => rayon::scope(|scope| {
+            let run = &run;
+            for worker in workers {
+                scope.spawn(move |_| run(worker));
+            }
+        }),
+    }
+}
+
+fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
+    let Slot {
+        step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, ..
+    } = slot;
+    let Worker { simulation, buffers } = worker;
+    copy_state(simulation.state_mut(), before);
+    simulation.set_steps_done(*step - 1);
+    let layout = shape.layout;
+    let frame = u64::from(*step) * u64::from(layout.records_per_step());
+    let mid = layout.polynomials.then_some(&*mid);
+    (*error, *beyond_limit) = (None, false);
+    let mut tally = Tally::new((*step, frame), end, mid.map(|mid| &mid.state), shape.logs_impulses, buffers, result);
+    match simulation.step(&mut tally) {
+        Ok(()) => {
+            *beyond_limit = layout.polynomials && tally.needs_more();
+            tally.finish(simulation.state(), layout.impulses, layout.polynomials);
+        }
+        Err(cause) => *error = Some(cause),
+    }
+    if let (Some(context), None, false) = (&shape.fair, &error, *beyond_limit) {
+        let records = Records { step: *step, frame, before, mid, end };
+        *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
+        *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
+        if !*is_put_off {
+            *judged = fair::judge(context, simulation, records, result.identical);
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Polynomials as a trace holds them: written once, where they are known.
+//!
+//! A detection pass whose polynomials only have to be logged writes them here (trace-format.md 1: little-endian, packed,
+//! a 32-bit size before the coefficients), and whoever records or compares a step takes the bytes as they are.
+use fosssim_num::polynomial::MAX_COEFFICIENTS;
+
+/// A list of polynomials in a trace's own bytes, without the list's count. Its memory is kept from step to step.
+#[derive(Debug, Clone, Default)]
+pub struct PolynomialBytes {
+    /// The first `used` bytes are the list's; what follows is room for more.
+    bytes: Vec<u8>,
+    used: usize,
+    count: usize,
+    largest: f64,
+}
+
+/// Bytes of the largest polynomial that a detection logs.
+const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
+
+impl PolynomialBytes {
+    /// Empties the list.
+    pub fn clear(&mut self) {
+        (self.used, self.count, self.largest) = (0, 0, 0.0);
+    }
+
+    /// Number of polynomials.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The list's bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes[..self.used]
+    }
+
+    /// The largest modulus of a coefficient, small leading ones that were dropped included; a NaN does not count.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.largest
+    }
+
+    /// Appends one polynomial, highest power first.
+    ///
+    /// # Panics
+    /// With more than [`MAX_COEFFICIENTS`] coefficients.
+    #[inline]
+    pub fn push(&mut self, coefficients: &[f64]) {
+        assert!(coefficients.len() <= MAX_COEFFICIENTS, "detection polynomials are of degree five at most");
+        let mut largest = self.largest;
+        // A copy of constant length, of which a part counts, is several times faster than one of variable length.
+        let mut polynomial = [0; MOST_BYTES];
+        #[expect(clippy::cast_possible_truncation, reason = "at most six")]
+        let size = coefficients.len() as u32;
+        polynomial[..4].copy_from_slice(&size.to_le_bytes());
+        for (place, coefficient) in polynomial[4..].chunks_exact_mut(8).zip(coefficients) {
+            place.copy_from_slice(&coefficient.to_le_bytes());
+            largest = if coefficient.abs() > largest { coefficient.abs() } else { largest };
+        }
+        self.room(MOST_BYTES)[..MOST_BYTES].copy_from_slice(&polynomial);
+        self.added(4 + 8 * coefficients.len(), 1, largest);
+    }
+
+    /// The room behind the list, of `bytes` or more.
+    #[inline]
+    pub(super) fn room(&mut self, bytes: usize) -> &mut [u8] {
+        if self.bytes.len() - self.used < bytes {
+            self.grow(bytes);
+        }
+        &mut self.bytes[self.used..]
+    }
+
+    /// What was written into the [room](Self::room) belongs to the list now; `largest` is the largest modulus so far.
+    #[inline]
+    pub(super) fn added(&mut self, bytes: usize, polynomials: usize, largest: f64) {
+        self.used += bytes;
+        self.count += polynomials;
+        self.largest = largest;
+    }
+
+    #[cold]
+    fn grow(&mut self, bytes: usize) {
+        let most = (self.used + bytes).max(2 * self.bytes.len());
+        self.bytes.resize(most, 0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_stand_one_behind_the_other() {
+        let mut list = PolynomialBytes::default();
+        list.push(&[1.0, -3.0]);
+        list.push(&[]);
+        list.push(&[0.5; 6]);
+        assert_eq!((list.count(), list.largest()), (3, 3.0));
+        assert_eq!(list.bytes().len(), 20 + 4 + 52);
+        assert_eq!(list.bytes()[..4], [2, 0, 0, 0]);
+        assert_eq!(list.bytes()[12..20], (-3.0_f64).to_le_bytes());
+        assert_eq!(list.bytes()[20..28], [0, 0, 0, 0, 6, 0, 0, 0]);
+        list.clear();
+        list.push(&[f64::NAN]);
+        assert_eq!((list.count(), list.largest(), list.bytes().len()), (1, 0.0, 12));
+    }
+}
