@@ -26,3 +26,5 @@ pub use fosssim_render as render;
 pub use fosssim_evidence as evidence;
 
 pub mod cli;
+
+pub mod pin;

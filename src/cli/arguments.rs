@@ -1,6 +1,6 @@
 //! The command line as typed. What it means is decided by the commands.
 use super::{
-    grading::{Demo, Doctor, Grade, Selftest, Suite},
+    grading::{Demo, Doctor, Grade, Merge, Selftest, Suite},
     pictures::{Detect, Render},
     scenes::Scene,
 };
@@ -48,6 +48,7 @@ pub(super) enum Command {
     Trace(Trace),
     Record(Record),
     Grade(Grade),
+    Merge(Merge),
     #[command(subcommand)]
     Suite(Suite),
     #[command(subcommand)]

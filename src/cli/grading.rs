@@ -2,7 +2,7 @@
 use super::arguments::{Rules, at_least_one};
 use crate::suite::config;
 use clap::{Args, Subcommand, ValueEnum};
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
 /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
 #[derive(Debug, Args)]
@@ -79,10 +79,59 @@ pub(super) struct Grade {
     /// Grade again whenever the program changes, until interrupted.
     #[arg(long)]
     pub(super) watch: bool,
+    /// Grade the I-th of N parts of the submissions only, as one machine of several; `merge` puts the parts together. Its
+    /// results go to the folder shard-I-of-N in the output folder.
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
+    pub(super) shard: Option<Shard>,
     /// Run programs although required layers of the sandbox are missing here; those that hold stay up. Every report
     /// says what is missing.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
+}
+
+/// A part of the submissions: one of so many.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Shard {
+    /// Which one, from 1.
+    pub(super) number: usize,
+    /// Of how many.
+    pub(super) of: usize,
+}
+
+impl FromStr for Shard {
+    type Err = &'static str;
+
+    fn from_str(word: &str) -> Result<Self, Self::Err> {
+        let parts = word.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match parts {
+            Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
+            _ => Err("a shard is I/N: the I-th of N parts, from 1/N to N/N"),
+        }
+    }
+}
+
+/// Puts together what `grade --shard` left: the results are those of a grading in one go.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle grade submissions/ --shard 1/2 --output grades    # on one machine
+  fosssim-oracle grade submissions/ --shard 2/2 --output grades    # on another
+  fosssim-oracle merge grades
+
+All shards of one grading have to be there, each once. The exit code is that of the grading.")]
+pub(super) struct Merge {
+    /// Folders of shards, or folders that hold them.
+    #[arg(required = true)]
+    pub(super) folders: Vec<PathBuf>,
+    /// The folder for the results; by default the one that holds the shards, when it is the only one that is named.
+    #[arg(short, long, value_name = "DIR")]
+    pub(super) output: Option<PathBuf>,
+    /// A report: text, json, junit, github, markdown or csv; with =FILE into a file.
+    #[arg(long, value_name = "FORMAT[=FILE]")]
+    pub(super) format: Vec<String>,
+    /// Show a line per submission only.
+    #[arg(short, long)]
+    pub(super) quiet: bool,
 }
 
 /// How much reports tell.
@@ -151,7 +200,8 @@ pub(super) struct SuiteScenes {}
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  fosssim-oracle demo")]
+  fosssim-oracle demo
+  fosssim-oracle demo --program flawed && fosssim-oracle grade ./flawed")]
 pub(super) struct Demo {
     /// The sample program; by default fosssim-sample beside this program.
     #[arg(long, value_name = "PROGRAM")]
@@ -162,6 +212,9 @@ pub(super) struct Demo {
     /// Where to write the HTML report on the wrong one.
     #[arg(short, long, value_name = "FILE", default_value = "fosssim-demo.html")]
     pub(super) output: PathBuf,
+    /// Run nothing; write the wrong one as a program that always makes its mistake, to grade it or to hand it in.
+    #[arg(long, value_name = "FILE")]
+    pub(super) program: Option<PathBuf>,
 }
 
 /// Says which layers of the sandbox hold on this machine, and what to install.

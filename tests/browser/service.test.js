@@ -158,3 +158,35 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await teacher.close();
   await student.close();
 });
+
+// What the README promises of two commands and an upload, with the programs in one folder as a build leaves them.
+test("the example course takes the program with a mistake that comes with it", { skip: !sandbox && "no sandbox here" }, async () => {
+  const place = mkdtempSync(join(programs, "example-"));
+  for (const name of ["fosssim-oracle", "fosssim-server", "fosssim-sample"]) linkSync(join(programs, name), join(place, name));
+  const example = spawn(join(place, "fosssim-oracle"), ["serve", "--data", join(place, "course"), "--listen", "127.0.0.1:0", "--example"], { stdio: ["ignore", "pipe", "inherit"] });
+  try {
+    const lines = createInterface({ input: example.stdout })[Symbol.asyncIterator]();
+    const word = async () => (await lines.next()).value.split(" ").at(-1);
+    const [home, , welcome, flawed] = [await word(), await word(), await word(), await word()];
+    const context = await browser.newContext();
+    const page = await context.newPage();
+    page.setDefaultTimeout(120_000);
+    assert.ok(welcome.startsWith(home), welcome);
+    await signIn(page, welcome);
+    await page.getByRole("link", { name: "Example" }).click();
+    await page.getByRole("link", { name: "Milestone one" }).click();
+    await page.locator("#file").setInputFiles(flawed);
+    await page.getByRole("button", { name: "Hand in" }).click();
+    await page.locator("pre.report").waitFor();
+    assert.equal(await page.locator("h2").first().innerText(), "wrong answer");
+    await page.frameLocator("iframe.report").locator("html[data-ready]").waitFor({ state: "attached" });
+    assert.match(await page.frameLocator("iframe.report").locator("body").innerText(), /Likely mistake/i);
+    await accessible(page);
+    await context.close();
+  } finally {
+    const ended = new Promise((done) => example.once("exit", done));
+    example.kill("SIGTERM");
+    await ended;
+    rmSync(place, { recursive: true, force: true });
+  }
+});

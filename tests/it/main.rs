@@ -31,6 +31,7 @@ mod sandbox;
 mod scenes_corpus;
 mod scenes_props;
 mod serve;
+mod shards;
 mod simulate;
 mod summaries;
 mod terminal;

@@ -129,6 +129,7 @@ fn every_command_has_help_with_an_example() {
     insta::assert_snapshot!("help", workspace.run(["--help"]).shown());
     for command in [
         &["grade"][..],
+        &["merge"],
         &["suite"],
         &["suite", "init"],
         &["suite", "check"],

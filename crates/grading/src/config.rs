@@ -138,6 +138,12 @@ impl Visibility {
             Self::AfterPublished => "after_published",
         }
     }
+
+    /// The visibility with this key.
+    #[must_use]
+    pub fn from_key(key: &str) -> Option<Self> {
+        [Self::Visible, Self::Hidden, Self::AfterDueDate, Self::AfterPublished].into_iter().find(|one| one.key() == key)
+    }
 }
 
 /// A place in the file.

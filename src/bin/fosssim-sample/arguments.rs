@@ -2,10 +2,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use fosssim_oracle::student::{self, CATALOGUE, Mistake, Student};
+use fosssim_oracle::{
+    pin,
+    student::{self, CATALOGUE, Mistake, Student},
+};
 
 /// The environment variable that names a mistake.
 const VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
+
+/// Where a mistake is pinned to a copy of this program: nothing else is asked then.
+static PINNED: pin::Place = pin::empty();
 
 /// A copy or link of the program with this prefix makes the mistake that follows it.
 const NAME_PREFIX: &str = "fosssim-sample.";
@@ -17,7 +23,7 @@ const NAME_PREFIX: &str = "fosssim-sample.";
     version,
     after_help = "The mistake may also be given by the environment variable FOSSSIM_SAMPLE_MISTAKE, or by a copy or \
                   link of this program that is called fosssim-sample.ID. --mistake wins over the name, the name over \
-                  the variable.\n\nExit status: 0 done, 1 it could not be done, 2 usage, 3 the course's program would \
+                  the variable. `fosssim-oracle demo --program FILE` writes a copy that makes its mistake in any case.\n\nExit status: 0 done, 1 it could not be done, 2 usage, 3 the course's program would \
                   never have ended here."
 )]
 struct Typed {
@@ -81,7 +87,9 @@ pub fn parse() -> Result<Task, String> {
 
 /// The mistake that the command line, the program's name or the environment asks for.
 fn mistake(option: Option<String>) -> Result<Option<Mistake>, String> {
-    let (source, id) = if let Some(id) = option {
+    let (source, id) = if let Some(id) = pin::read(&PINNED) {
+        ("this copy of the program", id.to_owned())
+    } else if let Some(id) = option {
         ("--mistake", id)
     } else if let Some(id) = mistake_of_name(std::env::args_os().next().as_deref().map(Path::new)) {
         ("the program's name", id)

@@ -4,6 +4,8 @@ use super::{
     display::Display,
     last_run::LastRun,
     pages::{self, Pages},
+    results::{Report, Results, reports},
+    shard::Sharding,
     submissions::Search,
 };
 use crate::{
@@ -20,7 +22,7 @@ use crate::{
         Cancellation, Grade, SceneTask, Verdict,
         batch::{self, Batch, BatchOptions, Submission},
         cards::{Cards, Judged},
-        config, guarded,
+        config,
         journal::Journal,
         plan::{self, Plan},
     },
@@ -28,7 +30,6 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use std::{
     fs,
-    io::Write,
     num::NonZeroUsize,
     path::{Path, PathBuf},
     sync::{Arc, OnceLock},
@@ -58,6 +59,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let reports = reports(&arguments.format)?;
     let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUTPUT));
     let mut submissions = Search::new(arguments, plan.build.as_ref(), &output).run()?;
+    let sharding = arguments.shard.map(|shard| Sharding::new(shard, &plan, arguments, &submissions, &output));
+    let output = sharding.as_ref().map_or(output, |sharding| sharding.folder.clone());
+    if let Some(sharding) = &sharding {
+        sharding.begin()?;
+        submissions = sharding.part(submissions);
+        if submissions.is_empty() {
+            return sharding.end(&[]).map(|()| exit::ACCEPTED);
+        }
+    }
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
     if submissions.len() > 1
@@ -73,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         drop(output::Output::create(file, &[])?);
     }
     let backend = backend(arguments.unsafe_no_sandbox)?;
-    let keeps = arguments.output.is_some() || arguments.keep_traces || submissions.len() > 1;
+    let keeps = arguments.output.is_some() || arguments.keep_traces || submissions.len() > 1 || sharding.is_some();
     let folder = keeps.then_some(output);
     let whole = plan.scenes().count();
     let mut last_run = LastRun::open(folder.as_deref(), &submissions, &plan.name);
@@ -96,7 +106,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     // Against recordings nothing is known of single steps.
     let pages = if draws && !arguments.recorded { Some(Pages::new(folder.as_deref())?) } else { None };
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
-    let session = Session { arguments, plan, backend, cancellation, folder, pages, is_part };
+    let session = Session { arguments, plan, backend, cancellation, folder, pages, is_part, sharding };
     if arguments.watch {
         return session.watch(&submissions, &reports, &mut last_run);
     }
@@ -162,39 +172,6 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
         .clone()
 }
 
-struct Report {
-    format: Format,
-    name: String,
-    file: Option<PathBuf>,
-}
-
-fn reports(words: &[String]) -> Result<Vec<Report>> {
-    let mut reports = Vec::new();
-    for word in words {
-        let (name, file) = match word.split_once('=') {
-            Some((name, file)) => (name, Some(PathBuf::from(file))),
-            None => (word.as_str(), None),
-        };
-        let Some(format) = Format::from_name(name) else {
-            let known: Vec<_> = Format::ALL.iter().map(|(_, name)| *name).collect();
-            bail!("no format {name}; there are {}", known.join(", "));
-        };
-        reports.push(Report { format, name: name.to_owned(), file });
-    }
-    if reports.is_empty() {
-        reports.push(Report { format: Format::Text, name: "text".to_owned(), file: None });
-    }
-    if reports.iter().filter(|report| report.file.is_none()).count() > 1 {
-        bail!("only one format can go to standard output; give the others a file: --format NAME=FILE");
-    }
-    let place = |file: &PathBuf| file.canonicalize().or_else(|_| std::path::absolute(file)).unwrap_or(file.clone());
-    let files: Vec<PathBuf> = reports.iter().filter_map(|report| report.file.as_ref()).map(place).collect();
-    if let Some((_, twice)) = files.iter().enumerate().find(|(number, file)| files[..*number].contains(file)) {
-        bail!("two formats go to one file, {}: give each its own", twice.display());
-    }
-    Ok(reports)
-}
-
 /// Everything that stays the same between two gradings of `--watch`.
 struct Session<'a> {
     arguments: &'a Arguments,
@@ -205,6 +182,8 @@ struct Session<'a> {
     pages: Option<Pages>,
     /// Whether scenes of the suite were left out on purpose.
     is_part: bool,
+    /// The part of the submissions that this is, if it is one.
+    sharding: Option<Sharding>,
 }
 
 impl Session<'_> {
@@ -221,6 +200,9 @@ impl Session<'_> {
         match fault {
             Some(fault) => Err(fault),
             None => {
+                if let Some(sharding) = self.sharding.as_ref().filter(|_| !self.cancellation.is_cancelled()) {
+                    sharding.end(&grades)?;
+                }
                 let code = self.exit_code(&grades);
                 Ok((grades, code))
             }
@@ -306,48 +288,9 @@ impl Session<'_> {
 
     /// Writes the reports and, into the folder, the files that a batch ends with.
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
-        // One file that can't be written must not cost the others.
-        let mut wrong = None;
-        let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
-        if self.is_part && self.folder.is_some() {
-            console::complain(
-                b"a part of the suite is no grade: grades.csv and the other tables are left as they are\n",
-            );
-        } else if let Some(folder) = &self.folder {
-            let lines = || grades.iter().map(grade::json_line).collect();
-            keep(write(&folder.join("grades.csv"), || grade::csv_of_submissions(grades)));
-            keep(write(&folder.join("scenes.csv"), || Format::Csv.render(grades)));
-            keep(write(&folder.join("grades.jsonl"), lines));
-            if grades.len() > 1 {
-                keep(write(&folder.join("class.txt"), || grade::class(grades, usize::MAX, Style::Plain)));
-            }
-            if let Some(pages) = &self.pages {
-                keep(made("the pages", || pages.write(grades)).and_then(|written| written).map(|first| {
-                    if let Some(first) = first {
-                        console::remark(format!("to look at: {}\n", first.display()).as_bytes());
-                    }
-                }));
-            }
-        }
-        for report in reports {
-            let render = || match (report.format, &self.pages, grades) {
-                (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None),
-                _ => report.format.render(grades),
-            };
-            match (&report.file, report.format) {
-                (None, Format::Text) => {
-                    let text = made("the report", || self.text(grades, submissions));
-                    keep(text.and_then(|text| console::report(&text)));
-                }
-                (None, _) => keep(made("the report", render).and_then(|text| console::print(text.as_bytes()))),
-                (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
-                (Some(file), _) => keep(write(file, render)),
-            }
-        }
-        match wrong {
-            Some(error) => Err(error),
-            None => Ok(()),
-        }
+        let results =
+            Results { folder: self.folder.as_deref(), pages: self.pages.as_ref(), is_part: self.is_part, grades };
+        results.write(reports, || self.text(grades, submissions))
     }
 
     /// The report for people who look at it now: on a terminal a class is a closing summary per submission.
@@ -376,15 +319,7 @@ impl Session<'_> {
     }
 
     fn exit_code(&self, grades: &[Grade]) -> u8 {
-        if self.cancellation.is_cancelled() {
-            exit::INTERRUPTED
-        } else if grades.iter().any(Grade::is_our_fault) {
-            exit::FAULT
-        } else if grades.iter().all(|grade| grade.verdict.is_accepted()) {
-            exit::ACCEPTED
-        } else {
-            exit::NOT_ACCEPTED
-        }
+        if self.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit_code(grades) }
     }
 
     /// Grades, waits for a change of any program, grades again; until interrupted.
@@ -422,28 +357,15 @@ impl Session<'_> {
     }
 }
 
-/// Whether a file is the one to which the steps of a GitHub job add their summaries.
-fn is_step_summary(file: &Path) -> bool {
-    std::env::var_os("GITHUB_STEP_SUMMARY").is_some_and(|summary| Path::new(&summary) == file)
-}
-
-/// Makes a text and adds it to what a file holds already.
-fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
-    let text = made(&file.display().to_string(), text)?;
-    let opened = fs::OpenOptions::new().create(true).append(true).open(file);
-    let written = opened.and_then(|mut file| file.write_all(text.as_bytes()));
-    written.with_context(|| format!("cannot write {}", file.display()))
-}
-
-/// Makes a text and writes it.
-fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
-    let text = made(&file.display().to_string(), text)?;
-    output::write(file, &[], text.as_bytes())
-}
-
-/// A text, or what the grader failed on while it made it.
-fn made<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
-    guarded(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
+/// How a grading ends that nobody stopped.
+pub(super) fn exit_code(grades: &[Grade]) -> u8 {
+    if grades.iter().any(Grade::is_our_fault) {
+        exit::FAULT
+    } else if grades.iter().all(|grade| grade.verdict.is_accepted()) {
+        exit::ACCEPTED
+    } else {
+        exit::NOT_ACCEPTED
+    }
 }
 
 /// What tells that a submission has changed: the newest change below it, and its size.

@@ -9,11 +9,13 @@ use crate::{
         grading::{Demo, Selftest},
         output,
     },
+    pin,
     report::{
         grade::{Format, rehearse},
         number::counted,
     },
     sandbox::{self, selftest},
+    student,
     suite::{
         Verdict,
         batch::{Batch, BatchOptions, Submission},
@@ -72,8 +74,11 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             sample.display()
         );
     }
-    let plan = plan::load(DEMO_SUITE, Path::new(".")).context("the demo's suite")?;
     let mistake = arguments.mistake.as_deref().unwrap_or(DEMO_MISTAKE);
+    if let Some(program) = &arguments.program {
+        return write_flawed(&sample, mistake, program);
+    }
+    let plan = plan::load(DEMO_SUITE, Path::new(".")).context("the demo's suite")?;
     let backend = backend(false)?;
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
@@ -119,6 +124,23 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     } else {
         bail!("the demo did not end as it should: the right sample must be accepted and the wrong one must not")
     }
+}
+
+/// Writes the sample with a mistake that it always makes.
+fn write_flawed(sample: &Path, mistake: &str, program: &Path) -> Result<u8> {
+    if student::find(mistake).is_none() {
+        bail!("there is no mistake '{mistake}'; fosssim-sample --list lists them");
+    }
+    let bytes = fs::read(sample).with_context(|| format!("cannot read {}", sample.display()))?;
+    let flawed = pin::write(&bytes, mistake).with_context(|| {
+        format!("{} is another version of the sample than this program's, or none", sample.display())
+    })?;
+    output::write(program, &[], &flawed)?;
+    fs::set_permissions(program, Permissions::from_mode(0o755))
+        .with_context(|| format!("cannot make {} executable", program.display()))?;
+    let words = format!("A program that makes the mistake {mistake}: {}\n", program.display());
+    console::print(words.as_bytes())?;
+    Ok(exit::ACCEPTED)
 }
 
 pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {

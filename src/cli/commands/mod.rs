@@ -8,12 +8,16 @@ mod explain;
 mod grade;
 mod headroom;
 mod host;
+mod kept;
 mod last_run;
+mod merge;
 mod pages;
 mod record;
 mod render;
+mod results;
 mod scene;
 mod serve;
+mod shard;
 mod shell;
 mod simulate;
 mod submissions;
@@ -43,6 +47,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Trace(Trace::Diff(arguments)) => trace::diff(arguments),
         Command::Record(arguments) => record::run(arguments),
         Command::Grade(arguments) => grade::run(arguments),
+        Command::Merge(arguments) => merge::run(arguments),
         Command::Suite(arguments) => suite::run(arguments),
         Command::Scene(arguments) => scene::run(arguments),
         Command::Demo(arguments) => host::demo(arguments),

@@ -4,6 +4,7 @@
 //! serves by the type it takes, and one that forgets to has nothing to read from.
 
 mod admin;
+mod example;
 mod identity;
 mod member;
 mod person;

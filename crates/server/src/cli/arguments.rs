@@ -10,6 +10,10 @@ pub(super) struct Arguments {
     /// How the log is written.
     #[arg(long, value_enum, default_value_t = LogFormat::Text, global = true)]
     pub(super) log_format: LogFormat,
+    /// A file with options (TOML): their names without dashes in front, and their values. What is typed, and what the
+    /// environment says, goes before it.
+    #[arg(long, value_name = "FILE", env = "FOSSSIM_CONFIG", global = true)]
+    pub(super) config: Option<PathBuf>,
     #[command(subcommand)]
     pub(super) command: Command,
 }
@@ -80,6 +84,10 @@ pub(super) struct Serve {
     /// After so many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
+    /// On a fresh server: make a course with an assignment and a student, and write a program with a mistake for them to
+    /// hand in.
+    #[arg(long)]
+    pub(super) example: bool,
     #[command(flatten)]
     pub(super) work: Work,
 }
@@ -119,10 +127,10 @@ pub(super) struct Worker {
     #[arg(long, value_name = "N")]
     pub(super) slots: Option<NonZeroUsize>,
     /// The server on another machine to work for, by its address; then this worker needs no database.
-    #[arg(long, value_name = "URL", requires = "token_file", conflicts_with = "database", value_parser = public_url)]
+    #[arg(long, value_name = "URL", conflicts_with = "database", value_parser = public_url)]
     pub(super) server: Option<String>,
     /// The file with the worker's token, which an administrator makes on the page "Administration".
-    #[arg(long, value_name = "FILE", requires = "server")]
+    #[arg(long, value_name = "FILE")]
     pub(super) token_file: Option<PathBuf>,
     /// What this worker is called. Host and process by default.
     #[arg(long)]

@@ -46,6 +46,11 @@ impl Folders {
         self.data.join("backups")
     }
 
+    /// A program with a mistake, for who tries the service.
+    pub(super) fn flawed_program(&self) -> PathBuf {
+        self.data.join("flawed-program")
+    }
+
     pub(super) fn workers(&self) -> PathBuf {
         self.data.join("workers")
     }

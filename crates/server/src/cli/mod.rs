@@ -1,6 +1,7 @@
 //! The command line of the service.
 
 mod arguments;
+mod config;
 mod folders;
 mod listen;
 mod logging;
@@ -9,14 +10,14 @@ mod worker;
 
 use anyhow::Result;
 use arguments::{Arguments, Command};
-use clap::Parser;
 use std::process::ExitCode;
 use tokio_util::sync::CancellationToken;
 
 /// Runs the command that the program's arguments ask for.
 #[must_use]
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let words: Vec<std::ffi::OsString> = std::env::args_os().collect();
+    let arguments = match config::parse(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
             drop(error.print());

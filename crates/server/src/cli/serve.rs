@@ -12,11 +12,11 @@ use crate::{
     store::Store,
     web,
 };
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use std::{
     io::Write as _,
     num::NonZeroUsize,
-    path::PathBuf,
+    path::{Path, PathBuf},
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 use tokio_util::sync::CancellationToken;
@@ -61,7 +61,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         None => None,
         Some(slots) => {
             let grader = grader(arguments.work.grader.as_deref())?;
-            let local = Local { folders, database: database.clone(), store, bell, policy, grader };
+            let local = Local { folders: folders.clone(), database: database.clone(), store, bell, policy, grader };
             let stop = stop.clone();
             Some(async move { local.work(&arguments.work, Some(slots), None, stop).await })
         }
@@ -72,6 +72,17 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     writeln!(output, "Listening on {local}")?;
     if let Some(link) = link {
         writeln!(output, "Sign in as administrator, once, by {public}/welcome/{}", link.reveal())?;
+    }
+    if arguments.example {
+        let link = house.example().await.map_err(|problem| anyhow!("{}: {}", problem.detail, problem.remedy))?;
+        if let Some(link) = link {
+            writeln!(output, "Sign in as a student, once, by {public}/welcome/{}", link.reveal())?;
+        }
+        let program = folders.flawed_program();
+        if !program.exists() {
+            write_flawed_program(arguments.work.grader.as_deref(), &program).await?;
+        }
+        writeln!(output, "A program with a mistake, to hand in: {}", program.display())?;
     }
     output.flush()?;
     let serving = listen::serve(listener, web::router(house), patience, stop.clone());
@@ -84,6 +95,17 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     }
     database.close().await;
     tracing::info!("stopped");
+    Ok(())
+}
+
+/// Has the grader write a program with a mistake.
+async fn write_flawed_program(grader: Option<&Path>, program: &Path) -> Result<()> {
+    let mut command = tokio::process::Command::new(self::grader(grader)?);
+    command.arg("demo").arg("--program").arg(program).stdin(std::process::Stdio::null());
+    let made = command.output().await.context("cannot start the grader")?;
+    if !made.status.success() {
+        bail!("no program with a mistake could be written: {}", String::from_utf8_lossy(&made.stderr).trim());
+    }
     Ok(())
 }
 

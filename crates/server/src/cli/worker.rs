@@ -22,7 +22,10 @@ use tokio_util::sync::CancellationToken;
 
 pub(super) async fn run(arguments: &Worker) -> Result<()> {
     let stop = until_signalled()?;
-    if let (Some(server), Some(file)) = (&arguments.server, &arguments.token_file) {
+    if let Some(server) = &arguments.server {
+        let Some(file) = &arguments.token_file else {
+            bail!("a worker for {server} needs its token: --token-file FILE");
+        };
         return work_for(server, file, arguments, stop).await;
     }
     let folders = Folders::open(&arguments.place)?;

@@ -14,6 +14,10 @@ use std::{
 /// Grades as the submission says: `#!grade CODE POINTS`. Beside `grade.json` it writes a report with what a hostile program
 /// would like to have there.
 const GRADER: &str = r#"#!/bin/sh
+if [ "$1" = demo ]; then
+    printf '#!grade WA 40\n' > "$3"
+    exit 0
+fi
 [ "$1" = grade ] || exit 2
 program=$2
 rules=of-the-suite
@@ -119,12 +123,16 @@ impl Server {
         fs::read_to_string(self.folder.with_file_name("log")).unwrap_or_default()
     }
 
-    /// The link that a fresh server prints.
-    pub(crate) fn first_link(&mut self) -> String {
+    /// The last word of the next line that it prints.
+    pub(crate) fn next_word(&mut self) -> String {
         let mut line = String::new();
         self.output.read_line(&mut line).expect("a line");
-        let link = line.trim().rsplit(' ').next().expect("a word");
-        link.rsplit('/').next().expect("a secret").to_owned()
+        line.trim().rsplit(' ').next().expect("a word").to_owned()
+    }
+
+    /// The link that a fresh server prints next.
+    pub(crate) fn first_link(&mut self) -> String {
+        self.next_word().rsplit('/').next().expect("a secret").to_owned()
     }
 
     /// `kill -9`.
@@ -138,6 +146,17 @@ impl Server {
         // SAFETY: the process is this test's own child, and not reaped.
         unsafe { libc::kill(self.child.id().cast_signed(), libc::SIGTERM) };
         self.child.wait().expect("wait")
+    }
+
+    /// Starts it once more with other options, when it has ended, and returns what it logs when it ends by itself.
+    pub(crate) fn start_again_with(&mut self, options: &[&str]) -> Result<(), String> {
+        let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
+        let (mut child, mut output, _) =
+            Self::spawn(&self.folder, &self.grader(), &self.database, "127.0.0.1:0", &options)?;
+        let mut rest = String::new();
+        // Ends with the process, which is not one that serves.
+        output.read_to_string(&mut rest).expect("its output");
+        if child.wait().expect("wait").success() { Ok(()) } else { Err(self.log()) }
     }
 
     /// Starts it again at the same place.

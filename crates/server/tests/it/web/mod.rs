@@ -1,5 +1,6 @@
 //! The server as a process, spoken to over HTTP.
 
+mod example;
 mod flows;
 mod hostile;
 mod roles;

@@ -1,0 +1,78 @@
+//! A course to try the service with: made on a fresh server when whoever starts it asks for it.
+use super::{House, NewSecret, Settings, identity};
+use crate::{problem::Problem, values};
+
+/// What is made; a course of this name is taken for it.
+const COURSE: (&str, &str) = ("example", "Example");
+const ASSIGNMENT: (&str, &str) = ("m1", "Milestone one");
+const STUDENT: (&str, &str) = ("student", "A student");
+
+impl House {
+    /// Makes the example course, with an assignment and a student, where there is no course at all. Returns a link that signs
+    /// the student in once, unless they have been here before.
+    ///
+    /// # Errors
+    /// When there are other courses, or a `student` of theirs: this is a real server.
+    pub async fn example(&self) -> Result<Option<NewSecret>, Problem> {
+        let mut transaction = self.0.database.begin().await?;
+        let known = transaction
+            .one(
+                "SELECT count(*) AS courses, count(CASE WHEN slug = ? THEN 1 END) AS examples FROM course",
+                values![COURSE.0],
+            )
+            .await?;
+        if known.int("examples")? == 0 {
+            if known.int("courses")? > 0 {
+                return Err(Problem::conflict("this server has courses already", "start it without --example"));
+            }
+            let course = transaction
+                .one(
+                    "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now}) RETURNING id",
+                    values![COURSE.0, COURSE.1],
+                )
+                .await?
+                .int("id")?;
+            transaction
+                .execute(
+                    "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
+                     VALUES (?, ?, ?, 1, ?, {now})",
+                    values![course, ASSIGNMENT.0, ASSIGNMENT.1, Settings::default().text()],
+                )
+                .await?;
+            let made = transaction
+                .row(
+                    "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
+                     ON CONFLICT (login) DO NOTHING RETURNING id",
+                    values![STUDENT.0, STUDENT.1],
+                )
+                .await?;
+            let Some(student) = made else {
+                return Err(Problem::conflict("somebody is called student already", "start it without --example"));
+            };
+            transaction
+                .execute(
+                    "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, 'student', {now})",
+                    values![course, student.int("id")?],
+                )
+                .await?;
+        }
+        let student = transaction
+            .row(
+                "SELECT account.id FROM account
+                 JOIN member ON member.account = account.id AND member.role = 'student'
+                 JOIN course ON course.id = member.course AND course.slug = ?
+                 WHERE account.login = ? AND account.is_admin = 0
+                    AND (SELECT count(*) FROM member AS other WHERE other.account = account.id) = 1
+                    AND NOT EXISTS (SELECT 1 FROM sign_in_link
+                        WHERE sign_in_link.account = account.id AND sign_in_link.used_at IS NOT NULL)",
+                values![COURSE.0, STUDENT.0],
+            )
+            .await?;
+        let link = match student {
+            Some(student) => Some(identity::new_link(&mut transaction, student.int("id")?, None).await?),
+            None => None,
+        };
+        transaction.commit().await?;
+        Ok(link)
+    }
+}

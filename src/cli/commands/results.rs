@@ -1,0 +1,141 @@
+//! Where results of a grading go: reports that were asked for, and the tables and pages of a folder.
+use super::pages::Pages;
+use crate::{
+    cli::{console, output},
+    report::{
+        grade::{self, Format},
+        style::Style,
+    },
+    suite::{Grade, guarded},
+};
+use anyhow::{Context, Result, bail};
+use std::{
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+/// A report that was asked for.
+pub(super) struct Report {
+    pub(super) format: Format,
+    pub(super) name: String,
+    /// Where it goes; to standard output without.
+    pub(super) file: Option<PathBuf>,
+}
+
+/// The reports that `--format` asks for.
+///
+/// # Errors
+/// Unknown formats, and two of them at one place.
+pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
+    let mut reports = Vec::new();
+    for word in words {
+        let (name, file) = match word.split_once('=') {
+            Some((name, file)) => (name, Some(PathBuf::from(file))),
+            None => (word.as_str(), None),
+        };
+        let Some(format) = Format::from_name(name) else {
+            let known: Vec<_> = Format::ALL.iter().map(|(_, name)| *name).collect();
+            bail!("no format {name}; there are {}", known.join(", "));
+        };
+        reports.push(Report { format, name: name.to_owned(), file });
+    }
+    if reports.is_empty() {
+        reports.push(Report { format: Format::Text, name: "text".to_owned(), file: None });
+    }
+    if reports.iter().filter(|report| report.file.is_none()).count() > 1 {
+        bail!("only one format can go to standard output; give the others a file: --format NAME=FILE");
+    }
+    let place = |file: &PathBuf| file.canonicalize().or_else(|_| std::path::absolute(file)).unwrap_or(file.clone());
+    let files: Vec<PathBuf> = reports.iter().filter_map(|report| report.file.as_ref()).map(place).collect();
+    if let Some((_, twice)) = files.iter().enumerate().find(|(number, file)| files[..*number].contains(file)) {
+        bail!("two formats go to one file, {}: give each its own", twice.display());
+    }
+    Ok(reports)
+}
+
+/// The results of a grading, and where they go.
+pub(super) struct Results<'a> {
+    /// The folder for results, when there is one.
+    pub(super) folder: Option<&'a Path>,
+    pub(super) pages: Option<&'a Pages>,
+    /// Whether scenes of the suite were left out on purpose.
+    pub(super) is_part: bool,
+    pub(super) grades: &'a [Grade],
+}
+
+impl Results<'_> {
+    /// Writes the reports and, into the folder, the files that a batch ends with. `text` is the report for people who look at
+    /// it now.
+    ///
+    /// # Errors
+    /// The first file that can't be written; the others are written all the same.
+    pub(super) fn write(&self, reports: &[Report], text: impl Fn() -> String) -> Result<()> {
+        let grades = self.grades;
+        // One file that can't be written must not cost the others.
+        let mut wrong = None;
+        let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
+        if self.is_part && self.folder.is_some() {
+            console::complain(
+                b"a part of the suite is no grade: grades.csv and the other tables are left as they are\n",
+            );
+        } else if let Some(folder) = self.folder {
+            let lines = || grades.iter().map(grade::json_line).collect();
+            keep(write(&folder.join("grades.csv"), || grade::csv_of_submissions(grades)));
+            keep(write(&folder.join("scenes.csv"), || Format::Csv.render(grades)));
+            keep(write(&folder.join("grades.jsonl"), lines));
+            if grades.len() > 1 {
+                keep(write(&folder.join("class.txt"), || grade::class(grades, usize::MAX, Style::Plain)));
+            }
+            if let Some(pages) = self.pages {
+                keep(made("the pages", || pages.write(grades)).and_then(|written| written).map(|first| {
+                    if let Some(first) = first {
+                        console::remark(format!("to look at: {}\n", first.display()).as_bytes());
+                    }
+                }));
+            }
+        }
+        for report in reports {
+            let render = || match (report.format, self.pages, grades) {
+                (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None),
+                _ => report.format.render(grades),
+            };
+            match (&report.file, report.format) {
+                (None, Format::Text) => {
+                    keep(made("the report", &text).and_then(|text| console::report(&text)));
+                }
+                (None, _) => keep(made("the report", render).and_then(|text| console::print(text.as_bytes()))),
+                (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
+                (Some(file), _) => keep(write(file, render)),
+            }
+        }
+        match wrong {
+            Some(error) => Err(error),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Whether a file is the one to which the steps of a GitHub job add their summaries.
+fn is_step_summary(file: &Path) -> bool {
+    std::env::var_os("GITHUB_STEP_SUMMARY").is_some_and(|summary| Path::new(&summary) == file)
+}
+
+/// Makes a text and adds it to what a file holds already.
+fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
+    let text = made(&file.display().to_string(), text)?;
+    let opened = fs::OpenOptions::new().create(true).append(true).open(file);
+    let written = opened.and_then(|mut file| file.write_all(text.as_bytes()));
+    written.with_context(|| format!("cannot write {}", file.display()))
+}
+
+/// Makes a text and writes it.
+fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
+    let text = made(&file.display().to_string(), text)?;
+    output::write(file, &[], text.as_bytes())
+}
+
+/// A text, or what the grader failed on while it made it.
+fn made<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
+    guarded(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
+}

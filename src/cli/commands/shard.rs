@@ -1,0 +1,219 @@
+//! A part of a grading that was shared out among machines: which submissions are its own, and what it leaves for `merge`.
+use super::kept::KeptGrade;
+use crate::{
+    cli::{
+        console,
+        grading::{Grade as Arguments, Shard},
+        output,
+    },
+    suite::{Grade, batch::Submission, plan::Plan},
+};
+use anyhow::{Context, Result, bail};
+use serde::{Deserialize, Serialize};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// The file that tells that a shard is done, and how it ended.
+const FILE: &str = "shard.json";
+
+/// The version of what stands in it.
+const SCHEMA: u32 = 1;
+
+/// What all shards of one grading agree on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Common {
+    schema: u32,
+    /// The grader's version.
+    version: String,
+    /// The grader itself, digested: two builds of one version may judge differently.
+    grader: String,
+    /// How many shards there are.
+    pub(super) of: usize,
+    /// The suite's name.
+    pub(super) suite: String,
+    /// All that results depend on besides the programs, digested.
+    plan: String,
+    /// The names of all submissions, in the order of an unshared grading.
+    pub(super) submissions: Vec<String>,
+}
+
+impl Common {
+    /// What two gradings do not agree on, as a sentence.
+    pub(super) fn difference(&self, other: &Self) -> Option<&'static str> {
+        [
+            (self.schema == other.schema && self.version == other.version, "the grader's version differs"),
+            (self.grader == other.grader, "the build of the grader differs"),
+            (self.of == other.of, "the number of shards differs"),
+            (
+                self.suite == other.suite && self.plan == other.plan,
+                "the suite, or an option that results depend on, differs",
+            ),
+            (self.submissions == other.submissions, "the submissions differ"),
+        ]
+        .into_iter()
+        .find_map(|(same, what)| (!same).then_some(what))
+    }
+}
+
+/// What a shard leaves.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Part {
+    pub(super) common: Common,
+    /// Which one it is, from 1.
+    pub(super) number: usize,
+    /// The grades of its own submissions, in order.
+    pub(super) grades: Vec<KeptGrade>,
+}
+
+impl Part {
+    /// Reads what a shard left in a folder; nothing when it is none, or is not done.
+    ///
+    /// # Errors
+    /// When it can't be read, or was left by another version.
+    pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
+        let file = folder.join(FILE);
+        let text = match fs::read(&file) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
+        };
+        let part: Self = serde_json::from_slice(&text)
+            .with_context(|| format!("{} is damaged, or another version's: grade this shard again", file.display()))?;
+        let common = &part.common;
+        let own: Vec<&String> = own(part.number, common.of, &common.submissions).collect();
+        if common.schema != SCHEMA || !own.iter().copied().eq(part.grades.iter().map(|grade| &grade.submission)) {
+            bail!("{} does not hold what it should: grade this shard again", file.display());
+        }
+        Ok(Some(part))
+    }
+}
+
+/// What of a list is a shard's own: every N-th, so that neighbours in the alphabet, who may have worked together and share slow
+/// programs, go to different machines.
+fn own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
+    all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
+}
+
+/// A grading that is a shard.
+pub(super) struct Sharding {
+    shard: Shard,
+    common: Common,
+    /// The shard's own folder.
+    pub(super) folder: PathBuf,
+}
+
+impl Sharding {
+    /// The shard of a grading of all these submissions.
+    pub(super) fn new(shard: Shard, plan: &Plan, arguments: &Arguments, all: &[Submission], output: &Path) -> Self {
+        let common = Common {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            grader: grader(),
+            of: shard.of,
+            suite: plan.name.clone(),
+            plan: digest(plan, arguments),
+            submissions: all.iter().map(|submission| submission.name.clone()).collect(),
+        };
+        let folder = output.join(format!("shard-{}-of-{}", shard.number, shard.of));
+        Self { shard, common, folder }
+    }
+
+    /// The shard's own submissions.
+    pub(super) fn part(&self, all: Vec<Submission>) -> Vec<Submission> {
+        own(self.shard.number, self.shard.of, &all).cloned().collect()
+    }
+
+    /// Makes the shard's folder; what an earlier grading left there is not this one's end.
+    ///
+    /// # Errors
+    /// When it can't be made.
+    pub(super) fn begin(&self) -> Result<()> {
+        fs::create_dir_all(&self.folder).with_context(|| format!("cannot make {}", self.folder.display()))?;
+        match fs::remove_file(self.folder.join(FILE)) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                Err(error).with_context(|| format!("cannot remove {}", self.folder.join(FILE).display()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Leaves the grades for `merge`.
+    ///
+    /// # Errors
+    /// When they can't be written.
+    pub(super) fn end(&self, grades: &[Grade]) -> Result<()> {
+        let part = Part {
+            common: self.common.clone(),
+            number: self.shard.number,
+            grades: grades.iter().map(KeptGrade::of).collect::<Result<_>>()?,
+        };
+        output::write(&self.folder.join(FILE), &[], &serde_json::to_vec(&part)?)?;
+        let (own, all) = (grades.len(), self.common.submissions.len());
+        let line = format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.of);
+        console::remark(line.as_bytes());
+        Ok(())
+    }
+}
+
+/// The digest of this very program; its version where it can't be read.
+fn grader() -> String {
+    let mut hasher = blake3::Hasher::new();
+    let digested = fs::File::open("/proc/self/exe").and_then(|file| hasher.update_reader(file).map(|_| ()));
+    digested.map_or_else(|_| env!("CARGO_PKG_VERSION").to_owned(), |()| hasher.finalize().to_hex().to_string())
+}
+
+/// The digest of all that results depend on besides the programs.
+fn digest(plan: &Plan, arguments: &Arguments) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut add = |bytes: &[u8]| {
+        hasher.update(&(bytes.len() as u64).to_le_bytes());
+        hasher.update(bytes);
+    };
+    let words = format!(
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {} {}",
+        plan.run,
+        plan.rules,
+        plan.hints,
+        plan.show_output,
+        plan.build,
+        plan.limits,
+        plan.patience,
+        arguments.recorded,
+        arguments.fail_fast
+    );
+    add(words.as_bytes());
+    for group in &plan.groups {
+        add(group.name.as_bytes());
+        add(format!("{:?}", group.stakes).as_bytes());
+        for scene in &group.scenes {
+            add(scene.name.as_bytes());
+            add(&scene.xml);
+        }
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_submission_belongs_to_one_shard() {
+        let all: Vec<usize> = (0..23).collect();
+        for of in 1..30 {
+            let mut shared: Vec<usize> = (1..=of).flat_map(|number| own(number, of, &all).copied()).collect();
+            shared.sort_unstable();
+            assert_eq!(shared, all, "{of}");
+        }
+    }
+
+    #[test]
+    fn a_shard_is_one_of_so_many() {
+        assert_eq!("2/8".parse(), Ok(Shard { number: 2, of: 8 }));
+        for word in ["0/8", "9/8", "2", "2/", "/8", "-1/8", "2/0", "a/b", "1/2/3"] {
+            assert!(word.parse::<Shard>().is_err(), "{word}");
+        }
+    }
+}

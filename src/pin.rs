@@ -1,0 +1,83 @@
+//! A mistake that is pinned to a copy of the sample program: whatever the copy is called and however it is started, it makes
+//! this mistake. So there is a wrong program that can be handed in like a student's: the sample itself, which is right unless
+//! it is told otherwise, is refused as a submission.
+//!
+//! The sample has a place for the mistake's id; the copy has it written there. Nothing has to be read when it runs, which the
+//! sandbox might not allow.
+
+/// How many bytes of the place hold the id; what follows it is zero.
+const ROOM: usize = 64;
+/// What stands before them, so that the place is found, backwards: forwards it stands in the place alone.
+const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
+/// The whole place.
+const LENGTH: usize = MARK_BACKWARDS.len() + ROOM;
+
+/// The place in the sample.
+pub type Place = [u8; LENGTH];
+
+/// A place without a mistake.
+#[must_use]
+pub const fn empty() -> Place {
+    let mut place = [0; LENGTH];
+    let mut at = 0;
+    while at < MARK_BACKWARDS.len() {
+        place[at] = MARK_BACKWARDS[MARK_BACKWARDS.len() - 1 - at];
+        at += 1;
+    }
+    place
+}
+
+/// The mistake in a place, if there is one.
+#[must_use]
+pub fn read(place: &Place) -> Option<&str> {
+    // The compiler must not know what stands there: somebody writes over it later.
+    let id = &std::hint::black_box(place)[MARK_BACKWARDS.len()..];
+    let end = id.iter().position(|byte| *byte == 0).unwrap_or(id.len());
+    std::str::from_utf8(&id[..end]).ok().filter(|id| !id.is_empty())
+}
+
+/// Writes a mistake's id into a copy of the sample; nothing when it has no place of its own for it, or the id no room.
+#[must_use]
+pub fn write(sample: &[u8], id: &str) -> Option<Vec<u8>> {
+    let mut mark = MARK_BACKWARDS;
+    mark.reverse();
+    let mut found = sample.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(at, _)| at);
+    let (Some(at), None) = (found.next(), found.next()) else { return None };
+    let mut copy = sample.to_vec();
+    let room = copy.get_mut(at + mark.len()..at + LENGTH)?;
+    // One byte stays zero: the id's end.
+    if id.is_empty() || id.len() >= room.len() {
+        return None;
+    }
+    room.fill(0);
+    room[..id.len()].copy_from_slice(id.as_bytes());
+    Some(copy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_pinned_is_read_again() {
+        let program = |place: &Place| [b"before", &place[..], b"after"].concat();
+        assert_eq!(read(&empty()), None);
+        let pinned = write(&program(&empty()), "pe-square-no-eh").expect("a place");
+        let place: &Place = pinned[6..6 + LENGTH].try_into().expect("as long");
+        assert_eq!(read(place), Some("pe-square-no-eh"));
+        assert_eq!((&pinned[..6], &pinned[6 + LENGTH..]), (&b"before"[..], &b"after"[..]));
+        // Another one may be written over it, also a shorter one.
+        let again = write(&pinned, "short").expect("a place");
+        assert_eq!(read(again[6..6 + LENGTH].try_into().expect("as long")), Some("short"));
+    }
+
+    #[test]
+    fn a_program_without_one_place_for_it_is_left_alone() {
+        let place = empty();
+        assert_eq!(write(b"no sample at all", "a"), None);
+        assert_eq!(write(&[place, place].concat(), "a"), None);
+        assert_eq!(write(&place, ""), None);
+        assert_eq!(write(&place, &"x".repeat(ROOM)), None);
+        assert_eq!(write(&place[..LENGTH - 1], "a"), None);
+    }
+}
