@@ -2,13 +2,13 @@
 use super::{
     Explanation,
     known::{is_empty_stage, known_or_open, shows},
-    polynomial, samples, stages,
+    notation, polynomial, samples, stages,
 };
 use crate::{
     plain::formula_in,
     student::{Area, CATALOGUE, Mistake, Row, find},
 };
-use fosssim_model::scene::Scene;
+use fosssim_model::{scene::Scene, sim::PairKind};
 use std::collections::BTreeMap;
 
 /// What is likely wrong with the program that left this trace, the likeliest first; empty when nothing is, or when
@@ -38,7 +38,11 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
                 if own.key == "unexplained" || !own.is_complete() {
                     continue;
                 }
-                explanation.details.extend(own.details);
+                // The remedy stays last. The same mistake by the same name has been said.
+                let remedy = explanation.details.len().saturating_sub(1);
+                let is_said = explanation.key.ends_with(&own.key);
+                let lines = own.details.into_iter().filter(|_| !is_said);
+                explanation.details.splice(remedy..remedy, lines);
                 if let Some(example) = own.example {
                     explanation.example = Some(example);
                 }
@@ -54,6 +58,8 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
         // Where pairs come in another order, polynomials of one are not those of another.
         polynomials.clear();
     }
+    known.iter_mut().for_each(explain_letters);
+    polynomials.iter_mut().for_each(explain_letters);
     let mut all = known;
     all.append(&mut polynomials);
     all.extend(stage);
@@ -61,6 +67,26 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     all.sort_by_key(|explanation| (explanation.key == "unexplained", !explanation.is_complete()));
     debug_assert!(all.iter().all(|one| formula_in(&one.what).is_none()), "a sentence gives a formula away: {all:?}");
     all
+}
+
+/// Says once, behind an explanation's formulas, what their letters mean.
+fn explain_letters(explanation: &mut Explanation) {
+    if explanation.key == "unexplained" {
+        return;
+    }
+    let kinds = [
+        ("particle-particle", PairKind::ParticleParticle),
+        ("particle-edge", PairKind::ParticleEdge),
+        ("particle-half-plane", PairKind::ParticleHalfPlane),
+    ];
+    let place = explanation.what.to_lowercase();
+    let named: Vec<PairKind> =
+        kinds.into_iter().filter(|(name, _)| place.contains(name)).map(|(_, kind)| kind).collect();
+    // A known mistake's last line says where to look.
+    let end = explanation.details.len() - usize::from(find(&explanation.key).is_some());
+    if let Some(letters) = notation::of(&explanation.details[..end], &named) {
+        explanation.details.insert(end, letters);
+    }
 }
 
 /// Whether mistakes of this part of the assignment are mistakes of polynomials.

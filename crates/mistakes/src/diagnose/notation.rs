@@ -1,10 +1,13 @@
 //! What the letters of a formula mean, said where the formula stands.
+use fosssim_model::sim::PairKind;
 
 /// The sentence that explains the short names of differences, and of the sum of the radii, that occur in these lines;
-/// `None` where none does.
-pub(super) fn of(lines: &[String]) -> Option<String> {
+/// `None` where none does. The kinds are those of the pairs that the lines speak of, as far as they are known.
+pub(super) fn of(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| difference(line, |_| true));
-    let is_edge = lines.iter().any(|line| difference(line, |number| number == '3').is_some() || line.contains("re^2"));
+    let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
+    let is_edge = all(PairKind::ParticleEdge)
+        || lines.iter().any(|line| difference(line, |number| number == '3').is_some() || line.contains("re^2"));
     let reach = lines.iter().any(|line| words(line).any(|word| word == "R"));
     let mut parts = Vec::new();
     if let Some((kind, one, two)) = example {
@@ -15,7 +18,14 @@ pub(super) fn of(lines: &[String]) -> Option<String> {
         parts.push("x is a position at the start of the step, dx a displacement".to_owned());
     }
     if reach {
-        parts.push(format!("R is r1 + {}", if is_edge { "re, the particle's and the edge's radius" } else { "r2" }));
+        parts.push(if all(PairKind::ParticleHalfPlane) {
+            "R is the particle's radius".to_owned()
+        } else if kinds.len() > 1 && !is_edge {
+            let alone = if kinds.contains(&PairKind::ParticleHalfPlane) { ", with a half-plane r1 alone" } else { "" };
+            format!("R is the sum of the radii, r1 + r2{alone}")
+        } else {
+            format!("R is r1 + {}", if is_edge { "re, the particle's and the edge's radius" } else { "r2" })
+        });
     }
     if example.is_some() {
         let ends = if is_edge {
@@ -29,6 +39,12 @@ pub(super) fn of(lines: &[String]) -> Option<String> {
         parts.push("p and n are the half-plane's point and normal".to_owned());
     }
     (!parts.is_empty()).then(|| format!("Here {}.", parts.join("; ")))
+}
+
+/// A line that speaks of two radii, with the names that the pairs of these kinds have for them: an edge's is `re`.
+pub(super) fn radii(line: String, kinds: &[PairKind]) -> String {
+    let is_edge = !kinds.is_empty() && kinds.iter().all(|kind| *kind == PairKind::ParticleEdge);
+    if is_edge { line.replace("r2", "re") } else { line }
 }
 
 /// The words of a line: what is no letter and no digit parts them.
@@ -53,7 +69,25 @@ mod tests {
     use super::*;
 
     fn told(line: &str) -> Option<String> {
-        of(&[line.to_owned()])
+        of(&[line.to_owned()], &[])
+    }
+
+    #[test]
+    fn radii_have_the_names_of_their_pair() {
+        let line = "r1^2 + r2^2 stands for R^2 = (r1 + r2)^2";
+        let of_kinds = |kinds: &[PairKind]| {
+            let line = radii(line.to_owned(), kinds);
+            let told = of(std::slice::from_ref(&line), kinds).expect("it has short names");
+            (line, told)
+        };
+        let (edge, told) = of_kinds(&[PairKind::ParticleEdge]);
+        assert_eq!(edge, "r1^2 + re^2 stands for R^2 = (r1 + re)^2");
+        assert!(told.contains("R is r1 + re"), "{told}");
+        let (both, told) = of_kinds(&[PairKind::ParticleParticle, PairKind::ParticleEdge]);
+        assert_eq!(both, line);
+        assert!(told.contains("the sum of the radii"), "{told}");
+        let (_, told) = of_kinds(&[PairKind::ParticleHalfPlane]);
+        assert!(told.contains("R is the particle's radius"), "{told}");
     }
 
     #[test]

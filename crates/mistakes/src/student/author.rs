@@ -4,18 +4,18 @@ use super::{
     mutants::{Change, Mutant},
 };
 
-/// So many mistakes one student makes at most.
-const MOST: usize = 8;
-
 /// The program's author: makes one mistake, none, or several of different parts of the assignment.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Student {
-    mistakes: [Option<Mistake>; MOST],
+    mistakes: [Option<Mistake>; Student::MOST],
     right_approach: bool,
     mutant: Option<&'static Mutant>,
 }
 
 impl Student {
+    /// So many mistakes one student makes at most.
+    pub const MOST: usize = 8;
+
     /// A student who makes this mistake.
     pub fn new(mistake: Option<Mistake>) -> Self {
         Self::default().and(mistake)

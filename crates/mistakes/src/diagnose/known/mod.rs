@@ -26,7 +26,7 @@ pub use refute::shows;
 pub(super) use scan::Sample;
 pub(super) use several::is_empty_stage;
 
-use super::{Explanation, notation};
+use super::Explanation;
 use crate::student::{Kind, Mistake, Row, find};
 use candidates::{Candidates, Correct, Score};
 use fosssim_model::{scene::Scene, trace::Layout};
@@ -171,12 +171,9 @@ fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     }
 }
 
-/// The exact form of a row's mistake, with its letters explained, and where to look.
+/// The exact form of a row's mistake, and where to look.
 fn details(row: &Row) -> Vec<String> {
-    let mut lines = vec![row.term.to_owned()];
-    lines.extend(notation::of(&lines));
-    lines.push(remedy::remedy(row.area).to_owned());
-    lines
+    vec![row.term.to_owned(), remedy::remedy(row.area).to_owned()]
 }
 
 #[cfg(test)]

@@ -121,7 +121,11 @@ impl Suspect<'_> {
         Explanation {
             key: best.key.clone(),
             what: placed(&[self.study.subject.name()], &best.sentence),
-            details: with_notation(best.details.clone()),
+            details: best
+                .details
+                .iter()
+                .map(|line| notation::radii(line.clone(), &[self.study.subject.kind()]))
+                .collect(),
             reproduced: best.reproduced as u64,
             samples,
             example: example::smallest(&self.study).map(|(_, example)| example),
@@ -222,6 +226,7 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
     let guesses: Vec<&Candidate> =
         covered.iter().filter_map(|suspect| suspect.full().find(|candidate| candidate.key == key)).collect();
     let names: Vec<&str> = covered.iter().map(|suspect| suspect.study.subject.name()).collect();
+    let kinds: Vec<PairKind> = covered.iter().map(|suspect| suspect.study.subject.kind()).collect();
     let likely = covered[0].full().filter(|candidate| candidate.cost <= guesses[0].cost + AS_LIKELY);
     let others = likely.map(|candidate| candidate.key.clone()).filter(|other| {
         other != key && covered.iter().all(|suspect| suspect.full().any(|candidate| candidate.key == *other))
@@ -231,18 +236,14 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
     Explanation {
         key: key.to_owned(),
         what: placed(&names, &guesses[0].sentence),
-        details: with_notation(distinct(guesses.iter().flat_map(|guess| guess.details.iter().cloned()))),
+        details: distinct(
+            guesses.iter().flat_map(|guess| &guess.details).map(|line| notation::radii(line.clone(), &kinds)),
+        ),
         reproduced: samples,
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
         same_as: distinct(others),
     }
-}
-
-/// Details with their letters explained.
-fn with_notation(mut details: Vec<String>) -> Vec<String> {
-    details.extend(notation::of(&details));
-    details
 }
 
 /// A sentence with its place in front: `Particle-edge overlap: The linear coefficient is zero.`

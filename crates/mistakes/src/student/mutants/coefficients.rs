@@ -1,7 +1,7 @@
 //! Wrong polynomials.
 use fosssim_num::vector::Vec2;
 
-use super::{Change, Mutant};
+use super::{Change, Mutant, row};
 use crate::student::{
     catalogue::Area,
     detection::{Body, Encounter},
@@ -68,17 +68,6 @@ impl Vectors {
             d32: three.displacement - two.displacement,
         }
     }
-}
-
-const fn row(
-    id: &'static str,
-    area: Area,
-    kind: &'static str,
-    what: &'static str,
-    told_by: &'static [&'static str],
-    change: Change,
-) -> Mutant {
-    Mutant { id, area, kind, what, told_by, change }
 }
 
 pub(super) const MUTANTS: &[Mutant] = &[

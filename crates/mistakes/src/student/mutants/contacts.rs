@@ -4,19 +4,8 @@ use fosssim_num::{
     vector::{Vec2, length, unit},
 };
 
-use super::{Change, Mutant};
+use super::{Change, Mutant, row};
 use crate::student::{catalogue::Area, detection::Encounter, world::Object};
-
-const fn row(
-    id: &'static str,
-    area: Area,
-    kind: &'static str,
-    what: &'static str,
-    told_by: &'static [&'static str],
-    change: Change,
-) -> Mutant {
-    Mutant { id, area, kind, what, told_by, change }
-}
 
 pub(super) const MUTANTS: &[Mutant] = &[
     row(

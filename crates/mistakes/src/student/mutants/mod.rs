@@ -32,6 +32,17 @@ pub struct Mutant {
     pub(super) change: Change,
 }
 
+const fn row(
+    id: &'static str,
+    area: Area,
+    kind: &'static str,
+    what: &'static str,
+    told_by: &'static [&'static str],
+    change: Change,
+) -> Mutant {
+    Mutant { id, area, kind, what, told_by, change }
+}
+
 /// A contact's share for one of its bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Share {

@@ -1,21 +1,10 @@
 //! Wrong responses, loops, zones and failsafes.
-use super::{Change, Mutant, Share};
+use super::{Change, Mutant, Share, row};
 use crate::student::{catalogue::Area, world::Object};
 
 const PP: &str = "particle-particle";
 const PE: &str = "particle-edge";
 const PH: &str = "particle-half-plane";
-
-const fn row(
-    id: &'static str,
-    area: Area,
-    kind: &'static str,
-    what: &'static str,
-    told_by: &'static [&'static str],
-    change: Change,
-) -> Mutant {
-    Mutant { id, area, kind, what, told_by, change }
-}
 
 fn is_edge(share: &Share) -> bool {
     matches!(share.pair.object, Object::Edge(_))
