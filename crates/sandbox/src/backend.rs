@@ -17,6 +17,7 @@ use super::fake::FakeRun;
 use super::job::{Identity, Job, Policy};
 use super::layers::{self, Layer, LayerReport};
 use super::outcome::StartProblem;
+use super::own;
 use super::program;
 use super::room;
 use super::running::{Running, Supervised};
@@ -351,7 +352,7 @@ impl Backend {
         if examined.sanitised && !job.sanitisers {
             return Ok(FakeRun::could_not_start(StartProblem::Sanitised).into_running(job, self.layers.clone()));
         }
-        let order = order(job, walls, examined)?;
+        let order = order(job, walls, examined, &supervisor.program)?;
         let pipe = match &job.trace_pipe {
             Some(name) if order.volatile => {
                 plain_name(name)?;
@@ -432,8 +433,8 @@ pub(super) fn lost(mut child: Child) -> SandboxError {
     SandboxError::Lost { how: if text.is_empty() { status } else { format!("{status}: {text}") } }
 }
 
-/// The order for a job, with absolute paths.
-fn order(job: &Job, walls: Walls, examined: program::Program) -> Result<Order, SandboxError> {
+/// The order for a job, with absolute paths, to a supervisor that is this program.
+fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path) -> Result<Order, SandboxError> {
     let folder = job.folder.canonicalize().and_then(|folder| match folder.is_dir() {
         true => Ok(folder),
         false => Err(io::ErrorKind::NotADirectory.into()),
@@ -460,6 +461,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program) -> Result<Order, S
         readable,
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
+        own: own::known(supervisor).iter().map(|path| wire::raw(path)).collect(),
         pipe: job.trace_pipe.as_ref().map(|name| name.as_bytes().to_vec()),
         volatile: job.in_memory && walls.namespaces && room::is_enough_for(job.limits.folder_bytes),
         tools: job.policy == Policy::Tools,

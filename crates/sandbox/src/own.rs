@@ -3,13 +3,15 @@
 //! They hold the answers: the grader computes the original's traces, and the sample is a right submission. Landlock
 //! only ever allows, so that a folder with such a file in it is allowed entry by entry.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, PoisonError};
 
+/// This very program.
+const THIS: &str = "/proc/self/exe";
 /// How the name of the sample begins.
 const SAMPLE: &str = "fosssim-sample";
 /// How the names of the grader's programs begin.
@@ -28,22 +30,25 @@ fn is_named(name: &OsStr) -> bool {
     NAMES.iter().any(begins)
 }
 
-/// The same as [`files`], looked up once: for a supervisor, which lives as long as one run and loses sight of most folders.
-pub(super) fn known() -> &'static [PathBuf] {
-    static KNOWN: OnceLock<Vec<PathBuf>> = OnceLock::new();
-    KNOWN.get_or_init(files)
+/// The same as [`files`] for this program and the one that supervises its runs, looked up once for all runs: `/usr/bin` alone
+/// may hold thousands.
+pub(super) fn known(supervisor: &Path) -> Arc<[PathBuf]> {
+    static KNOWN: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    known.entry(supervisor.to_path_buf()).or_insert_with(|| files(&[Path::new(THIS), supervisor]).into()).clone()
 }
 
-/// The resolved paths of this very program, of its siblings beside it, and of those that are installed.
-pub(super) fn files() -> Vec<PathBuf> {
-    let this = std::fs::read_link("/proc/self/exe").ok();
-    let beside = this.as_deref().and_then(Path::parent).map(Path::to_path_buf);
+/// The resolved paths of these programs, of their siblings beside them, and of those that are installed.
+fn files(programs: &[&Path]) -> Vec<PathBuf> {
+    let programs: Vec<PathBuf> = programs.iter().filter_map(|program| program.canonicalize().ok()).collect();
+    let beside = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
     let installed = FOLDERS.into_iter().map(PathBuf::from).chain(beside);
     // Some of them are links to others, and large.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
     let named = entries.filter(|entry| is_named(&entry.file_name())).map(|entry| entry.path());
-    let mut files: Vec<PathBuf> = named.chain(this).filter_map(|path| path.canonicalize().ok()).collect();
+    let mut files: Vec<PathBuf> =
+        named.filter_map(|path| path.canonicalize().ok()).chain(programs.iter().cloned()).collect();
     files.sort();
     files.dedup();
     files
@@ -53,7 +58,7 @@ pub(super) fn files() -> Vec<PathBuf> {
 /// (`itself`), to show that all works; a copy of it, or the grader in any form, is nobody's submission.
 #[must_use]
 pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
-    files().into_iter().any(|path| {
+    files(&[Path::new(THIS)]).into_iter().any(|path| {
         let Ok(metadata) = path.metadata() else { return false };
         let sample = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(SAMPLE));
         // What it is called matters less than what it does: the grader answers to other names, too.
@@ -131,7 +136,7 @@ mod tests {
     #[test]
     fn this_program_is_among_the_graders_files() {
         let this = std::fs::read_link("/proc/self/exe").unwrap().canonicalize().unwrap();
-        assert!(files().contains(&this));
+        assert!(files(&[Path::new(THIS)]).contains(&this));
         assert!(is_name(Path::new("/x/FOSSSimOracle2")) && is_name(Path::new("fosssim-sample.pp-no-two")));
         assert!(!is_name(Path::new("/x/FOSSSim")) && !is_name(Path::new("python3")));
     }

@@ -270,17 +270,32 @@ pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
     Ok((time(usage.ru_utime) + time(usage.ru_stime), usage.ru_maxrss.unsigned_abs() * 1024))
 }
 
+/// What [`poll`] found out about a descriptor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Readiness {
+    /// Nothing to do.
+    Idle,
+    /// There is something to read, or its end.
+    Ready,
+    /// Nobody is left at the other end, and nothing to read.
+    HungUp,
+}
+
 /// Waits until one of the descriptors can be read or was hung up, or until the time is over. The answer says which.
-pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Duration) -> io::Result<[bool; N]> {
+pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Duration) -> io::Result<[Readiness; N]> {
     let mut list =
         fds.map(|fd| libc::pollfd { fd: fd.map_or(-1, |fd| fd.as_raw_fd()), events: libc::POLLIN, revents: 0 });
     let milliseconds = i32::try_from(time.as_micros().div_ceil(1000)).unwrap_or(i32::MAX);
     // SAFETY: the array outlives the call and its length is passed along.
     let answer = unsafe { libc::poll(list.as_mut_ptr(), N as libc::nfds_t, milliseconds) };
     match check(i64::from(answer)) {
-        Err(error) if error.kind() == io::ErrorKind::Interrupted => Ok([false; N]),
+        Err(error) if error.kind() == io::ErrorKind::Interrupted => Ok([Readiness::Idle; N]),
         Err(error) => Err(error),
-        Ok(_) => Ok(list.map(|entry| entry.revents != 0)),
+        Ok(_) => Ok(list.map(|entry| match entry.revents {
+            0 => Readiness::Idle,
+            events if events & libc::POLLIN != 0 => Readiness::Ready,
+            _ => Readiness::HungUp,
+        })),
     }
 }
 
@@ -542,42 +557,5 @@ pub(super) fn first_to_go() {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::os::fd::AsFd;
-
-    use super::*;
-
-    #[test]
-    fn a_descriptor_travels_through_a_socket() {
-        let (left, right) = UnixStream::pair().unwrap();
-        let (mut reader, writer) = io::pipe().unwrap();
-        send_descriptor(&left, b'L', writer.as_fd()).unwrap();
-        drop((left, writer));
-        let mut buffer = [0; 16];
-        let (length, fd) = receive_descriptor(&right, &mut buffer).unwrap();
-        assert_eq!(&buffer[..length], b"L");
-        io::Write::write_all(&mut std::fs::File::from(fd.unwrap()), b"through").unwrap();
-        let mut text = String::new();
-        io::Read::read_to_string(&mut reader, &mut text).unwrap();
-        assert_eq!(text, "through");
-        let (length, fd) = receive_descriptor(&right, &mut buffer).unwrap();
-        assert!(length == 0 && fd.is_none(), "a closed side shows as no bytes");
-    }
-
-    #[test]
-    fn groups_and_init_are_never_signalled() {
-        for pid in [-1, 0, 1] {
-            assert!(kill(pid, 0).is_err());
-        }
-    }
-
-    #[test]
-    fn a_process_with_threads_is_not_forked() {
-        std::thread::scope(|scope| {
-            let (ready, wait) = std::sync::mpsc::channel::<()>();
-            scope.spawn(move || wait.recv());
-            assert!(fork().is_err());
-            drop(ready);
-        });
-    }
-}
+#[path = "sys_tests.rs"]
+mod tests;

@@ -68,6 +68,8 @@ pub(super) struct Order {
     pub(super) executable: Vec<Raw>,
     /// Their names as the program and the kernel use them, which may be links.
     pub(super) named: Vec<Raw>,
+    /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
+    pub(super) own: Vec<Raw>,
     pub(super) pipe: Option<Raw>,
     /// Whether the working folder lies in memory. The supervisor then makes the pipe, and hands both to the grader.
     pub(super) volatile: bool,

@@ -6,14 +6,14 @@
 //! that install filters. Every filter ends programs that use another architecture's calls (32-bit `int 0x80`); x32
 //! numbers are on no list and so do not exist.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use seccompiler::{
     BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter, SeccompRule,
 };
 
-use super::calls;
+use super::{calls, sets};
 
 /// Stands for "announce" while a filter is compiled, because the compiler does not know that action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
@@ -181,7 +181,14 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
         refuse(libc::EPERM, libc::SYS_tkill, vec![all_differ(0, &[pid])?]);
     }
     for (errno, rules) in refusals {
-        filters.push(compile(rules, SeccompAction::Allow, SeccompAction::Errno(errno as u32))?);
+        let action = SeccompAction::Errno(errno as u32);
+        let (always, sometimes): (Rules, Rules) = rules.into_iter().partition(|(_, rules)| rules.is_empty());
+        if !always.is_empty() {
+            filters.push(set(always.into_keys().collect(), action.clone(), SeccompAction::Allow)?);
+        }
+        if !sometimes.is_empty() {
+            filters.push(compile(sometimes, SeccompAction::Allow, action)?);
+        }
     }
     filters.push(known()?);
     Ok(filters)
@@ -191,8 +198,8 @@ type Rules = BTreeMap<i64, Vec<SeccompRule>>;
 
 /// Whatever is in some group gets past this filter; the others then decide. All else does not exist.
 fn known() -> io::Result<BpfProgram> {
-    let rules = calls::GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
-    compile(rules, SeccompAction::Errno(libc::ENOSYS as u32), SeccompAction::Allow)
+    let calls = calls::GROUPS.into_iter().flatten().map(|(_, call)| *call).collect();
+    set(calls, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))
 }
 
 /// The filter of the calls that end the program.
@@ -237,6 +244,12 @@ fn forbidden(purpose: Purpose) -> io::Result<BpfProgram> {
     Ok(program)
 }
 
+/// The filter of calls that need no look at their arguments.
+fn set(calls: BTreeSet<i64>, inside: SeccompAction, outside: SeccompAction) -> io::Result<BpfProgram> {
+    let frame = compile(Rules::new(), outside.clone(), inside.clone())?;
+    sets::filter(&calls, inside, outside, frame)
+}
+
 fn compile(rules: Rules, otherwise: SeccompAction, matched: SeccompAction) -> io::Result<BpfProgram> {
     let machine = std::env::consts::ARCH.try_into().map_err(io::Error::other)?;
     SeccompFilter::new(rules, otherwise, matched, machine).and_then(BpfProgram::try_from).map_err(io::Error::other)
@@ -270,6 +283,35 @@ fn condition(argument: u8, operator: SeccompCmpOp, value: u64) -> io::Result<Sec
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ranges_of_calls_answer_as_the_compiler_does() {
+        let lists: [BTreeSet<i64>; 4] = [
+            calls::GROUPS.into_iter().flatten().map(|(_, call)| *call).collect(),
+            calls::REFUSED.iter().chain(calls::REFUSED_OLD).map(|(_, call)| *call).collect(),
+            BTreeSet::from([0, 1, 2, 5, 7, 8, 1023]),
+            BTreeSet::new(),
+        ];
+        for list in lists {
+            for (inside, outside) in
+                [(SeccompAction::Allow, SeccompAction::Errno(38)), (SeccompAction::Errno(1), SeccompAction::Allow)]
+            {
+                let rules: Rules = list.iter().map(|call| (*call, Vec::new())).collect();
+                let (ours, compiled) = (
+                    set(list.clone(), inside.clone(), outside.clone()).unwrap(),
+                    compile(rules, outside, inside).unwrap(),
+                );
+                let native = compiled[1].k;
+                let numbers = (0..1200).chain((0..1200).map(|call| call | 0x4000_0000)).chain([u32::MAX, 1 << 31]);
+                for call in numbers {
+                    for architecture in [native, 0x4000_0003, 0] {
+                        let answer = |program: &BpfProgram| sets::tests::run(program, call, architecture, [0; 6]);
+                        assert_eq!(answer(&ours), answer(&compiled), "call {call:#x} of {architecture:#x}");
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn the_announcing_filter_has_no_placeholder_left() {

@@ -15,6 +15,7 @@ mod namespaces;
 mod probe;
 pub(super) mod processes;
 mod run;
+mod sets;
 mod slot;
 mod streams;
 mod view;

@@ -15,7 +15,7 @@ use super::namespaces::{self, Side};
 use super::streams::Capture;
 use super::{calls, filter, holdings, locks, modes, processes, slot, walls};
 use crate::job::Limits;
-use crate::sys::{self, Fork};
+use crate::sys::{self, Fork, Readiness};
 use crate::wire::{self, Cause, Event, Failure, Order, Report};
 
 /// How often clocks and counters are looked at. A look costs some ten microseconds.
@@ -274,7 +274,7 @@ impl Run {
     fn watch(&mut self) -> io::Result<()> {
         let (mut next_look, mut next_folder) = (Instant::now(), Instant::now());
         while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
-            let ready = sys::poll(
+            let found = sys::poll(
                 [
                     Some(self.control.as_fd()),
                     self.stdout.descriptor(),
@@ -285,6 +285,7 @@ impl Run {
                 ],
                 next_look.saturating_duration_since(Instant::now()),
             )?;
+            let ready = found.map(|one| one != Readiness::Idle);
             if ready[0] {
                 self.obey();
             }
@@ -297,8 +298,11 @@ impl Run {
             if ready[3] {
                 self.hear();
             }
-            if ready[4] {
-                self.decide_announcement()?;
+            match found[4] {
+                Readiness::Idle => {}
+                Readiness::Ready => self.decide_announcement()?,
+                // Nobody is left under the filter: asked again, the kernel would say so at once until the end is reaped.
+                Readiness::HungUp => self.listener = None,
             }
             self.blame_if(self.stdout.truncated, Cause::Stdout);
             self.blame_if(self.stderr.truncated, Cause::Stderr);

@@ -15,7 +15,6 @@ use std::path::{Component, Path, PathBuf};
 
 use super::{volatile, walls};
 use crate::mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY};
-use crate::own;
 use crate::sys;
 use crate::wire::{self, Failure, Order};
 
@@ -45,7 +44,7 @@ pub(super) fn build(order: &Order) -> Result<(), Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     // The sample may be graded where it lies, to show that all works.
     let program = wire::path(&order.program).canonicalize().map_err(stage("look at the program"))?;
-    let own = own::known().iter().filter(|path| **path != program);
+    let own = order.own.iter().map(wire::path).filter(|path| *path != program);
     sys::file_mask(0o022);
     mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
     mounts::mount(c"tmpfs", &text(Path::new(SITE))?, &text(Path::new(ROOM))?).map_err(stage("make a root folder"))?;
@@ -74,7 +73,7 @@ pub(super) fn build(order: &Order) -> Result<(), Failure> {
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
     for path in own {
-        view.hide(path).map_err(stage("hide the grader's own files"))?;
+        view.hide(&path).map_err(stage("hide the grader's own files"))?;
     }
     for (name, number) in [("/dev/fd", ""), ("/dev/stdin", "/0"), ("/dev/stdout", "/1"), ("/dev/stderr", "/2")] {
         symlink(format!("/proc/self/fd{number}"), name).map_err(stage("make /dev"))?;

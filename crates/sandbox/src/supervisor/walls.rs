@@ -63,7 +63,8 @@ pub(super) fn readable(order: &Order) -> Vec<PathBuf> {
 pub(super) fn rules(order: &Order, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
     let read = AccessFs::ReadFile | AccessFs::ReadDir;
     let execute = read | AccessFs::Execute;
-    let own = own::known();
+    let own: Vec<PathBuf> = order.own.iter().map(wire::path).collect();
+    let own = own.as_slice();
     let version = version(order.walls.landlock_version);
     let mut ruleset = handled(order.walls.scopes, version)?;
     for path in LIBRARIES.iter().chain(&MACHINE) {

@@ -1,0 +1,50 @@
+use std::os::fd::AsFd;
+
+use super::*;
+
+#[test]
+fn a_descriptor_travels_through_a_socket() {
+    let (left, right) = UnixStream::pair().unwrap();
+    let (mut reader, writer) = io::pipe().unwrap();
+    send_descriptor(&left, b'L', writer.as_fd()).unwrap();
+    drop((left, writer));
+    let mut buffer = [0; 16];
+    let (length, fd) = receive_descriptor(&right, &mut buffer).unwrap();
+    assert_eq!(&buffer[..length], b"L");
+    io::Write::write_all(&mut std::fs::File::from(fd.unwrap()), b"through").unwrap();
+    let mut text = String::new();
+    io::Read::read_to_string(&mut reader, &mut text).unwrap();
+    assert_eq!(text, "through");
+    let (length, fd) = receive_descriptor(&right, &mut buffer).unwrap();
+    assert!(length == 0 && fd.is_none(), "a closed side shows as no bytes");
+}
+
+#[test]
+fn groups_and_init_are_never_signalled() {
+    for pid in [-1, 0, 1] {
+        assert!(kill(pid, 0).is_err());
+    }
+}
+
+#[test]
+fn a_process_with_threads_is_not_forked() {
+    std::thread::scope(|scope| {
+        let (ready, wait) = std::sync::mpsc::channel::<()>();
+        scope.spawn(move || wait.recv());
+        assert!(fork().is_err());
+        drop(ready);
+    });
+}
+
+#[test]
+fn an_end_that_nobody_holds_is_told_from_something_to_read() {
+    let (reader, mut writer) = io::pipe().unwrap();
+    let look = || poll([Some(reader.as_fd()), None], Duration::ZERO).unwrap()[0];
+    assert_eq!(look(), Readiness::Idle);
+    io::Write::write_all(&mut writer, b"!").unwrap();
+    assert_eq!(look(), Readiness::Ready);
+    drop(writer);
+    assert_eq!(look(), Readiness::Ready, "what was written is still to be read");
+    io::Read::read_exact(&mut &reader, &mut [0]).unwrap();
+    assert_eq!(look(), Readiness::HungUp);
+}
