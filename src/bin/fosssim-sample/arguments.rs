@@ -16,7 +16,10 @@ static PINNED: pin::Place = pin::empty();
 /// A copy or link of the program with this prefix makes the mistake that follows it.
 const NAME_PREFIX: &str = "fosssim-sample.";
 
-/// A sample submission: simulates a scene as a student's program would, with one documented mistake if asked for.
+/// So many mistakes can be made at once.
+const MOST: usize = Student::MOST;
+
+/// A sample submission: simulates a scene as a student's program would, with documented mistakes if asked for.
 #[derive(Debug, Parser)]
 #[command(
     name = "fosssim-sample",
@@ -39,8 +42,8 @@ struct Typed {
     /// Accepted for the sake of the protocol; no effect without a window.
     #[arg(short, long, default_value = "1", value_parser = ["0", "1"], value_name = "0|1")]
     paused: String,
-    /// Makes the mistake with this id.
-    #[arg(long, value_name = "ID")]
+    /// Makes the mistake with this id, or several with commas between them.
+    #[arg(long, value_name = "ID[,ID]...")]
     mistake: Option<String>,
     /// Lists the mistakes, with one sentence for each.
     #[arg(long)]
@@ -80,28 +83,34 @@ pub fn parse() -> Result<Task, String> {
     if typed.list {
         return Ok(Task::List { json: typed.json });
     }
-    let student = Student::new(mistake(typed.mistake)?);
+    let student = student(typed.mistake)?;
     let Some(scene) = typed.scene else { return Err("-s is missing: name a scene file".to_owned()) };
     Ok(Task::Run(Options { scene, output: typed.output, student }))
 }
 
-/// The mistake that the command line, the program's name or the environment asks for.
-fn mistake(option: Option<String>) -> Result<Option<Mistake>, String> {
-    let (source, id) = if let Some(id) = pin::read(&PINNED) {
+/// Who makes the mistakes that the command line, the program's name or the environment asks for.
+fn student(option: Option<String>) -> Result<Student, String> {
+    let (source, ids) = if let Some(id) = pin::read(&PINNED) {
         ("this copy of the program", id.to_owned())
-    } else if let Some(id) = option {
-        ("--mistake", id)
-    } else if let Some(id) = mistake_of_name(std::env::args_os().next().as_deref().map(Path::new)) {
-        ("the program's name", id)
-    } else if let Some(id) = std::env::var(VARIABLE).ok().filter(|id| !id.is_empty()) {
-        (VARIABLE, id)
+    } else if let Some(ids) = option {
+        ("--mistake", ids)
+    } else if let Some(ids) = mistake_of_name(std::env::args_os().next().as_deref().map(Path::new)) {
+        ("the program's name", ids)
+    } else if let Some(ids) = std::env::var(VARIABLE).ok().filter(|ids| !ids.is_empty()) {
+        (VARIABLE, ids)
     } else {
-        return Ok(None);
+        return Ok(Student::default());
     };
-    match student::find(&id) {
-        Some(row) => Ok(Some(row.mistake)),
-        None => Err(format!("{source} asks for the mistake '{id}', which does not exist{}", hint(&id))),
+    let mistakes = ids.split(',').map(|id| mistake(source, id)).collect::<Result<Vec<_>, _>>()?;
+    if mistakes.len() > MOST {
+        return Err(format!("{source} asks for {} mistakes, but at most {MOST} can be made at once", mistakes.len()));
     }
+    Ok(mistakes.into_iter().fold(Student::default(), |student, mistake| student.and(Some(mistake))))
+}
+
+fn mistake(source: &str, id: &str) -> Result<Mistake, String> {
+    let unknown = || format!("{source} asks for the mistake '{id}', which does not exist{}", hint(id));
+    student::find(id).map(|row| row.mistake).ok_or_else(unknown)
 }
 
 fn mistake_of_name(program: Option<&Path>) -> Option<String> {
@@ -139,7 +148,17 @@ mod tests {
 
     #[test]
     fn a_misspelt_mistake_is_named_with_what_comes_close() {
-        let message = mistake(Some("no-two".to_owned())).unwrap_err();
+        let message = student(Some("no-two".to_owned())).unwrap_err();
         assert!(message.contains("'no-two'") && message.contains("pp-no-two"), "{message}");
+    }
+
+    #[test]
+    fn several_mistakes_are_made_at_once() {
+        let several = student(Some("pp-no-two,pe-empty,geometric-empty".to_owned())).expect("they exist");
+        for id in ["pp-no-two", "pe-empty", "geometric-empty"] {
+            assert!(student::find(id).is_some_and(|row| several.makes(row.mistake)), "{id}");
+        }
+        let message = student(Some(["pp-empty"; MOST + 1].join(","))).unwrap_err();
+        assert!(message.contains(&format!("at most {MOST}")), "{message}");
     }
 }

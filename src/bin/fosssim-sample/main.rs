@@ -1,7 +1,7 @@
 //! `fosssim-sample`: stands for a student's submission.
 //!
-//! It speaks the course's protocol (`fosssim-sample -s scene.xml -d 0 -o trace.bin`) and can make one documented
-//! mistake. Its physics is the library's second simulator, `student`; it never uses the one that judges, `sim`.
+//! It speaks the course's protocol (`fosssim-sample -s scene.xml -d 0 -o trace.bin`) and can make documented
+//! mistakes. Its physics is the library's second simulator, `student`; it never uses the one that judges, `sim`.
 
 #![expect(
     clippy::disallowed_methods,
