@@ -2,6 +2,7 @@
 use crate::{
     db::{DbError, Transaction},
     queue::{self, Buried, Completion, Failure, Lease, Policy, Tick},
+    suspect,
     task::{JUDGE_ERROR, Outcome},
     values,
 };
@@ -149,8 +150,8 @@ async fn write_result(
     let result = transaction
         .one(
             "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
-                version, task, seconds, created_at)
-             VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id",
+                version, task, seconds, grader, essence, nearly_right, created_at)
+             VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id",
             values![
                 job,
                 submission,
@@ -164,7 +165,10 @@ async fn write_result(
                 &outcome.summary,
                 &outcome.version,
                 &about.task,
-                seconds
+                seconds,
+                &outcome.grader,
+                &outcome.essence,
+                outcome.code == "AC" || !outcome.wrong.is_empty()
             ],
         )
         .await?
@@ -178,11 +182,23 @@ async fn write_result(
             )
             .await?;
     }
+    for wrong in &outcome.wrong {
+        transaction
+            .execute(
+                "INSERT INTO wrong_scene (result, scene, answer) VALUES (?, ?, ?)
+                 ON CONFLICT (result, scene) DO NOTHING",
+                values![result, &wrong.scene, &wrong.answer],
+            )
+            .await?;
+    }
     let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;
     // A grader that failed takes nobody's grade away.
     if about.campaign.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
         let change = GradeChange { submission, result, by: None, campaign: None, reason: "graded" };
         set_grade(transaction, &change).await?;
+        if let (Some(course), Some(assignment), false) = (about.course, about.assignment, outcome.wrong.is_empty()) {
+            suspect::look(transaction, course, assignment).await?;
+        }
     }
     let text = match (&outcome.points, &outcome.max_points) {
         (Some(points), Some(most)) => format!("{}: {points} of {most} points", outcome.code),

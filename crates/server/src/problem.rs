@@ -84,6 +84,13 @@ impl Problem {
         Self::new(StatusCode::NOT_FOUND, "not-found", "Not found", detail, "check the address")
     }
 
+    /// It was there, and is not kept any longer.
+    #[must_use]
+    pub fn removed() -> Self {
+        let detail = "the upload and its reports are not kept any longer; the grade and its history are";
+        Self::new(StatusCode::GONE, "removed", "Not kept any longer", detail, "ask the course's staff about the grade")
+    }
+
     /// Something in the request is not as it must be.
     #[must_use]
     pub fn invalid(detail: impl Into<String>) -> Self {

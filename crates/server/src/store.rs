@@ -4,17 +4,33 @@
 //!
 //! An artefact is safely stored before the database hears of it, so that what the database names is always there.
 use crate::secret::hex;
+use futures_util::StreamExt;
 use object_store::{
     ObjectStore, ObjectStoreExt, PutPayload, WriteMultipart, local::LocalFileSystem, path::Path as Key,
 };
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
-use std::{fmt, io, path::Path, str::FromStr, sync::Arc};
+use std::{
+    fmt, io,
+    path::Path,
+    str::FromStr,
+    sync::Arc,
+    time::{Duration, SystemTime, UNIX_EPOCH},
+};
 use thiserror::Error;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use utoipa::ToSchema;
 
 /// How much is read at a time.
 const CHUNK: usize = 256 * 1024;
+
+/// Where artefacts lie, and where those lie that are about to be given up.
+const KEPT: &str = "sha256";
+const ASIDE: &str = "aside";
+
+/// An artefact that is stored once more is written anew when it is older than this: whoever gives up what nobody names looks at
+/// its age, and must not take what somebody is about to name.
+const FRESH: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artefact's bytes, in lower-case hexadecimal.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -22,9 +38,10 @@ const CHUNK: usize = 256 * 1024;
 pub struct Digest(String);
 
 /// What an artefact is called and how large it is.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Artefact {
     /// The digest of its bytes.
+    #[schema(value_type = String)]
     pub digest: Digest,
     /// How many bytes these are.
     pub size: u64,
@@ -72,8 +89,19 @@ impl Digest {
         &self.0
     }
 
+    /// Its beginning, for people.
+    #[must_use]
+    pub fn short(&self) -> &str {
+        &self.0[..12]
+    }
+
     fn key(&self) -> Key {
-        Key::from(format!("sha256/{}/{}", &self.0[..2], &self.0[2..]))
+        Key::from(format!("{KEPT}/{}/{}", &self.0[..2], &self.0[2..]))
+    }
+
+    /// Where it is put aside before it is given up.
+    fn aside(&self) -> Key {
+        Key::from(format!("{ASIDE}/{}/{}", &self.0[..2], &self.0[2..]))
     }
 }
 
@@ -133,7 +161,7 @@ impl Store {
     /// When the store fails.
     pub async fn put(&self, bytes: Vec<u8>) -> Result<Artefact, StoreError> {
         let artefact = Artefact { digest: Digest::of(&bytes), size: bytes.len() as u64 };
-        if !self.has(&artefact.digest).await? {
+        if !self.has_fresh(&artefact.digest).await? {
             self.objects.put(&artefact.digest.key(), PutPayload::from(bytes)).await?;
         }
         Ok(artefact)
@@ -145,7 +173,7 @@ impl Store {
     /// When the file can't be read, or changes meanwhile, or the store fails.
     pub async fn put_file(&self, file: &Path) -> Result<Artefact, StoreError> {
         let artefact = digest_of_file(file).await?;
-        if self.has(&artefact.digest).await? {
+        if self.has_fresh(&artefact.digest).await? {
             return Ok(artefact);
         }
         let mut input = tokio::fs::File::open(file).await?;
@@ -180,6 +208,72 @@ impl Store {
             Err(object_store::Error::NotFound { .. }) => Ok(false),
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// Whether there is one that nobody will give up soon.
+    async fn has_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
+        Ok(self.age(&digest.key()).await?.is_some_and(|age| age < FRESH))
+    }
+
+    /// How long ago an object was written; nothing when there is none.
+    async fn age(&self, key: &Key) -> Result<Option<Duration>, StoreError> {
+        match self.objects.head(key).await {
+            Ok(meta) => Ok(Some(age(&meta))),
+            Err(object_store::Error::NotFound { .. }) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Gives up every artefact that is older than `least` and not `named`; how many these were.
+    ///
+    /// Whoever stores one of them at this very moment does not lose it: it is put aside first, and looked at again there. If
+    /// it was written anew before that, it comes back; if after, it is a new one in its place.
+    ///
+    /// # Errors
+    /// When the store fails. What was put aside is looked at again the next time.
+    pub async fn give_up(&self, least: Duration, named: impl Fn(&str) -> bool) -> Result<usize, StoreError> {
+        let mut given_up: usize = 0;
+        for (digest, age) in self.list(KEPT).await? {
+            if age < least || named(digest.as_str()) {
+                continue;
+            }
+            match self.objects.rename(&digest.key(), &digest.aside()).await {
+                Ok(()) => {}
+                // Another server was faster.
+                Err(object_store::Error::NotFound { .. }) => continue,
+                Err(error) => return Err(error.into()),
+            }
+            given_up += 1;
+        }
+        for (digest, age) in self.list(ASIDE).await? {
+            if age < least || named(digest.as_str()) {
+                self.objects.rename(&digest.aside(), &digest.key()).await?;
+                given_up = given_up.saturating_sub(1);
+            } else {
+                match self.objects.delete(&digest.aside()).await {
+                    Ok(()) | Err(object_store::Error::NotFound { .. }) => {}
+                    Err(error) => return Err(error.into()),
+                }
+            }
+        }
+        Ok(given_up)
+    }
+
+    /// The artefacts below a prefix, with their ages.
+    async fn list(&self, prefix: &str) -> Result<Vec<(Digest, Duration)>, StoreError> {
+        let mut found = Vec::new();
+        let mut listing = self.objects.list(Some(&Key::from(prefix)));
+        while let Some(meta) = listing.next().await {
+            let meta = meta?;
+            let parts: Vec<String> = meta.location.parts().map(|part| part.as_ref().to_owned()).collect();
+            // Anything else there is none of ours.
+            if let [_, first, rest] = parts.as_slice()
+                && let Ok(digest) = format!("{first}{rest}").parse()
+            {
+                found.push((digest, age(&meta)));
+            }
+        }
+        Ok(found)
     }
 
     /// The bytes of an artefact that is at most `most` bytes large.
@@ -235,6 +329,12 @@ impl Store {
         }
         Ok(())
     }
+}
+
+fn age(meta: &object_store::ObjectMeta) -> Duration {
+    let written = u64::try_from(meta.last_modified.timestamp_millis()).unwrap_or(0);
+    let written = UNIX_EPOCH + Duration::from_millis(written);
+    SystemTime::now().duration_since(written).unwrap_or(Duration::ZERO)
 }
 
 /// The digest and size of a file.

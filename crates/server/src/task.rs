@@ -1,6 +1,7 @@
 //! What a worker is asked to do and what it answers: the same words in the queue, over HTTP and in the database.
 use crate::store::{Artefact, Digest};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// One grading, complete: whoever has this and the artefacts that it names can do it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,14 +68,14 @@ pub enum Suite {
     Archive(Digest),
 }
 
-/// What a grading came to.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Outcome {
+/// What a grading came to: as the grader tells it (`F` are files of its own), as a worker brings it and as the service shows it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Outcome<F = OutputFile> {
     /// The verdict in words.
     pub verdict: String,
-    /// The verdict in short: AC, WA, ..., JE.
+    /// The verdict in short: AC, WA, ...; JE is the grader's fault and nobody's zero.
     pub code: String,
-    /// Points, as the grader wrote them; none after a judge error.
+    /// Points, digit for digit as the grader wrote them; none after a judge error.
     pub points: Option<String>,
     /// The most that could be had.
     pub max_points: Option<String>,
@@ -82,10 +83,48 @@ pub struct Outcome {
     pub summary: String,
     /// The grader's version.
     pub version: String,
-    /// How long it took.
+    /// The SHA-256 of the grader, where it is known.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub grader: String,
+    /// The SHA-256 of what the grade says, without what was measured: whoever grades again by the same comes to the same.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub essence: String,
+    /// Scenes that are not accepted, of a submission that is nearly right; not shown.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub wrong: Vec<WrongScene>,
+    /// How long it took, in seconds.
     pub seconds: String,
-    /// Reports and logs.
-    pub files: Vec<OutputFile>,
+    /// Reports and logs; empty in lists.
+    pub files: Vec<F>,
+}
+
+/// A scene that is not accepted.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct WrongScene {
+    /// Its name.
+    pub scene: String,
+    /// The SHA-256 of what the submission answers there: the same for others who answer the same.
+    pub answer: String,
+}
+
+impl<F> Outcome<F> {
+    /// The same with other files.
+    #[must_use]
+    pub fn with_files<G>(self, files: Vec<G>) -> Outcome<G> {
+        Outcome {
+            verdict: self.verdict,
+            code: self.code,
+            points: self.points,
+            max_points: self.max_points,
+            summary: self.summary,
+            version: self.version,
+            grader: self.grader,
+            essence: self.essence,
+            wrong: self.wrong,
+            seconds: self.seconds,
+            files,
+        }
+    }
 }
 
 impl Outcome {
@@ -99,6 +138,9 @@ impl Outcome {
             max_points: None,
             summary: format!("the grader failed: {fault}"),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            grader: String::new(),
+            essence: String::new(),
+            wrong: Vec::new(),
             seconds: "0".to_owned(),
             files: Vec::new(),
         }
@@ -109,7 +151,7 @@ impl Outcome {
 pub const JUDGE_ERROR: &str = "JE";
 
 /// A report or log.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct OutputFile {
     /// What it is called, `grade.json` for example.
     pub name: String,

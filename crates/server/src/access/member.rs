@@ -2,12 +2,13 @@
 use super::{
     House,
     person::Account,
-    view::{self, Assignment, Course, Event, FileInfo, History, Submission},
+    view::{self, Assignment, Course, Event, History, Submission},
 };
 use crate::{
     db::{DbError, Transaction},
     problem::Problem,
-    store::Digest,
+    store::{Artefact, Digest},
+    task::OutputFile,
     values,
 };
 
@@ -136,13 +137,13 @@ impl Member {
     ///
     /// # Errors
     /// When there is none of this name.
-    pub async fn report(&self, id: i64, name: &str) -> Result<(FileInfo, Vec<u8>), Problem> {
-        let submission = self.submission(id).await?;
+    pub async fn report(&self, id: i64, name: &str) -> Result<(OutputFile, Vec<u8>), Problem> {
+        let submission = self.kept(id).await?;
         let file = submission
             .grade
-            .and_then(|grade| grade.files.into_iter().find(|file| file.name == name))
+            .and_then(|grade| grade.outcome.files.into_iter().find(|file| file.name == name))
             .ok_or_else(|| Problem::not_found("report"))?;
-        let bytes = self.house.bytes(&file.digest, file.size).await?;
+        let bytes = self.house.bytes(&file.artefact).await?;
         Ok((file, bytes))
     }
 
@@ -151,17 +152,24 @@ impl Member {
     /// # Errors
     /// When they may see none of this number.
     pub async fn upload(&self, id: i64) -> Result<(Submission, Vec<u8>), Problem> {
-        let submission = self.submission(id).await?;
-        let bytes = self.house.bytes(&submission.digest, submission.size).await?;
+        let submission = self.kept(id).await?;
+        let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is none")));
+        let digest: Digest = submission.digest.parse().map_err(|_| wrong("digest"))?;
+        let size = u64::try_from(submission.size).map_err(|_| wrong("size"))?;
+        let bytes = self.house.bytes(&Artefact { digest, size }).await?;
         Ok((submission, bytes))
+    }
+
+    /// A submission whose bytes are still there.
+    async fn kept(&self, id: i64) -> Result<Submission, Problem> {
+        let submission = self.submission(id).await?;
+        if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
     }
 }
 
 impl House {
     /// The bytes of an artefact that the database names.
-    async fn bytes(&self, digest: &str, size: i64) -> Result<Vec<u8>, Problem> {
-        let digest: Digest =
-            digest.parse().map_err(|_| Problem::from(DbError::Other("a digest is none".to_owned())))?;
-        Ok(self.0.store.bytes(&digest, u64::try_from(size).unwrap_or(0)).await?)
+    async fn bytes(&self, artefact: &Artefact) -> Result<Vec<u8>, Problem> {
+        Ok(self.0.store.bytes(&artefact.digest, artefact.size).await?)
     }
 }

@@ -14,6 +14,7 @@ mod request;
 mod settings;
 mod staff;
 mod submit;
+mod suspicion;
 mod throttle;
 mod view;
 mod visitor;
@@ -28,7 +29,8 @@ pub use request::{Secrets, cookie_name};
 pub use settings::{Settings, is_file_name};
 pub use staff::{MemberInfo, Staff, Standing};
 pub use submit::{Accepted, Upload};
-pub use view::{Assignment, Course, Event, FileInfo, Graded, History, Queue, QueueWorker, Submission};
+pub use suspicion::Suspicion;
+pub use view::{Assignment, Course, Event, Graded, History, Queue, QueueWorker, Submission};
 pub use visitor::{Metrics, Visitor};
 
 use crate::{

@@ -249,7 +249,7 @@ async fn enqueue_missing(transaction: &mut Transaction, campaign: i64, newly: &A
     let rows = transaction
         .rows(
             "SELECT id, form, file_name, digest, size FROM submission
-             WHERE assignment = ?
+             WHERE assignment = ? AND removed_at IS NULL
                 AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.campaign = ?)
              ORDER BY id",
             values![newly.id, campaign],
@@ -379,7 +379,7 @@ fn why(row: &Row) -> Result<Vec<String>, DbError> {
         let or_suite = |value: Option<String>| value.unwrap_or_else(|| "of the suite".to_owned());
         let suite = |task: &Task| match &task.suite {
             crate::task::Suite::Named(name) => name.clone(),
-            crate::task::Suite::Archive(digest) => digest.as_str()[..12].to_owned(),
+            crate::task::Suite::Archive(digest) => digest.short().to_owned(),
         };
         differ("suite", suite(&old), suite(&new));
         differ("rules", or_suite(old.rules), or_suite(new.rules));

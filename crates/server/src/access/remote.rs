@@ -151,6 +151,16 @@ impl Remote {
         outcome.verdict = plain(&outcome.verdict, 200);
         outcome.summary = plain(&outcome.summary, 2000);
         outcome.version = plain(&outcome.version, 60);
+        let is_digest = |text: &str| text.parse::<Digest>().is_ok();
+        if [&outcome.grader, &outcome.essence].into_iter().any(|text| !text.is_empty() && !is_digest(text)) {
+            return Err(Problem::invalid("grader and essence are digests"));
+        }
+        if outcome.wrong.len() > MANY_SCENES || outcome.wrong.iter().any(|wrong| !is_digest(&wrong.answer)) {
+            return Err(Problem::invalid("what is answered in wrong scenes is told by digests, of few scenes"));
+        }
+        for wrong in &mut outcome.wrong {
+            wrong.scene = plain(&wrong.scene, 200);
+        }
         let mut transaction = self.house.0.database.read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {
@@ -232,6 +242,9 @@ impl Remote {
         self.held(lease).await.map(|_| MAX_FILE)
     }
 }
+
+/// A submission that is nearly right is wrong in fewer scenes.
+const MANY_SCENES: usize = 1000;
 
 /// Words of a stranger: one line, not too long, without orders to terminals.
 fn plain(text: &str, most: usize) -> String {

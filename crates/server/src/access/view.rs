@@ -4,9 +4,12 @@ use crate::{
     db::{DbError, Row, Transaction, Value},
     problem::Problem,
     queue::{self, Lane},
+    store::Artefact,
+    task::{Outcome, OutputFile, Suite, Task},
     values,
 };
 use serde::Serialize;
+use std::ops::Deref;
 use utoipa::ToSchema;
 
 /// A course.
@@ -58,6 +61,9 @@ pub struct Submission {
     pub size: i64,
     /// When it came, in milliseconds since 1970.
     pub created_at: i64,
+    /// When its bytes and reports were given up; the grade and its history stay.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub removed_at: Option<i64>,
     /// What becomes of it: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
     pub state: String,
     /// How many jobs are graded before it, while it waits.
@@ -80,37 +86,19 @@ pub struct Submission {
 pub struct Graded {
     #[serde(skip)]
     pub(crate) result: i64,
-    /// The verdict.
-    pub verdict: String,
-    /// The verdict in short; `JE` is the grader's fault and nobody's zero.
-    pub code: String,
-    /// Points, digit for digit as the grader wrote them.
-    pub points: Option<String>,
-    /// The most that could be had.
-    pub max_points: Option<String>,
-    /// A line about it.
-    pub summary: String,
-    /// The grader's version.
-    pub version: String,
-    /// How long it took, in seconds.
-    pub seconds: String,
+    /// What it came to.
+    #[serde(flatten)]
+    pub outcome: Outcome,
     /// When it was graded, in milliseconds since 1970.
     pub created_at: i64,
-    /// Reports: empty in lists.
-    pub files: Vec<FileInfo>,
 }
 
-/// A report or log.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
-pub struct FileInfo {
-    /// What it is called.
-    pub name: String,
-    /// What it holds.
-    pub media_type: String,
-    /// Its SHA-256.
-    pub digest: String,
-    /// Its size in bytes.
-    pub size: i64,
+impl Deref for Graded {
+    type Target = Outcome;
+
+    fn deref(&self) -> &Outcome {
+        &self.outcome
+    }
 }
 
 /// How a result came to count.
@@ -130,8 +118,16 @@ pub struct History {
     pub new_code: String,
     /// The points since.
     pub new_points: Option<String>,
+    /// The number of the result that counts since.
+    pub result: i64,
     /// The grader's version.
     pub version: String,
+    /// The grader's SHA-256, where it is known.
+    pub grader: String,
+    /// The SHA-256 of what the grade says, without what was measured: `replay` comes to the same.
+    pub essence: String,
+    /// Rules, suite and upload in short.
+    pub by_what: String,
     /// The complete task, from which it can be graded again: rules, suite, digests.
     pub task: String,
 }
@@ -188,10 +184,10 @@ macro_rules! submissions {
     ($rest:literal) => {
         concat!(
             "SELECT submission.id, submission.number, submission.form, submission.file_name, submission.digest,
-                submission.size, submission.created_at, submission.account, assignment.slug AS assignment,
+                submission.size, submission.created_at, submission.removed_at, submission.account, assignment.slug AS assignment,
                 assignment.title, account.login, account.name, job.id AS job, job.state, grade.result, result.verdict,
                 result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
-                result.created_at AS graded_at
+                result.grader, result.essence, result.created_at AS graded_at
              FROM submission
              JOIN assignment ON assignment.id = submission.assignment
              JOIN account ON account.id = submission.account
@@ -209,15 +205,21 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
         None => None,
         Some(result) => Some(Graded {
             result,
-            verdict: row.text("verdict")?,
-            code: row.text("code")?,
-            points: row.maybe_text("points")?,
-            max_points: row.maybe_text("max_points")?,
-            summary: row.text("summary")?,
-            version: row.text("version")?,
-            seconds: row.text("seconds")?,
+            outcome: Outcome {
+                verdict: row.text("verdict")?,
+                code: row.text("code")?,
+                points: row.maybe_text("points")?,
+                max_points: row.maybe_text("max_points")?,
+                summary: row.text("summary")?,
+                version: row.text("version")?,
+                grader: row.text("grader")?,
+                essence: row.text("essence")?,
+                // Some of these scenes may be hidden.
+                wrong: Vec::new(),
+                seconds: row.text("seconds")?,
+                files: Vec::new(),
+            },
             created_at: row.int("graded_at")?,
-            files: Vec::new(),
         }),
     };
     Ok(Submission {
@@ -232,6 +234,7 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
         digest: row.text("digest")?,
         size: row.int("size")?,
         created_at: row.int("created_at")?,
+        removed_at: row.maybe_int("removed_at")?,
         state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
         ahead: None,
         expected_seconds: None,
@@ -288,14 +291,19 @@ pub(super) async fn submission(
             )
             .await?;
         let read = |row: &Row| {
-            Ok(FileInfo {
+            let wrong = |what: &str| DbError::Other(format!("a report's {what} is none"));
+            Ok(OutputFile {
                 name: row.text("name")?,
                 media_type: row.text("media_type")?,
-                digest: row.text("digest")?,
-                size: row.int("size")?,
+                artefact: Artefact {
+                    digest: row.text("digest")?.parse().map_err(|_| wrong("digest"))?,
+                    size: u64::try_from(row.int("size")?).map_err(|_| wrong("size"))?,
+                },
             })
         };
-        grade.files = rows.iter().map(read).collect::<Result<_, DbError>>()?;
+        if submission.removed_at.is_none() {
+            grade.outcome.files = rows.iter().map(read).collect::<Result<_, DbError>>()?;
+        }
     }
     Ok(Some(submission))
 }
@@ -304,7 +312,8 @@ pub(super) async fn history(transaction: &mut Transaction, submission: i64) -> R
     let rows = transaction
         .rows(
             "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
-                old.points AS old_points, new.code AS new_code, new.points AS new_points, new.version, new.task
+                old.points AS old_points, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
+                new.grader, new.essence, new.task
              FROM grade_change
              JOIN result AS new ON new.id = grade_change.new_result
              LEFT JOIN result AS old ON old.id = grade_change.old_result
@@ -322,11 +331,26 @@ pub(super) async fn history(transaction: &mut Transaction, submission: i64) -> R
             old_points: row.maybe_text("old_points")?,
             new_code: row.text("new_code")?,
             new_points: row.maybe_text("new_points")?,
+            result: row.int("result")?,
             version: row.text("version")?,
+            grader: row.text("grader")?,
+            essence: row.text("essence")?,
+            by_what: by_what(&row.text("task")?),
             task: row.text("task")?,
         })
     };
     rows.iter().map(read).collect()
+}
+
+/// A task in short: what it was graded by.
+fn by_what(task: &str) -> String {
+    let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
+    let suite = match &task.suite {
+        Suite::Named(name) => name.clone(),
+        Suite::Archive(digest) => digest.short().to_owned(),
+    };
+    let rules = task.rules.as_deref().unwrap_or("of the suite");
+    format!("suite {suite}, rules {rules}, upload {}", task.submission.artefact.digest.short())
 }
 
 pub(super) fn read_event(row: &Row) -> Result<Event, DbError> {

@@ -23,6 +23,8 @@ pub struct Metrics {
     pub events: Vec<(String, i64)>,
     /// Submissions in all.
     pub submissions: i64,
+    /// Scenes in which the reference is suspected and nobody has decided.
+    pub suspicions: i64,
 }
 
 impl Visitor {
@@ -133,6 +135,8 @@ impl Visitor {
             metrics.events.push((row.text("kind")?, row.int("n")?));
         }
         metrics.submissions = transaction.one("SELECT count(*) AS n FROM submission", values![]).await?.int("n")?;
+        metrics.suspicions =
+            transaction.one("SELECT count(*) AS n FROM suspicion WHERE state = 'open'", values![]).await?.int("n")?;
         Ok(metrics)
     }
 }

@@ -31,6 +31,7 @@ pub(super) enum Command {
     Serve(Serve),
     Worker(Worker),
     AdminLink(AdminLink),
+    Replay(Replay),
     /// Prints the description of the API (OpenAPI).
     Openapi,
 }
@@ -84,6 +85,9 @@ pub(super) struct Serve {
     /// After so many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
+    /// For so many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
+    #[arg(long, value_name = "DAYS", default_value_t = 0)]
+    pub(super) keep_days: u32,
     /// On a fresh server: make a course with an assignment and a student, and write a program with a mistake for them to
     /// hand in.
     #[arg(long)]
@@ -114,6 +118,21 @@ pub(super) struct AdminLink {
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url,
         default_value = "http://127.0.0.1:8080")]
     pub(super) public_url: String,
+}
+
+/// Grades a submission once more by what it was graded by, and says whether the same comes out: nothing changes by it. The exit
+/// code is 0 when all results are the same, 1 when one is not.
+#[derive(Debug, Args)]
+pub(super) struct Replay {
+    #[command(flatten)]
+    pub(super) place: Place,
+    #[command(flatten)]
+    pub(super) work: Work,
+    /// The submission's number.
+    pub(super) submission: i64,
+    /// Only this result; its number stands in the history. All results of the submission otherwise.
+    #[arg(long, value_name = "NUMBER")]
+    pub(super) result: Option<i64>,
 }
 
 /// Grades what waits in the queue.

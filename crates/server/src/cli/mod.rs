@@ -5,6 +5,7 @@ mod config;
 mod folders;
 mod listen;
 mod logging;
+mod replay;
 mod serve;
 mod worker;
 
@@ -25,7 +26,7 @@ pub fn main() -> ExitCode {
         }
     };
     match run(&arguments) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => ExitCode::from(code),
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::from(2)
@@ -33,19 +34,18 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<()> {
+fn run(arguments: &Arguments) -> Result<u8> {
     logging::begin(arguments.log_format);
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async {
         match &arguments.command {
-            Command::Serve(arguments) => serve::run(arguments).await,
-            Command::Worker(arguments) => worker::run(arguments).await,
-            Command::AdminLink(arguments) => serve::admin_link(arguments).await,
-            Command::Openapi => {
-                print!("{}", crate::web::openapi());
-                Ok(())
-            }
+            Command::Serve(arguments) => serve::run(arguments).await?,
+            Command::Worker(arguments) => worker::run(arguments).await?,
+            Command::AdminLink(arguments) => serve::admin_link(arguments).await?,
+            Command::Replay(arguments) => return Ok(u8::from(!replay::run(arguments).await?)),
+            Command::Openapi => print!("{}", crate::web::openapi()),
         }
+        Ok(0)
     })
 }
 

@@ -9,6 +9,7 @@ use crate::{
     access::{House, Parts, Throttle},
     db::{self, Address, Database},
     queue::Bell,
+    retention,
     store::Store,
     web,
 };
@@ -21,8 +22,14 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
+/// A day in seconds.
+const DAY: u64 = 24 * 3600;
+
 /// How long an upload that nobody finished may lie around.
-const FORGOTTEN: Duration = Duration::from_secs(24 * 3600);
+const FORGOTTEN: Duration = Duration::from_secs(DAY);
+
+/// How often the server looks for what is not kept any longer.
+const GIVE_UP_EVERY: Duration = Duration::from_secs(DAY / 4);
 
 pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let stop = until_signalled()?;
@@ -53,6 +60,13 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         throttle: Throttle::default(),
         closing: stop.clone(),
     });
+    if arguments.keep_days > 0 {
+        tokio::spawn(give_up(
+            database.clone(),
+            store.clone(),
+            Duration::from_secs(u64::from(arguments.keep_days) * DAY),
+        ));
+    }
     let slots = match arguments.workers {
         Some(workers) => NonZeroUsize::new(workers),
         None => Some(std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
@@ -96,6 +110,18 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     database.close().await;
     tracing::info!("stopped");
     Ok(())
+}
+
+/// Gives up what is older than is kept, every now and then, for ever.
+async fn give_up(database: Database, store: Store, keep: Duration) {
+    loop {
+        match retention::give_up(&database, &store, keep, retention::LEAST_AGE).await {
+            Ok(found) if found == retention::GivenUp::default() => {}
+            Ok(found) => tracing::info!(found.submissions, found.artefacts, "what is too old is not kept any longer"),
+            Err(error) => tracing::warn!(%error, "what is too old could not be given up"),
+        }
+        tokio::time::sleep(GIVE_UP_EVERY).await;
+    }
 }
 
 /// Has the grader write a program with a mistake.

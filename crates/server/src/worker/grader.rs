@@ -1,5 +1,5 @@
 //! What grades. Today that is the program `fosssim-oracle` as a child ([`super::Program`]); a worker does not care.
-use crate::task::Task;
+use crate::task::{Outcome, Task};
 use std::{
     future::Future,
     path::{Path, PathBuf},
@@ -8,23 +8,7 @@ use thiserror::Error;
 use tokio_util::sync::CancellationToken;
 
 /// What a grading came to, with its files still in the working folder.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Graded {
-    /// The verdict in words.
-    pub verdict: String,
-    /// The verdict in short.
-    pub code: String,
-    /// Points, as the grader wrote them.
-    pub points: Option<String>,
-    /// The most that could be had.
-    pub max_points: Option<String>,
-    /// One line about it.
-    pub summary: String,
-    /// The grader's version.
-    pub version: String,
-    /// Reports and logs.
-    pub files: Vec<NewFile>,
-}
+pub type Graded = Outcome<NewFile>;
 
 /// A file that belongs to a result.
 #[derive(Debug, Clone, PartialEq, Eq)]

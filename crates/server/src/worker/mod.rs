@@ -7,6 +7,7 @@ mod grader;
 mod liveness;
 mod local;
 mod program;
+mod reading;
 mod remote;
 mod slots;
 
@@ -15,5 +16,6 @@ pub use grader::{Graded, Grader, GraderFault, NewFile};
 pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalDesk;
 pub use program::{Program, REPORTS};
+pub(crate) use reading::essence;
 pub use remote::RemoteDesk;
 pub use slots::{Options, work};

@@ -3,17 +3,19 @@
 use super::{
     Graded, Grader, GraderFault, NewFile,
     child::{Child, End},
+    reading,
 };
 use crate::{
     archive::{self, Limits},
+    store::digest_of_file,
     task::{Form, Suite, Task},
 };
-use serde::Deserialize;
 use std::{
     fs, io,
-    os::unix::fs::PermissionsExt,
+    os::unix::fs::{MetadataExt, PermissionsExt},
     path::{Path, PathBuf},
     process::Command,
+    sync::{Arc, Mutex, PoisonError},
     time::Duration,
 };
 use tokio_util::sync::CancellationToken;
@@ -23,9 +25,6 @@ const GRACE: Duration = Duration::from_secs(20);
 
 /// How much of the grader's messages is kept for the administrator.
 const MESSAGE: usize = 2000;
-
-/// The schema of `grade.json` that is read here.
-const SCHEMA: u32 = 3;
 
 /// The reports that a grading writes: format, file, media type.
 pub const REPORTS: [(&str, &str, &str); 8] = [
@@ -44,13 +43,31 @@ pub const REPORTS: [(&str, &str, &str); 8] = [
 pub struct Program {
     path: PathBuf,
     threads: usize,
+    digested: Arc<Mutex<Option<(Stamp, String)>>>,
 }
+
+/// What tells one file at the grader's place from another: number, size and time.
+type Stamp = (u64, u64, i64, i64);
 
 impl Program {
     /// The grader at this path, with so many scenes of a job at one time.
     #[must_use]
     pub fn new(path: PathBuf, threads: usize) -> Self {
-        Self { path, threads }
+        Self { path, threads, digested: Arc::default() }
+    }
+
+    /// The grader's SHA-256, taken again when the file is another; nothing when it can't be read.
+    async fn digest(&self) -> String {
+        let Ok(data) = fs::metadata(&self.path) else { return String::new() };
+        let stamp = (data.ino(), data.len(), data.mtime(), data.mtime_nsec());
+        let known = self.digested.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        if let Some((_, digest)) = known.filter(|(known, _)| *known == stamp) {
+            return digest;
+        }
+        let Ok(artefact) = digest_of_file(&self.path).await else { return String::new() };
+        let digest = artefact.digest.to_string();
+        *self.digested.lock().unwrap_or_else(PoisonError::into_inner) = Some((stamp, digest.clone()));
+        digest
     }
 
     fn command(&self, task: &Task, submission: &Path, folder: &Path) -> Command {
@@ -102,6 +119,8 @@ impl Grader for Program {
         if let Some(suite) = suite {
             unpack(suite, folder.join("suite")).await?;
         }
+        // Before it runs: somebody may install another one meanwhile.
+        let grader = self.digest().await;
         let messages = folder.join("messages.txt");
         let mut command = self.command(task, &program, folder);
         command.stderr(fs::File::create(&messages).map_err(cannot("write the messages"))?);
@@ -143,7 +162,8 @@ impl Grader for Program {
                 return Err(GraderFault::Failed(format!("the grader was ended by signal {signal}: {}", said())));
             }
         }
-        let mut graded = read_grade(&folder.join("grade.json")).map_err(GraderFault::Failed)?;
+        let mut graded = reading::read_grade(&folder.join("grade.json")).map_err(GraderFault::Failed)?;
+        graded.grader = grader;
         if stopped {
             graded.summary = format!("stopped after {} seconds; {}", task.seconds, graded.summary);
         }
@@ -207,77 +227,4 @@ fn last_words(file: &Path) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let words = plain.split_whitespace().collect::<Vec<_>>().join(" ");
     if words.is_empty() { "it said nothing".to_owned() } else { words }
-}
-
-/// The part of `schemas/grade.schema.json` that the service understands; the rest goes to people.
-#[derive(Debug, Deserialize)]
-struct Report {
-    schema: u32,
-    version: String,
-    grades: Vec<ReportedGrade>,
-}
-
-#[derive(Debug, Deserialize)]
-struct ReportedGrade {
-    verdict: String,
-    code: String,
-    points: Option<serde_json::Number>,
-    max_points: Option<serde_json::Number>,
-    #[serde(default)]
-    likely_mistake: Option<serde_json::Value>,
-    #[serde(default)]
-    groups: Vec<Group>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Group {
-    scenes: Vec<Scene>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Scene {
-    code: String,
-}
-
-/// Numbers keep their digits: the text that the grader wrote is what counts.
-fn read_grade(file: &Path) -> Result<Graded, String> {
-    let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
-    let report: Report =
-        serde_json::from_slice(&bytes).map_err(|error| format!("grade.json can't be read: {error}"))?;
-    if report.schema != SCHEMA {
-        return Err(format!("grade.json has schema {}, this server reads {SCHEMA}", report.schema));
-    }
-    let [grade] = report.grades.as_slice() else {
-        return Err(format!("grade.json holds {} grades instead of one", report.grades.len()));
-    };
-    if grade.code == crate::task::JUDGE_ERROR {
-        return Err("the grade is a judge error".to_owned());
-    }
-    let scenes: Vec<&Scene> = grade.groups.iter().flat_map(|group| &group.scenes).collect();
-    let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
-    let mut summary = format!("{accepted} of {} scenes accepted", scenes.len());
-    if let Some(serde_json::Value::String(mistake)) = &grade.likely_mistake {
-        summary = format!("{summary}; {mistake}");
-    }
-    Ok(Graded {
-        verdict: grade.verdict.clone(),
-        code: grade.code.clone(),
-        points: grade.points.as_ref().map(ToString::to_string),
-        max_points: grade.max_points.as_ref().map(ToString::to_string),
-        summary,
-        version: report.version,
-        files: Vec::new(),
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    /// A grader of another schema would make every grading a judge error.
-    #[test]
-    fn grades_are_read_as_the_grader_writes_them() {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../schemas/grade.schema.json");
-        let schema: serde_json::Value =
-            serde_json::from_slice(&std::fs::read(file).expect("the schema")).expect("JSON");
-        assert_eq!(schema["properties"]["schema"]["const"], super::SCHEMA);
-    }
 }

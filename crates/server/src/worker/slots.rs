@@ -96,7 +96,7 @@ async fn slot<D: Desk, G: Grader>(desk: D, grader: G, folder: PathBuf, gate: Arc
 
 /// How a job ended, to be told to the desk.
 enum Ending {
-    Finished(Outcome),
+    Finished(Box<Outcome>),
     Failed(String),
     /// The worker is to stop.
     GivenBack,
@@ -178,7 +178,7 @@ async fn attempt<D: Desk, G: Grader>(
     halt: CancellationToken,
 ) -> Ending {
     match try_attempt(desk, grader, job, folder, halt).await {
-        Ok(outcome) => Ending::Finished(outcome),
+        Ok(outcome) => Ending::Finished(Box::new(outcome)),
         Err(GraderFault::Stopped) => Ending::GivenBack,
         Err(GraderFault::Failed(fault)) => Ending::Failed(fault),
     }
@@ -212,20 +212,12 @@ async fn try_attempt<D: Desk, G: Grader>(
     std::fs::create_dir(&work).map_err(|error| GraderFault::Failed(format!("cannot make a folder: {error}")))?;
     let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
     let mut files = Vec::new();
-    for file in graded.files {
+    for file in &graded.files {
         let artefact = patiently(|| desk.store(&job.lease, &file.path)).await?;
-        files.push(OutputFile { name: file.name, media_type: file.media_type, artefact });
+        files.push(OutputFile { name: file.name.clone(), media_type: file.media_type.clone(), artefact });
     }
-    Ok(Outcome {
-        verdict: graded.verdict,
-        code: graded.code,
-        points: graded.points,
-        max_points: graded.max_points,
-        summary: graded.summary,
-        version: graded.version,
-        seconds: format!("{:.3}", start.elapsed().as_secs_f64()),
-        files,
-    })
+    let seconds = format!("{:.3}", start.elapsed().as_secs_f64());
+    Ok(Outcome { seconds, ..graded.with_files(files) })
 }
 
 /// Asks a desk that is away a few times more: a hiccup of the network costs no try.

@@ -2,9 +2,12 @@
 
 mod bell;
 mod deploy;
+mod load;
 mod migrations;
 mod queue;
+mod retention;
 mod storm;
 mod support;
+mod uploads;
 mod web;
 mod worker;

@@ -52,6 +52,10 @@ impl Grader for Watchful {
             max_points: None,
             summary: String::new(),
             version: "test".to_owned(),
+            grader: String::new(),
+            essence: String::new(),
+            wrong: Vec::new(),
+            seconds: "0".to_owned(),
             files: Vec::new(),
         })
     }

@@ -6,6 +6,7 @@ mod courses;
 mod operations;
 mod regrades;
 mod submissions;
+mod suspicions;
 mod workers;
 
 pub(super) use assignments::receive_suite;
@@ -52,6 +53,9 @@ pub(super) fn routes() -> OpenApiRouter<House> {
         .routes(routes!(regrades::show))
         .routes(routes!(regrades::apply))
         .routes(routes!(regrades::discard))
+        .routes(routes!(suspicions::suspicions))
+        .routes(routes!(suspicions::dismiss))
+        .routes(routes!(suspicions::tell))
         .routes(routes!(workers::tick))
         .routes(routes!(workers::claim))
         .routes(routes!(workers::renew))

@@ -49,6 +49,7 @@ pub(super) async fn metrics(visitor: Visitor) -> Result<Response, Problem> {
         ("oldest_waiting_milliseconds", "How long the oldest waiting upload has waited.", metrics.oldest),
         ("workers", "Workers that were seen lately.", metrics.workers),
         ("slots", "Their slots.", metrics.slots),
+        ("suspicions", "Scenes in which the reference may be wrong, undecided.", metrics.suspicions),
     ] {
         head(&mut text, name, "gauge", help);
         line(&mut text, &format!("fosssim_{name} {value}"));

@@ -4,8 +4,9 @@ use super::super::{
     status, upload,
 };
 use crate::{
-    access::{FileInfo, History, Member, Standing, Submission, Upload},
+    access::{History, Member, Standing, Submission, Upload},
     problem::Problem,
+    task::OutputFile,
 };
 use axum::{
     Json,
@@ -131,7 +132,7 @@ pub(super) async fn report(
 }
 
 /// A report holds words of a stranger's program: a browser shows it as a page of nobody, without this site's cookies.
-pub(in crate::web) fn report_response(file: &FileInfo, bytes: Vec<u8>) -> Response {
+pub(in crate::web) fn report_response(file: &OutputFile, bytes: Vec<u8>) -> Response {
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
     let policy = if file.media_type.starts_with("text/html") {
         "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"

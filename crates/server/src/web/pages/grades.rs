@@ -4,7 +4,7 @@ use super::{
     Frame, see, show, text,
 };
 use crate::{
-    access::{Assignment, Regrade, RegradeState, Settings, Staff, Standing},
+    access::{Assignment, Regrade, RegradeState, Settings, Staff, Standing, Suspicion},
     problem::Problem,
 };
 use askama::Template;
@@ -19,6 +19,7 @@ struct ClassPage {
     assignment: Assignment,
     standings: Vec<Standing>,
     regrades: Vec<Regrade>,
+    suspicions: Vec<Suspicion>,
     settings: String,
 }
 
@@ -48,7 +49,8 @@ pub(super) async fn class(
     let standings = staff.standings(&assignment.slug).await?;
     let regrades = staff.regrades(&assignment.slug).await?;
     let settings = serde_json::to_string_pretty(&assignment.settings).map_err(|_| Problem::fault())?;
-    show(&ClassPage { frame, slug, assignment, standings, regrades, settings })
+    let suspicions = staff.suspicions(&assignment.slug).await?;
+    show(&ClassPage { frame, slug, assignment, standings, regrades, suspicions, settings })
 }
 
 pub(super) async fn begin(
@@ -93,4 +95,20 @@ pub(super) async fn discard(
 ) -> Result<Redirect, Problem> {
     staff.discard_regrade(&assignment, id).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{id}")))
+}
+
+pub(super) async fn dismiss(
+    staff: Staff,
+    Params((slug, assignment, id)): Params<(String, String, i64)>,
+) -> Result<Redirect, Problem> {
+    staff.decide_suspicion(&assignment, id, false).await?;
+    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
+}
+
+pub(super) async fn tell(
+    staff: Staff,
+    Params((slug, assignment, id)): Params<(String, String, i64)>,
+) -> Result<Redirect, Problem> {
+    staff.decide_suspicion(&assignment, id, true).await?;
+    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }

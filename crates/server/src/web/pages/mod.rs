@@ -63,6 +63,8 @@ pages! {
     get "/c/{course}/a/{assignment}/regrades/{id}" => grades::show_regrade,
     post "/c/{course}/a/{assignment}/regrades/{id}/apply" => grades::apply,
     post "/c/{course}/a/{assignment}/regrades/{id}/discard" => grades::discard,
+    post "/c/{course}/a/{assignment}/suspicions/{id}/dismiss" => grades::dismiss,
+    post "/c/{course}/a/{assignment}/suspicions/{id}/tell" => grades::tell,
     get "/c/{course}/s/{id}" => submission::submission,
     get "/c/{course}/s/{id}/report/{name}" => submission::report,
     get "/c/{course}/s/{id}/upload" => submission::upload,

@@ -37,6 +37,8 @@ struct SubmissionPage {
     submission: Submission,
     is_moving: bool,
     history: Vec<History>,
+    /// Scenes in which the reference may be wrong, as staff says.
+    doubts: Vec<String>,
     report: Option<String>,
     has_html: bool,
 }
@@ -83,6 +85,7 @@ pub(super) async fn submission(
         is_own: submission.login == member.account().login,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
+        doubts: member.doubts(id).await?,
         has_html: has("report.html"),
         report,
         submission,

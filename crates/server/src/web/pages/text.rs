@@ -41,6 +41,20 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
     }
 }
 
+/// What was decided on a suspicion, in words.
+pub(super) fn suspicion(state: &str) -> &'static str {
+    match state {
+        "dismissed" => "the reference is right",
+        "told" => "students know that it is looked into",
+        _ => "nobody has decided yet",
+    }
+}
+
+/// The beginning of a digest.
+pub(super) fn short(digest: &str) -> &str {
+    digest.get(..12).unwrap_or(digest)
+}
+
 /// What becomes of a submission, in words.
 pub(super) fn state(state: &str) -> &'static str {
     match state {

@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Grades as the submission says: `#!grade CODE POINTS`. Beside `grade.json` it writes a report with what a hostile program
+/// Grades as the submission says: `#!grade CODE POINTS [SCENE RIGHT-STEPS]`, of two scenes. Beside `grade.json` it writes a report with what a hostile program
 /// would like to have there.
 const GRADER: &str = r#"#!/bin/sh
 if [ "$1" = demo ]; then
@@ -34,7 +34,7 @@ while [ $# -gt 0 ]; do
 done
 # A folder of sources is graded by the program in it.
 [ -d "$program" ] && program=$program/FOSSSim
-read -r _ code points < "$program"
+read -r _ code points scene right < "$program"
 [ "$code" = HANG ] && exec sleep 600
 # By the other rules everything is worth half.
 [ "$rules" = parity ] && points=$((points / 2))
@@ -42,7 +42,8 @@ printf '<script>alert(1)</script> %s by %s\n' "$(basename "$program")" "$(basena
 echo '<script>document.title = document.cookie</script>' > "$html"
 cat > "$json" <<END
 {"schema": 3, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
- "max_points": 100, "groups": [{"scenes": [{"code": "$code"}]}]}]}
+ "max_points": 100, "wall_seconds": $$.5, "groups": [{"scenes": [{"scene": "Group/easy", "code": "AC", "right_steps": 9},
+ {"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
 END
 [ "$code" = AC ]
 "#;
@@ -89,7 +90,9 @@ impl Server {
         options: &[String],
     ) -> Result<(Child, BufReader<ChildStdout>, String), String> {
         let log = fs::File::options().create(true).append(true).open(folder.with_file_name("log")).expect("a log");
-        let mut child = Command::new(env!("CARGO_BIN_EXE_fosssim-server"))
+        // Measured is another build of it than tested.
+        let program = std::env::var_os("FOSSSIM_SERVER").unwrap_or(env!("CARGO_BIN_EXE_fosssim-server").into());
+        let mut child = Command::new(program)
             .args(["serve", "--listen", listen, "--grader"])
             .arg(grader)
             .arg("--data")
@@ -117,6 +120,19 @@ impl Server {
 
     pub(crate) fn grader(&self) -> PathBuf {
         self.folder.with_file_name("grader")
+    }
+
+    /// The most memory that it ever had, in bytes.
+    pub(crate) fn peak_memory(&self) -> u64 {
+        let status = fs::read_to_string(format!("/proc/{}/status", self.child.id())).expect("its status");
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("its memory");
+        let kibibytes: u64 = line.trim().trim_end_matches(" kB").parse().expect("a number");
+        kibibytes * 1024
+    }
+
+    /// The database's address.
+    pub(crate) fn database(&self) -> String {
+        self.database.clone()
     }
 
     pub(crate) fn log(&self) -> String {

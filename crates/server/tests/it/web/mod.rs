@@ -3,6 +3,8 @@
 mod example;
 mod flows;
 mod hostile;
+mod replay;
 mod roles;
+mod suspicion;
 mod upgrade;
 mod workers;

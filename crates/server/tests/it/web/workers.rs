@@ -115,7 +115,8 @@ async fn a_worker_of_another_machine_grades(fresh: Fresh) {
 }
 
 async fn kills_of_workers_and_server_lose_nothing(fresh: Fresh) {
-    let mut server = Server::start(&fresh, &["--workers", "0", "--lease", "2", "--tries", "50"]);
+    let options = ["--workers", "0", "--lease", "2", "--tries", "50", "--requests-per-minute", "100000"];
+    let mut server = Server::start(&fresh, &options);
     let admin = server.admin();
     server.course(&admin, "physics");
     let ada = server.member(&admin, "physics", "ada", "student");

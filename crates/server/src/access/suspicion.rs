@@ -1,0 +1,123 @@
+//! Where the reference may be wrong: what staff is told, and decides.
+use super::{Member, Staff, view};
+use crate::{
+    db::{DbError, Row},
+    problem::Problem,
+    values,
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// Many students who are right otherwise answer the same in a scene, and not what the reference does.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Suspicion {
+    /// Its number.
+    pub id: i64,
+    /// The scene.
+    pub scene: String,
+    /// How many agree.
+    pub agreeing: i64,
+    /// How many students are right otherwise, these included.
+    pub nearly_right: i64,
+    /// `open`, `dismissed` (the reference is right) or `told` (students know).
+    pub state: String,
+    /// When it was found, in milliseconds since 1970.
+    pub found_at: i64,
+    /// Students who handed in what answers so.
+    pub logins: Vec<String>,
+}
+
+impl Staff {
+    /// Where the reference of an assignment is suspected, latest first.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn suspicions(&self, slug: &str) -> Result<Vec<Suspicion>, Problem> {
+        let mut transaction = self.member().house.0.database.read().await?;
+        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let rows = transaction
+            .rows(
+                "SELECT id, scene, answer, agreeing, nearly_right, state, found_at FROM suspicion
+                 WHERE assignment = ? ORDER BY id DESC",
+                values![assignment.id],
+            )
+            .await?;
+        let mut suspicions = Vec::new();
+        for row in &rows {
+            let (scene, answer) = (row.text("scene")?, row.text("answer")?);
+            let logins = transaction
+                .rows(
+                    "SELECT DISTINCT account.login FROM wrong_scene
+                     JOIN grade ON grade.result = wrong_scene.result
+                     JOIN submission ON submission.id = grade.submission AND submission.assignment = ?
+                     JOIN account ON account.id = submission.account
+                     JOIN member ON member.account = account.id AND member.course = ? AND member.role = 'student'
+                     WHERE wrong_scene.scene = ? AND wrong_scene.answer = ? ORDER BY account.login",
+                    values![assignment.id, self.member().course, &scene, &answer],
+                )
+                .await?;
+            let read = |row: &Row| row.text("login");
+            suspicions.push(Suspicion {
+                id: row.int("id")?,
+                scene,
+                agreeing: row.int("agreeing")?,
+                nearly_right: row.int("nearly_right")?,
+                state: row.text("state")?,
+                found_at: row.int("found_at")?,
+                logins: logins.iter().map(read).collect::<Result<_, DbError>>()?,
+            });
+        }
+        Ok(suspicions)
+    }
+
+    /// Decides on a suspicion: the reference is right (`dismissed`), or students whose submissions answer so are told that it
+    /// may not be (`told`). Either may be taken back by the other.
+    ///
+    /// # Errors
+    /// When there is none of this number.
+    pub async fn decide_suspicion(&self, slug: &str, id: i64, told: bool) -> Result<(), Problem> {
+        let assignment = self.member().assignment(slug).await?;
+        let mut transaction = self.begin().await?;
+        let state = if told { "told" } else { "dismissed" };
+        let row = transaction
+            .row(
+                "UPDATE suspicion SET state = ?, decided_by = ?, decided_at = {now}
+                 WHERE id = ? AND assignment = ? RETURNING scene",
+                values![state, self.member().account.id, id, assignment.id],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::not_found("suspicion")) };
+        let scene = row.text("scene")?;
+        let text = match told {
+            true => format!("students are told that the reference may be wrong in {scene}"),
+            false => format!("the reference is right in {scene}"),
+        };
+        view::note(&mut transaction, &self.deed("suspicion", Some(assignment.id), &text)).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+impl Member {
+    /// Scenes in which the reference may be wrong, of a submission that answers what many answer: those of which staff says that
+    /// students are to know.
+    ///
+    /// # Errors
+    /// When they may see none of this number.
+    pub async fn doubts(&self, id: i64) -> Result<Vec<String>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        self.find_submission(&mut transaction, id).await?;
+        let rows = transaction
+            .rows(
+                "SELECT DISTINCT wrong_scene.scene FROM grade
+                 JOIN submission ON submission.id = grade.submission
+                 JOIN wrong_scene ON wrong_scene.result = grade.result
+                 JOIN suspicion ON suspicion.assignment = submission.assignment AND suspicion.scene = wrong_scene.scene
+                    AND suspicion.answer = wrong_scene.answer AND suspicion.state = 'told'
+                 WHERE grade.submission = ? ORDER BY wrong_scene.scene",
+                values![id],
+            )
+            .await?;
+        Ok(rows.iter().map(|row| row.text("scene")).collect::<Result<_, DbError>>()?)
+    }
+}

@@ -1,0 +1,175 @@
+//! What the grader wrote about a submission, as far as the service understands it; the rest goes to people.
+use super::Graded;
+use crate::{store::Digest, task::WrongScene};
+use serde::Deserialize;
+use serde_json::Value;
+use std::{fs, path::Path};
+
+/// The schema of `grade.json` that is read here.
+const SCHEMA: u32 = 3;
+
+/// What is measured, or tells of the machine and not of the submission.
+const MEASURED: [&str; 5] = ["cpu_seconds", "wall_seconds", "memory_bytes", "cached", "sandbox"];
+
+/// The part of `schemas/grade.schema.json` that is read.
+#[derive(Debug, Deserialize)]
+struct Report {
+    schema: u32,
+    version: String,
+    grades: Vec<ReportedGrade>,
+}
+
+#[derive(Debug, Deserialize)]
+struct ReportedGrade {
+    verdict: String,
+    code: String,
+    points: Option<serde_json::Number>,
+    max_points: Option<serde_json::Number>,
+    #[serde(default)]
+    likely_mistake: Option<Value>,
+    #[serde(default)]
+    groups: Vec<Group>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Group {
+    scenes: Vec<Scene>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Scene {
+    #[serde(default)]
+    scene: String,
+    code: String,
+    #[serde(default)]
+    summary: String,
+    #[serde(default)]
+    right_steps: u32,
+}
+
+/// Numbers keep their digits: the text that the grader wrote is what counts.
+pub(super) fn read_grade(file: &Path) -> Result<Graded, String> {
+    let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
+    let damaged = |error: serde_json::Error| format!("grade.json can't be read: {error}");
+    let report: Report = serde_json::from_slice(&bytes).map_err(damaged)?;
+    if report.schema != SCHEMA {
+        return Err(format!("grade.json has schema {}, this server reads {SCHEMA}", report.schema));
+    }
+    let [grade] = report.grades.as_slice() else {
+        return Err(format!("grade.json holds {} grades instead of one", report.grades.len()));
+    };
+    if grade.code == crate::task::JUDGE_ERROR {
+        return Err("the grade is a judge error".to_owned());
+    }
+    let scenes: Vec<&Scene> = grade.groups.iter().flat_map(|group| &group.scenes).collect();
+    let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
+    let mut summary = format!("{accepted} of {} scenes accepted", scenes.len());
+    if let Some(Value::String(mistake)) = &grade.likely_mistake {
+        summary = format!("{summary}; {mistake}");
+    }
+    Ok(Graded {
+        verdict: grade.verdict.clone(),
+        code: grade.code.clone(),
+        points: grade.points.as_ref().map(ToString::to_string),
+        max_points: grade.max_points.as_ref().map(ToString::to_string),
+        summary,
+        version: report.version,
+        grader: String::new(),
+        essence: Digest::of(essence(&bytes).map_err(damaged)?.as_bytes()).to_string(),
+        wrong: wrong(&scenes),
+        seconds: "0".to_owned(),
+        files: Vec::new(),
+    })
+}
+
+/// What `grade.json` says of the submission: without measurements, in one order, as compact text.
+///
+/// # Errors
+/// When it is no JSON.
+pub(crate) fn essence(grade: &[u8]) -> Result<String, serde_json::Error> {
+    fn forget(value: &mut Value) {
+        match value {
+            Value::Object(fields) => {
+                fields.retain(|name, _| !MEASURED.contains(&name.as_str()));
+                fields.values_mut().for_each(forget);
+            }
+            Value::Array(values) => values.iter_mut().for_each(forget),
+            _ => {}
+        }
+    }
+    let mut value: Value = serde_json::from_slice(grade)?;
+    forget(&mut value);
+    serde_json::to_string(&value)
+}
+
+/// Whether so many wrong scenes leave a submission nearly right: what it answers there may be worth a second look.
+fn is_nearly_right(wrong: usize, scenes: usize) -> bool {
+    wrong <= 1 || wrong * 10 <= scenes
+}
+
+/// What a submission that is nearly right answers where it is not.
+fn wrong(scenes: &[&Scene]) -> Vec<WrongScene> {
+    let wrong: Vec<&&Scene> = scenes.iter().filter(|scene| scene.code != "AC").collect();
+    if !is_nearly_right(wrong.len(), scenes.len()) {
+        return Vec::new();
+    }
+    // Of a program that crashed or was too slow nobody knows what it would have answered.
+    let answered = wrong.into_iter().filter(|scene| scene.code == "WA");
+    let answer = |scene: &Scene| format!("{} {} {}", scene.code, scene.right_steps, scene.summary);
+    answered
+        .map(|scene| WrongScene {
+            scene: scene.scene.clone(),
+            answer: Digest::of(answer(scene).as_bytes()).to_string(),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grader of another schema would make every grading a judge error.
+    #[test]
+    fn grades_are_read_as_the_grader_writes_them() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../schemas/grade.schema.json");
+        let schema: Value = serde_json::from_slice(&std::fs::read(file).expect("the schema")).expect("JSON");
+        assert_eq!(schema["properties"]["schema"]["const"], SCHEMA);
+        let text = schema.to_string();
+        for name in MEASURED.iter().chain(&["right_steps", "summary", "scene"]) {
+            assert!(text.contains(&format!("\"{name}\"")), "the schema has no {name}");
+        }
+    }
+
+    #[test]
+    fn what_was_measured_is_no_part_of_what_a_grade_says() {
+        let grade = |cpu: &str, right: u32| {
+            format!(
+                r#"{{"schema": 3, "grades": [{{"wall_seconds": {cpu}, "scenes": [{{"right_steps": {right},
+                "cpu_seconds": {cpu}, "memory_bytes": {right}}}], "points": 12.50}}]}}"#
+            )
+        };
+        let essence = |text: String| super::essence(text.as_bytes()).expect("JSON");
+        assert_eq!(essence(grade("1.5", 3)), essence(grade("0.25", 3)));
+        assert_ne!(essence(grade("1.5", 3)), essence(grade("1.5", 4)));
+        assert!(essence(grade("1", 3)).contains("12.5"));
+    }
+
+    #[test]
+    fn answers_are_told_of_submissions_that_are_nearly_right() {
+        let scene = |code: &str, right_steps| Scene {
+            scene: "a".to_owned(),
+            code: code.to_owned(),
+            summary: "at step 3".to_owned(),
+            right_steps,
+        };
+        let (right, one, same, other, slow) =
+            (scene("AC", 9), scene("WA", 2), scene("WA", 2), scene("WA", 3), scene("TLE", 2));
+        assert_eq!(wrong(&[&right, &right]), []);
+        let answer = |scenes: &[&Scene]| wrong(scenes).first().map(|wrong| wrong.answer.clone());
+        assert_eq!(answer(&[&right, &one]), answer(&[&right, &same]));
+        assert_ne!(answer(&[&right, &one]), answer(&[&right, &other]));
+        assert_eq!(answer(&[&right, &slow]), None);
+        assert_eq!(wrong(&[&one, &other, &right]), [], "two of three are not nearly right");
+        assert_eq!(wrong(&[&[&one, &other], &[&right; 18][..]].concat()).len(), 2, "two of twenty are");
+    }
+}

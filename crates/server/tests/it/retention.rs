@@ -1,0 +1,98 @@
+//! What is too old is not kept any longer, and nothing else goes away.
+use crate::support::{
+    engines::{Fresh, on_both_engines, run},
+    server::{Server, program},
+};
+use fosssim_server::{
+    retention,
+    store::{Digest, Store},
+    values,
+};
+use std::time::Duration;
+
+on_both_engines!(old_uploads_go_and_grades_stay);
+
+async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let (old, new) = (ada.submit("physics", &program("WA", 40)), ada.submit("physics", &program("AC", 100)));
+    for id in [old, new] {
+        ada.wait_for_grade("physics", id);
+    }
+    let waiting = ada.submit("physics", b"#!grade HANG 0\n");
+    let store = Store::folder(&server.folder.join("store")).expect("the store");
+    let give_up = async |days: u64| {
+        retention::give_up(&fresh.database, &store, Duration::from_secs(days * 86400), Duration::ZERO)
+            .await
+            .expect("done")
+    };
+    // Nothing is that old.
+    let found = give_up(1).await;
+    assert_eq!((found.submissions, found.artefacts), (0, 0), "what is named stays, however old the file");
+    let mut transaction = fresh.database.begin().await.expect("a transaction");
+    let statement = "UPDATE submission SET created_at = created_at - 172800000 WHERE id <> ?";
+    transaction.execute(statement, values![new]).await.expect("a statement");
+    transaction.commit().await.expect("commit");
+    let found = give_up(1).await;
+    assert_eq!(found.submissions, 1, "what is being graded stays");
+    // Reports that say the same of others lie in the store once, and stay.
+    assert!(found.artefacts >= 2, "the upload and its grade: {found:?}");
+    assert_eq!(give_up(1).await, retention::GivenUp::default(), "once");
+    // The grade stands, with its history; the bytes are gone, and that is said.
+    let path = |id: i64, rest: &str| format!("/api/v1/courses/physics/submissions/{id}{rest}");
+    let submission = ada.get(&path(old, "")).expect(200).json();
+    assert_eq!(submission["grade"]["points"], "40");
+    assert_eq!(submission["grade"]["files"], serde_json::json!([]));
+    assert!(ada.get(&path(old, "/history")).expect(200).text().contains("graded"));
+    let gone = ada.get(&path(old, "/upload")).expect(410);
+    assert!(gone.text().contains("urn:fosssim:removed"), "{}", gone.text());
+    ada.get(&path(old, "/files/report.txt")).expect(410);
+    assert!(ada.get(&format!("/c/physics/s/{old}")).expect(200).text().contains("not kept any longer"));
+    assert_eq!(ada.get(&path(new, "/upload")).expect(200).body, program("AC", 100));
+    ada.get(&path(new, "/files/report.txt")).expect(200);
+    ada.get(&path(waiting, "/upload")).expect(200);
+    assert!(!store.has(&Digest::of(&program("WA", 40))).await.expect("the store"));
+    // The same bytes handed in again are a submission like any other.
+    let again = ada.submit("physics", &program("WA", 40));
+    assert_eq!(ada.get(&path(again, "/upload")).expect(200).body, program("WA", 40));
+    // A regrade leaves out what can't be graded any more.
+    let regrade = admin.post_json("/api/v1/courses/physics/assignments/m1/regrades", r#"{"reason": "to see"}"#);
+    assert_eq!(regrade.expect(201).json()["submissions"], 3);
+    let audit = admin.get("/api/v1/audit").expect(200).text();
+    assert!(audit.contains("uploads and reports of 1 submissions are not kept"), "{audit}");
+}
+
+#[test]
+fn what_somebody_stores_meanwhile_is_not_lost() {
+    run(async {
+        let folder = tempfile::tempdir().expect("a folder");
+        let store = Store::folder(folder.path()).expect("a store");
+        let one = store.put(b"one".to_vec()).await.expect("stored").digest;
+        let two = store.put(b"two".to_vec()).await.expect("stored").digest;
+        let age = |name: &Digest, hours: u64| {
+            let text = name.as_str();
+            let place = folder.path().join("sha256").join(&text[..2]).join(&text[2..]);
+            let then = std::time::SystemTime::now() - Duration::from_secs(hours * 3600);
+            let file = std::fs::File::options().write(true).open(place).expect("the file");
+            file.set_modified(then).expect("a time");
+        };
+        age(&one, 48);
+        age(&two, 48);
+        // Stored once more it is young again, and its name may be on its way to the database.
+        store.put(b"two".to_vec()).await.expect("stored");
+        let day = Duration::from_secs(24 * 3600);
+        assert_eq!(store.give_up(day, |_| false).await.expect("done"), 1);
+        assert!(!store.has(&one).await.expect("the store") && store.has(&two).await.expect("the store"));
+        // What a server that died had put aside comes back when it is named.
+        age(&two, 48);
+        let text = two.as_str();
+        let aside = folder.path().join("aside").join(&text[..2]);
+        std::fs::create_dir_all(&aside).expect("a folder");
+        let place = folder.path().join("sha256").join(&text[..2]).join(&text[2..]);
+        std::fs::rename(place, aside.join(&text[2..])).expect("moved");
+        assert_eq!(store.give_up(day, |name| name == two.as_str()).await.expect("done"), 0);
+        assert_eq!(store.bytes(&two, 10).await.expect("the bytes"), b"two");
+    });
+}

@@ -1,0 +1,9 @@
+#![no_main]
+//! Fuzz target: see `archive` in `uploads.rs`.
+
+#[path = "../uploads.rs"]
+mod uploads;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let _ = uploads::archive(bytes);
+});

@@ -1,0 +1,47 @@
+//! What the fuzz target of the service does with its bytes; the service's tests replay the seeds, and what becomes of them when
+//! bytes change, through the same function.
+use fosssim_server::archive::{self, Limits};
+use std::{collections::BTreeSet, fs, path::Path};
+
+/// Small enough to be reached.
+const LIMITS: Limits = Limits { bytes: 1 << 16, entries: 64 };
+
+/// Looks through an archive that a stranger sent, and unpacks it. Whether it is accepted.
+pub fn archive(bytes: &[u8]) -> bool {
+    let place = tempfile::tempdir().expect("a folder");
+    let (file, outside, folder) =
+        (place.path().join("upload"), place.path().join("outside"), place.path().join("in/folder"));
+    fs::write(&file, bytes).expect("a file");
+    fs::write(&outside, "untouched").expect("a file");
+    fs::create_dir_all(&folder).expect("a folder");
+    let looked = archive::look_through(&file, LIMITS);
+    let unpacked = archive::unpack(&file, &folder, LIMITS);
+    assert_eq!(looked.is_ok(), unpacked.is_ok(), "what is looked through can be unpacked: {looked:?}, {unpacked:?}");
+    // Whatever became of it: nothing lies outside, nothing is a link, and no more came out than may.
+    assert_eq!(fs::read_to_string(&outside).expect("the file"), "untouched");
+    let beside: Vec<_> =
+        fs::read_dir(place.path()).expect("a folder").map(|entry| entry.expect("an entry").file_name()).collect();
+    assert_eq!(beside.len(), 3, "{beside:?}");
+    assert_eq!(fs::read_dir(place.path().join("in")).expect("a folder").count(), 1);
+    let (mut found, mut size) = (BTreeSet::new(), 0);
+    walk(&folder, &folder, &mut found, &mut size);
+    assert!(size <= LIMITS.bytes + (64 << 10), "{size} bytes");
+    let Ok(files) = looked else { return false };
+    let told: BTreeSet<String> = files.iter().map(|file| file.to_string_lossy().into_owned()).collect();
+    assert_eq!((told.len(), &told), (files.len(), &found), "told and unpacked are the same, each once");
+    true
+}
+
+fn walk(root: &Path, folder: &Path, found: &mut BTreeSet<String>, size: &mut u64) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let kind = entry.file_type().expect("a kind");
+        assert!(kind.is_file() || kind.is_dir(), "{}", entry.path().display());
+        if kind.is_dir() {
+            walk(root, &entry.path(), found, size);
+        } else {
+            *size += entry.metadata().expect("a file").len();
+            found.insert(entry.path().strip_prefix(root).expect("beneath").to_string_lossy().into_owned());
+        }
+    }
+}
