@@ -1,7 +1,7 @@
 //! The fuzzer's seeds, replayed as ordinary tests through the fuzz targets' own functions.
 use fosssim_oracle::{
     scene::original,
-    suite::{config, journal},
+    suite::{config, results},
 };
 use std::path::{Path, PathBuf};
 
@@ -63,7 +63,7 @@ fn journal_seeds_do_no_harm() {
     for (path, bytes) in seeds("journal") {
         eprintln!("{}", path.display());
         entries::journal(&bytes);
-        kept += usize::from(journal::read_line(&bytes).is_some());
+        kept += usize::from(results::read_line(&bytes).is_some());
     }
     assert!(kept > 1, "{kept} seeds keep a result");
 }

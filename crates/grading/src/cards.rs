@@ -1,6 +1,6 @@
 //! Cards: what a report shows of a wrong trace beyond its result. They are drawn while the trace is at hand and kept under the
 //! digest of what they say, so that the journal's result names them and the trace itself need not be kept.
-use super::{config::Hints, execute::SceneTask, grade::SceneResult};
+use super::{config::Hints, execute::SceneTask, result::SceneResult};
 use fosssim_evidence::Ruling;
 use fosssim_judge::{Outcome, Rules};
 use std::{
@@ -91,7 +91,7 @@ fn file(folder: &Path, name: &str) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Verdict;
+    use crate::{Verdict, result::Reason};
     use fosssim_judge::parity;
     use fosssim_model::scene::original;
 
@@ -101,7 +101,7 @@ mod tests {
         let scene = original::read(xml).expect("a scene").scene;
         let task = SceneTask { name: "a/b".to_owned(), xml: xml.to_vec(), scene, recording: None };
         let outcome = parity::judge(&task.scene, &[][..], &parity::Options::default(), &mut ());
-        let result = SceneResult::without_run("a/b", 0, Verdict::WrongAnswer, "wrong");
+        let result = SceneResult::without_run("a/b", 0, Verdict::WrongAnswer, Reason::Right);
         let judged = Judged {
             task: &task,
             result: &result,

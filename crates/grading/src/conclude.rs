@@ -4,21 +4,17 @@
 //! clean exit does not excuse a wrong trace.
 use super::{
     config::{Hints, RunLimits},
-    grade::SceneResult,
+    result::{BadTrace, Limit, Reached, Reason, SceneResult, Wrong},
     verdict::Verdict,
 };
 use fosssim_judge::{
-    Account, Kind, Outcome, Rules, Ruling, Stop, Unreadable,
+    Outcome, Rules, Ruling, Stop,
     fair::{self, Refusal},
-    share,
 };
 use fosssim_sandbox::{self as sandbox, Ended, Stream};
 
 /// What a report keeps of each of the program's streams.
 const KEPT_OUTPUT: usize = 4096;
-
-/// The exit code of shells and loaders that did not find what they were to run.
-const NOT_FOUND: i32 = 127;
 
 /// What is known of one run.
 #[derive(Debug, Clone, Copy)]
@@ -43,44 +39,24 @@ pub struct Run<'a> {
 #[must_use]
 pub fn conclude(run: &Run<'_>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
-    let (of_program, program_says) = verdict_of_program(&program.ended, judged, run.limits);
+    let of_program = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(judged, rules, run.trace_bytes);
-    let account = judged.account(rules.official());
     // A program that was stopped has a trace without end; saying so too would blame it twice.
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
-    let (verdict, summary) = if of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace) {
-        (of_program, program_says)
-    } else if of_trace >= of_program {
-        (of_trace, trace_says)
-    } else {
-        (of_program, program_says)
+    let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
+    let (verdict, reason) = match blames_program || of_program > of_trace {
+        true => (of_program, Reason::Program(reached(&program.ended, judged, run.limits))),
+        false => (of_trace, trace_says),
     };
-    let is_wrong = verdict == Verdict::WrongAnswer;
-    let summary = if hints == Hints::None && is_wrong { "the trace is wrong".to_owned() } else { summary };
-    let mut details = Vec::new();
-    if program.ended == Ended::Exited(NOT_FOUND) {
-        details.push(
-            "exit code 127 usually means that something was not found: the program is alone when it runs, and files \
-             that lie beside it are not there"
-                .to_owned(),
-        );
-    }
-    if hints > Hints::None {
-        details.extend(account.first_divergence.and_then(|first| hints.first_divergence(first)));
-        details.extend(counts(account));
-        if let Some(damage) = &judged.damage {
-            details.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.message));
-        }
-        if judged.trailing_bytes {
-            details.push("bytes follow the last record".to_owned());
-        }
-    }
+    let untold = hints == Hints::None && verdict == Verdict::WrongAnswer;
+    let reason = if untold { Reason::Wrong(Wrong::Untold) } else { reason };
     SceneResult {
         scene: run.scene.to_owned(),
         verdict,
-        summary,
+        reason,
+        ended: Some(program.ended.clone()),
         differs: fair::cause(judged),
-        details,
+        told: hints.tell(judged, rules),
         explanations: Vec::new(),
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
@@ -95,9 +71,9 @@ pub fn conclude(run: &Run<'_>) -> SceneResult {
 
 /// What the program's end alone says. Bytes behind the last record mean the same however many they are: a program that is
 /// stopped because of them ended when the judge had what it came for.
-fn verdict_of_program(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> (Verdict, String) {
+fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
-    let verdict = match ended {
+    match ended {
         Ended::Exited(0) => Verdict::Accepted,
         Ended::OutputLimit(Stream::Trace) if had_all => Verdict::Accepted,
         Ended::Cancelled => Verdict::NotRun,
@@ -107,89 +83,55 @@ fn verdict_of_program(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> (V
         Ended::MemoryLimit => Verdict::MemoryLimit,
         Ended::OutputLimit(_) | Ended::FolderLimit => Verdict::OutputLimit,
         Ended::ProcessLimit | Ended::Violation { .. } => Verdict::Violation,
-    };
-    let limit = match ended {
-        Ended::CpuLimit => format!(" ({} s){}", limits.cpu.as_secs_f64(), reached(judged)),
-        Ended::WallLimit => format!(" ({} s){}", limits.wall.as_secs_f64(), reached(judged)),
-        Ended::MemoryLimit => format!(" ({} MiB){}", limits.memory >> 20, reached(judged)),
-        _ => String::new(),
-    };
-    (verdict, format!("the program {ended}{limit}"))
-}
-
-/// How far the trace of a program that was stopped came.
-fn reached(judged: &Outcome) -> String {
-    match judged.steps_judged {
-        done if done == judged.steps => " after its last step".to_owned(),
-        done => format!(" at step {} of {}", done + 1, judged.steps),
     }
 }
 
-fn number(count: u64) -> String {
-    count.to_string()
+/// The limit that a program was stopped at, and how far its trace had come.
+fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Option<Reached> {
+    let limit = match ended {
+        Ended::CpuLimit => Limit::Time(limits.cpu),
+        Ended::WallLimit => Limit::Time(limits.wall),
+        Ended::MemoryLimit => Limit::Memory(limits.memory),
+        _ => return None,
+    };
+    Some(Reached { limit, steps: judged.steps_judged })
 }
 
 /// What the trace alone says.
-fn verdict_of_trace(judged: &Outcome, rules: Rules, trace_bytes: u64) -> (Verdict, String) {
+fn verdict_of_trace(judged: &Outcome, rules: Rules, trace_bytes: u64) -> (Verdict, Reason) {
     match (&judged.stop, judged.ruling(rules.official())) {
-        (Some(Stop::Trace { .. }), _) if trace_bytes == 0 => {
-            (Verdict::NoOutput, "the program wrote no trace; it has to write the file that -o names".to_owned())
-        }
+        (Some(Stop::Trace { .. }), _) if trace_bytes == 0 => (Verdict::NoOutput, Reason::NoTrace),
         (Some(Stop::Trace { frame, step, cause, offset, message }), _) => {
-            let what = match cause {
-                Unreadable::State | Unreadable::Impulses => "the trace ends too early",
-                Unreadable::Memory => "the trace holds a count that it can not satisfy",
-                Unreadable::Limit => "the trace is beyond a limit of this grader",
-                Unreadable::Io => "the trace could not be read",
-            };
-            (Verdict::BadTrace, format!("{what}: frame {frame} (step {step}), byte {offset}: {message}"))
+            let (frame, step, cause, offset, damage) = (*frame, *step, *cause, *offset, message.clone());
+            let unreadable = BadTrace::Unreadable { frame, step, cause, offset, damage };
+            (Verdict::BadTrace, Reason::Trace(unreadable))
         }
-        (Some(Stop::Step(error)), _) => (Verdict::BadTrace, format!("the trace's own states lead nowhere: {error}")),
-        (None, Ruling::Accepted) => (Verdict::Accepted, share::right(judged.steps, number)),
-        (None, Ruling::WrongAnswer) => (Verdict::WrongAnswer, wrong(judged, rules)),
-        (None, Ruling::BadTrace) => (Verdict::BadTrace, refusal(judged)),
+        (Some(Stop::Step(error)), _) => (Verdict::BadTrace, Reason::Trace(BadTrace::NoResult(*error))),
+        (None, Ruling::Accepted) => (Verdict::Accepted, Reason::Right),
+        (None, Ruling::WrongAnswer) => (Verdict::WrongAnswer, Reason::Wrong(wrong(judged, rules))),
+        (None, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(refusal(judged))),
     }
 }
 
-fn wrong(judged: &Outcome, rules: Rules) -> String {
-    let (account, steps) = (judged.account(rules.official()), judged.steps);
+fn wrong(judged: &Outcome, rules: Rules) -> Wrong {
+    let account = judged.account(rules.official());
     match account.first_divergence {
-        Some(first) if first.step == 0 && account.wrong_steps == 0 => {
-            format!("the first record is wrong: {}", first.kind())
-        }
-        Some(first) => {
-            let share = share::wrong(account.wrong_steps, steps, number);
-            format!("{share}, first step {}: {}", first.step, first.kind())
-        }
-        None if judged.damaged_steps > 0 => "the trace is damaged".to_owned(),
-        None => "small errors add up beyond the tolerance".to_owned(),
+        Some(first) if first.step == 0 && account.wrong_steps == 0 => Wrong::FirstRecord(first.kind()),
+        Some(first) => Wrong::Steps { wrong: account.wrong_steps, first: first.step, kind: first.kind() },
+        None if judged.damaged_steps > 0 => Wrong::Damaged,
+        None => Wrong::SmallErrors,
     }
 }
 
 /// Why the fair rules refuse a trace that the original reads to its end.
-fn refusal(judged: &Outcome) -> String {
+fn refusal(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
-        Some(Refusal::Damaged) => "the trace is damaged".to_owned(),
-        Some(Refusal::TrailingBytes) => "bytes follow the trace's last record".to_owned(),
-        Some(Refusal::Stopped) => "the trace's own polynomials lead into a search without end".to_owned(),
-        Some(Refusal::Undecided) => {
-            "most of the trace's decisions are not the reference's, though round-off may flip them".to_owned()
-        }
-        None => "the trace was not judged to its end".to_owned(),
+        Some(Refusal::Damaged) => BadTrace::Damaged,
+        Some(Refusal::TrailingBytes) => BadTrace::TrailingBytes,
+        Some(Refusal::Stopped) => BadTrace::NoEnd,
+        Some(Refusal::Undecided) => BadTrace::Undecided,
+        None => BadTrace::Unfinished,
     }
-}
-
-/// `12 wrong coefficients, 3 missed collisions`, when there is more than the first finding tells.
-fn counts(account: Account<'_>) -> Option<String> {
-    let counts = account.counts;
-    // What is found in damaged records alone has no example, and says nothing about the program.
-    let has_example = |kind: Kind| account.examples.iter().any(|example| example.kind() == kind);
-    let list: Vec<String> = Kind::ALL
-        .into_iter()
-        .filter(|&kind| counts.get(kind) > 0 && has_example(kind))
-        .map(|kind| format!("{kind}: {}", counts.get(kind)))
-        .collect();
-    (counts.total() > 1 && !list.is_empty()).then(|| format!("counts: {}", list.join(", ")))
 }
 
 /// The first bytes of a stream as text; what is not UTF-8 is replaced.

@@ -5,7 +5,7 @@
 use super::shape;
 pub use super::{hints::Hints, patience::Patience};
 use fosssim_judge::Rules;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::{ops::Range, time::Duration};
 use toml::Spanned;
 
@@ -114,7 +114,7 @@ pub enum Credit {
 }
 
 /// Who sees a group's results, in Gradescope's words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
     /// Everybody, at once.
@@ -137,12 +137,6 @@ impl Visibility {
             Self::AfterDueDate => "after_due_date",
             Self::AfterPublished => "after_published",
         }
-    }
-
-    /// The visibility with this key.
-    #[must_use]
-    pub fn from_key(key: &str) -> Option<Self> {
-        [Self::Visible, Self::Hidden, Self::AfterDueDate, Self::AfterPublished].into_iter().find(|one| one.key() == key)
     }
 }
 

@@ -3,9 +3,9 @@ use super::{
     cards::{Cards, Judged},
     conclude::{Run, conclude},
     config::{Hints, RunLimits},
-    fault::{self, Stage},
-    grade::SceneResult,
+    fault,
     guard::{Fault, guarded},
+    result::{Failure, Reason, SceneResult, Stage},
     staging::Staged,
     temporary::Temporary,
     verdict::Verdict,
@@ -85,16 +85,19 @@ impl Runner<'_> {
     /// ours is tried once more, then it is the verdict. `on_step` hears the number of every judged step.
     #[must_use]
     pub fn grade(&self, program: &Staged, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
-        let without_run = |verdict, why: String| SceneResult::without_run(&task.name, task.scene.steps(), verdict, why);
+        let without_run = |verdict, why| SceneResult::without_run(&task.name, task.scene.steps(), verdict, why);
         let mut attempt = 1;
         loop {
             if self.cancellation.is_cancelled() {
-                return without_run(Verdict::NotRun, "grading was stopped".to_owned());
+                return without_run(Verdict::NotRun, Reason::Stopped);
             }
             match self.attempt(program, task, on_step) {
                 Ok(result) => return result,
                 Err(_) if attempt < ATTEMPTS => attempt += 1,
-                Err(error) => return without_run(Verdict::JudgeError, error.to_string()),
+                Err(error) => {
+                    let failure = Failure::Machine(error.to_string());
+                    return without_run(Verdict::JudgeError, Reason::Failed(failure));
+                }
             }
         }
     }

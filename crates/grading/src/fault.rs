@@ -1,37 +1,23 @@
 //! What becomes of a scene on which the grader itself failed: a judge error, and its trace put aside for whoever mends it.
-use super::{execute::SceneTask, grade::SceneResult, guard::Fault, verdict::Verdict};
+use super::{
+    execute::SceneTask,
+    guard::Fault,
+    result::{Failure, KeptTrace, Reason, SceneResult, Stage},
+    verdict::Verdict,
+};
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
 
-/// What the grader was doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stage {
-    Judging,
-    Explaining,
-    Reporting,
-}
-
-impl Stage {
-    const fn words(self) -> &'static str {
-        match self {
-            Self::Judging => "judging",
-            Self::Explaining => "explaining",
-            Self::Reporting => "reporting",
-        }
-    }
-}
-
 /// The result of a scene on which the grader failed, with the beginning of its trace.
 pub(super) fn result(task: &SceneTask, folder: &Path, stage: Stage, fault: &Fault, trace: &[u8]) -> SceneResult {
-    let summary = format!("the grader failed while {} this scene: {fault}", stage.words());
-    let mut result = SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, summary);
-    result.details.push(match keep(folder, task, trace) {
-        Ok(path) => format!("the trace is kept in {}; please report this with the scene and the trace", path.display()),
-        Err(error) => format!("the trace could not be kept in {}: {error}", folder.display()),
-    });
-    result
+    let kept = match keep(folder, task, trace) {
+        Ok(path) => KeptTrace::In(path),
+        Err(error) => KeptTrace::Lost { folder: folder.to_owned(), error: error.to_string() },
+    };
+    let failure = Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) };
+    SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, Reason::Failed(failure))
 }
 
 /// Writes a trace into the folder under the name of its scene and its own digest.
@@ -54,7 +40,8 @@ pub(super) fn write(path: &Path, trace: &[u8]) -> io::Result<()> {
 #[cfg(test)]
 pub(super) fn injected(stage: Stage, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    assert!(name != format!("fault-while-{}", stage.words()), "a fault of the grader's own");
+    let word = format!("{stage:?}").to_lowercase();
+    assert!(name != format!("fault-while-{word}"), "a fault of the grader's own");
 }
 
 #[cfg(not(test))]

@@ -1,17 +1,24 @@
 //! The grade: what one submission got, scene by scene.
-use super::{config::Visibility, verdict::Verdict};
-use fosssim_judge::{Rules, fair::Cause};
+use super::{
+    config::Visibility,
+    form,
+    result::{BuildEnd, SceneResult},
+    verdict::Verdict,
+};
+use fosssim_judge::Rules;
 use fosssim_mistakes::diagnose::{Explanation, several};
+use serde::{Deserialize, Serialize};
 use std::{ops::Deref, time::Duration};
 
 /// The grade of one submission on one suite.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Grade {
     /// The submission's name: its file or folder name.
     pub submission: String,
     /// The suite's name.
     pub suite: String,
     /// The rule books that were asked; verdicts and points are by the official one.
+    #[serde(with = "form::rules")]
     pub rules: Rules,
     /// The worst verdict of all scenes.
     pub verdict: Verdict,
@@ -53,29 +60,17 @@ impl Grade {
         self.count(Verdict::NotRun) > 0
     }
 
-    /// What is wrong with the submission itself, and is said of each of its scenes: no program that can be run is in it, or
-    /// its sources do not build.
+    /// What is wrong with the submission itself, and the reason of each of its scenes: no program that can be run is in it,
+    /// or its sources do not build.
     #[must_use]
-    pub fn unfit(&self) -> Option<&str> {
+    pub fn unfit(&self) -> Option<Unfit<'_>> {
         let first = self.scenes().next()?;
         let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError);
-        let same = |scene: &SceneGrade| scene.verdict == first.verdict && scene.summary == first.summary;
-        let build = self.build.as_ref().filter(|build| !build.succeeded).map(|build| build.end.as_str());
-        (is_unfit && self.scenes().all(same)).then(|| build.unwrap_or(&first.summary))
-    }
-
-    /// In one sentence why not everything is accepted; nothing where it is.
-    #[must_use]
-    pub fn reason(&self) -> Option<String> {
-        if let Some(unfit) = self.unfit() {
-            return Some(unfit.to_owned());
-        }
-        let wrong = |scene: &&SceneGrade| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun);
-        let Some(first) = self.scenes().find(wrong) else {
-            return self.is_incomplete().then(|| format!("{} scenes were not run", self.count(Verdict::NotRun)));
-        };
-        let (all, accepted) = (self.scenes().count(), self.count(Verdict::Accepted));
-        Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, first.summary))
+        let why = |scene: &SceneGrade| (scene.verdict, scene.reason.clone(), scene.ended.clone());
+        let same = |scene: &SceneGrade| why(scene) == why(first);
+        let build = self.build.as_ref().filter(|build| !build.end.is_success());
+        (is_unfit && self.scenes().all(same))
+            .then(|| build.map_or(Unfit::Scene(&first.result), |build| Unfit::Build(&build.end)))
     }
 
     /// How many of the results were taken from an earlier run.
@@ -123,18 +118,25 @@ impl Grade {
 }
 
 /// The build step's end.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Build {
-    /// Whether it succeeded.
-    pub succeeded: bool,
-    /// How it ended, in words.
-    pub end: String,
+    /// How it ended.
+    pub end: BuildEnd,
     /// The compiler's output, capped; raw text that a report has to escape.
     pub output: String,
 }
 
+/// What is wrong with a submission itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unfit<'a> {
+    /// Its build.
+    Build(&'a BuildEnd),
+    /// What its first scene says, and all others with it.
+    Scene(&'a SceneResult),
+}
+
 /// One group of scenes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GroupGrade {
     /// Its name.
     pub name: String,
@@ -151,7 +153,7 @@ pub struct GroupGrade {
 }
 
 /// One scene with its points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneGrade {
     /// What happened.
     pub result: SceneResult,
@@ -168,61 +170,5 @@ impl Deref for SceneGrade {
 
     fn deref(&self) -> &SceneResult {
         &self.result
-    }
-}
-
-/// What happened on one scene: everything but its points, which follow from the suite.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SceneResult {
-    /// The scene's name, `Group/name`.
-    pub scene: String,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// One sentence that says what happened.
-    pub summary: String,
-    /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
-    pub differs: Option<Cause>,
-    /// More lines of explanation: the first divergence, counts, hints. Plain text.
-    pub details: Vec<String>,
-    /// Likely mistakes, the likeliest first; no more of them than the suite's hints let through.
-    pub explanations: Vec<Explanation>,
-    /// Steps without a finding, of all steps.
-    pub right_steps: u32,
-    /// Steps of the scene.
-    pub steps: u32,
-    /// Processor time of the program.
-    pub cpu: Duration,
-    /// Wall time of the run.
-    pub wall: Duration,
-    /// Peak memory of the program in bytes, when known.
-    pub memory: Option<u64>,
-    /// What the program wrote to its standard output, capped; raw text that a report has to escape.
-    pub stdout: String,
-    /// What the program wrote to its standard error, capped; raw text that a report has to escape.
-    pub stderr: String,
-    /// The name of the card that was drawn of its trace ([`cards`](crate::cards)).
-    pub card: Option<String>,
-}
-
-impl SceneResult {
-    /// A scene without a run, with the reason.
-    #[must_use]
-    pub fn without_run(scene: &str, steps: u32, verdict: Verdict, summary: impl Into<String>) -> Self {
-        Self {
-            scene: scene.to_owned(),
-            verdict,
-            summary: summary.into(),
-            differs: None,
-            details: Vec::new(),
-            explanations: Vec::new(),
-            right_steps: 0,
-            steps,
-            cpu: Duration::ZERO,
-            wall: Duration::ZERO,
-            memory: None,
-            stdout: String::new(),
-            stderr: String::new(),
-            card: None,
-        }
     }
 }

@@ -1,7 +1,8 @@
 //! How much a report tells a student, and what of findings and explanations that lets through.
 //!
 //! What is not to be told is cut here, before a report or the journal sees it, so that no format can let it out.
-use fosssim_judge::{Detail, Finding, PairWords};
+use super::told::{Account, Place, Told, ToldFinding};
+use fosssim_judge::{Book, Detail, Finding, Outcome, Rules};
 use fosssim_mistakes::diagnose::Explanation;
 use serde::Deserialize;
 
@@ -50,50 +51,74 @@ impl Hints {
         }
     }
 
-    /// What of the first divergence may be told, as a line.
+    /// What of a judged trace may be told: nothing at [`Hints::None`]; where findings are and of what kind below
+    /// [`Hints::Full`]; there everything.
     #[must_use]
-    pub fn first_divergence(self, first: &Finding) -> Option<String> {
+    pub fn tell(self, judged: &Outcome, rules: Rules) -> Option<Told> {
+        (self > Self::None).then(|| Told {
+            official: rules.official(),
+            parity: self.account(judged, Book::Parity),
+            fair: judged.fair.is_some().then(|| self.account(judged, Book::Fair)),
+            residuals: (self == Self::Full).then_some(judged.residuals),
+            damage: judged.damage.clone(),
+            trailing_bytes: judged.trailing_bytes,
+        })
+    }
+
+    fn account(self, judged: &Outcome, book: Book) -> Account {
+        let found = judged.account(book);
+        Account {
+            ruling: judged.ruling(book),
+            wrong_steps: found.wrong_steps,
+            counts: *found.counts,
+            first_divergence: found.first_divergence.and_then(|first| self.finding(first)),
+            examples: found.examples.iter().filter_map(|example| self.finding(example)).collect(),
+        }
+    }
+
+    /// What of a finding may be told: nothing at [`Hints::None`], no values below [`Hints::Full`].
+    #[must_use]
+    pub const fn finding(self, finding: &Finding) -> Option<ToldFinding> {
         match self {
             Self::None => None,
             Self::Where | Self::What => {
-                Some(format!("first divergence: step {}{}: {}", first.step, place(&first.detail), first.kind()))
+                Some(ToldFinding::Place { step: finding.step, kind: finding.kind(), place: place(&finding.detail) })
             }
-            Self::Full => Some(format!("first divergence: {first}")),
+            Self::Full => Some(ToldFinding::Full(*finding)),
         }
     }
 }
 
-/// Where in its step a finding lies, with a comma in front.
-fn place(detail: &Detail) -> String {
+/// Where in its step a finding lies.
+const fn place(detail: &Detail) -> Place {
     match detail {
         Detail::MissedCollision { expected }
         | Detail::WrongNormal { expected, .. }
-        | Detail::ContactTime { expected, .. } => {
-            format!(", {}", PairWords(expected.pair))
-        }
+        | Detail::ContactTime { expected, .. } => Place::Pair(expected.pair),
         Detail::PolynomialDegree { place, .. }
         | Detail::VanishingPolynomial { place, .. }
         | Detail::Coefficient { place, .. }
         | Detail::PassPositions { place }
         | Detail::TrimmedDecision { place, .. }
         | Detail::TrimmedTime { place, .. }
-        | Detail::MixedForms { place } => format!(", {place}"),
+        | Detail::MixedForms { place } => Place::Polynomial(*place),
         Detail::Position { particle, .. }
         | Detail::Velocity { particle, .. }
-        | Detail::BeyondReach { particle, .. } => format!(", particle {particle}"),
+        | Detail::BeyondReach { particle, .. } => Place::Particle(*particle),
         Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
-            format!(", objects {} and {}", actual.first, actual.second)
+            Place::Objects(actual.first, actual.second)
         }
         Detail::PolynomialCount { .. }
         | Detail::PassCount { .. }
         | Detail::RecordsDiffer { .. }
-        | Detail::ImpossibleLog => String::new(),
+        | Detail::ImpossibleLog => Place::Step,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fosssim_judge::parity;
     use fosssim_mistakes::{
         diagnose::{Example, explain, formula_in},
         student::{self, CATALOGUE, Kind, Student},
@@ -127,11 +152,37 @@ mod tests {
     #[test]
     fn values_are_told_in_full_only() {
         let detail = Detail::Position { particle: 2, expected: [1.5, 0.0], actual: [1.25, 0.0], residual: 0.25 };
-        let line = |hints: Hints| hints.first_divergence(&Finding { step: 4, frame: 8, detail });
-        assert_eq!(line(Hints::None), None);
-        assert_eq!(line(Hints::Where).as_deref(), Some("first divergence: step 4, particle 2: wrong position"));
-        assert_eq!(line(Hints::What), line(Hints::Where));
-        assert!(line(Hints::Full).expect("a line").contains("1.25"));
+        let finding = Finding { step: 4, frame: 8, detail };
+        let place = ToldFinding::Place { step: 4, kind: finding.kind(), place: Place::Particle(2) };
+        assert_eq!(Hints::None.finding(&finding), None);
+        assert_eq!(Hints::Where.finding(&finding), Some(place.clone()));
+        assert_eq!(Hints::What.finding(&finding), Some(place));
+        assert_eq!(Hints::Full.finding(&finding), Some(ToldFinding::Full(finding)));
+    }
+
+    #[test]
+    fn what_is_told_of_a_trace_grows_with_the_hints_and_holds_no_value_below_full() {
+        let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
+        let row = CATALOGUE.iter().find(|row| row.kind == Kind::Wrong).expect("a mistake");
+        let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+        let options = parity::Options { fair: true, ..parity::Options::default() };
+        let judged = parity::judge(&scene, &trace[..], &options, &mut ());
+        assert_eq!(Hints::None.tell(&judged, Rules::Both), None);
+        let told = |hints: Hints| hints.tell(&judged, Rules::Both).expect("something");
+        assert_eq!(told(Hints::Where), told(Hints::What));
+        let (part, full) = (told(Hints::Where), told(Hints::Full));
+        assert!(part.residuals.is_none() && full.residuals.is_some());
+        for (part, full) in
+            [(&part.parity, &full.parity), (part.fair.as_ref().expect("asked"), full.fair.as_ref().expect("asked"))]
+        {
+            assert!(part.examples.iter().all(|example| matches!(example, ToldFinding::Place { .. })));
+            assert_eq!(part.examples.len(), full.examples.len());
+            assert_eq!((&part.counts, part.wrong_steps, part.ruling), (&full.counts, full.wrong_steps, full.ruling));
+        }
+        // The book whose verdict counts speaks first.
+        assert_eq!(told(Hints::Full).account(), &full.parity);
+        let fair = Hints::Full.tell(&judged, Rules::Fair).expect("something");
+        assert_eq!(fair.account(), full.fair.as_ref().expect("asked"));
     }
 
     /// An edge that turns and two discs that meet it and each other, above a slanted half-plane.

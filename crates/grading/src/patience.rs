@@ -2,7 +2,11 @@
 //!
 //! Pure functions of what is known so far, in the suite's order. More knowledge can only move the end forward, so what is
 //! decided while scenes still run holds, and at the end the same scenes are left out whatever the number of jobs.
-use super::{execute::SceneTask, grade::SceneResult, verdict::Verdict};
+use super::{
+    execute::SceneTask,
+    result::{LeftOut, Reason, SceneResult},
+    verdict::Verdict,
+};
 use std::time::Duration;
 
 /// How long a submission is borne with.
@@ -20,37 +24,14 @@ impl Default for Patience {
     }
 }
 
-/// Why the rest is not run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Reason {
-    /// So many scenes in a row ran out of time.
-    TimeOuts(u32),
-    /// The submission has used up its time.
-    Total(Duration),
-    /// A scene is not accepted, and somebody has asked to stop there.
-    FailFast,
-}
-
-impl Reason {
-    /// The result of a scene that is left out for this reason. The first two are the submission's own doing, so that such a
-    /// scene counts as out of time.
-    pub(super) fn result(self, task: &SceneTask) -> SceneResult {
-        let (verdict, why) = match self {
-            Self::TimeOuts(1) => (Verdict::TimeLimit, "not run: the scene before it ran out of time".to_owned()),
-            Self::TimeOuts(many) => {
-                (Verdict::TimeLimit, format!("not run: {many} scenes in a row before it ran out of time"))
-            }
-            Self::Total(total) => {
-                let seconds = total.as_secs_f64();
-                (
-                    Verdict::TimeLimit,
-                    format!("not run: the scenes before it took {seconds} s, all that a submission has"),
-                )
-            }
-            Self::FailFast => (Verdict::NotRun, "not run: a scene before it is not accepted (--fail-fast)".to_owned()),
-        };
-        SceneResult::without_run(&task.name, task.scene.steps(), verdict, why)
-    }
+/// The result of a scene that is left out. All but the last reason are the submission's own doing, so that such a scene
+/// counts as out of time.
+pub(super) fn left_out(task: &SceneTask, why: LeftOut) -> SceneResult {
+    let verdict = match why {
+        LeftOut::TimeOuts(_) | LeftOut::Total(_) => Verdict::TimeLimit,
+        LeftOut::FailFast => Verdict::NotRun,
+    };
+    SceneResult::without_run(&task.name, task.scene.steps(), verdict, Reason::LeftOut(why))
 }
 
 /// The first scene that is not run, and why. `known` has the verdict and the wall time of every scene that is done.
@@ -58,11 +39,11 @@ pub(super) fn end(
     patience: &Patience,
     fail_fast: bool,
     known: &[Option<(Verdict, Duration)>],
-) -> Option<(usize, Reason)> {
+) -> Option<(usize, LeftOut)> {
     let (mut late, mut total) = (0, Duration::ZERO);
     for (number, known) in known.iter().enumerate() {
         if total >= patience.total {
-            return Some((number, Reason::Total(patience.total)));
+            return Some((number, LeftOut::Total(patience.total)));
         }
         let Some((verdict, wall)) = *known else {
             late = 0;
@@ -71,10 +52,10 @@ pub(super) fn end(
         total += wall;
         late = if verdict == Verdict::TimeLimit { late + 1 } else { 0 };
         if late == patience.time_outs && late > 0 {
-            return Some((number + 1, Reason::TimeOuts(late)));
+            return Some((number + 1, LeftOut::TimeOuts(late)));
         }
         if fail_fast && !matches!(verdict, Verdict::Accepted | Verdict::NotRun) {
-            return Some((number + 1, Reason::FailFast));
+            return Some((number + 1, LeftOut::FailFast));
         }
     }
     None
@@ -92,28 +73,28 @@ mod tests {
     #[test]
     fn scenes_in_a_row_that_run_out_of_time_are_the_end() {
         let end = |known: &[_]| end(&PATIENCE, false, known);
-        assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, Reason::TimeOuts(3))));
+        assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, LeftOut::TimeOuts(3))));
         assert_eq!(end(&[LATE, LATE, FINE, LATE]), None);
         // What is not known yet is no link of the chain, and the end can only move forward.
-        assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, Reason::TimeOuts(3))));
-        assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, Reason::TimeOuts(3))));
+        assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, LeftOut::TimeOuts(3))));
+        assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, LeftOut::TimeOuts(3))));
         assert_eq!(super::end(&Patience { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
     }
 
     #[test]
     fn the_time_of_all_scenes_together_is_limited() {
         assert_eq!(end(&PATIENCE, false, &[FINE; 5]), None);
-        assert_eq!(end(&PATIENCE, false, &[FINE; 8]), Some((5, Reason::Total(PATIENCE.total))));
+        assert_eq!(end(&PATIENCE, false, &[FINE; 8]), Some((5, LeftOut::Total(PATIENCE.total))));
         assert_eq!(
             end(&PATIENCE, false, &[FINE, None, FINE, FINE, FINE, FINE, None]),
-            Some((6, Reason::Total(PATIENCE.total)))
+            Some((6, LeftOut::Total(PATIENCE.total)))
         );
     }
 
     #[test]
     fn the_first_scene_that_is_not_accepted_is_the_end_when_asked_for() {
-        assert_eq!(end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, Reason::FailFast)));
-        assert_eq!(end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, Reason::FailFast)));
+        assert_eq!(end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, LeftOut::FailFast)));
+        assert_eq!(end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, LeftOut::FailFast)));
         assert_eq!(end(&PATIENCE, false, &[FINE, WRONG, WRONG]), None);
     }
 }

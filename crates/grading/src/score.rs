@@ -1,7 +1,8 @@
 //! From verdicts to points.
 use super::{
     config::{Credit, Visibility},
-    grade::{GroupGrade, SceneGrade, SceneResult},
+    grade::{GroupGrade, SceneGrade},
+    result::SceneResult,
     verdict::Verdict,
 };
 
@@ -67,9 +68,10 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::result::Reason;
 
     fn scene(verdict: Verdict, right_steps: u32) -> (SceneResult, bool) {
-        (SceneResult { right_steps, ..SceneResult::without_run("a/b", 10, verdict, "") }, false)
+        (SceneResult { right_steps, ..SceneResult::without_run("a/b", 10, verdict, Reason::Right) }, false)
     }
 
     fn points(credit: Credit, scenes: Vec<(SceneResult, bool)>) -> f64 {

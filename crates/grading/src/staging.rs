@@ -4,7 +4,14 @@
 //! by the open file: who may write in that folder can exchange a name, not what was opened. What can't be copied for what
 //! it is, or for who may read it, is the submission's own fault and not the grader's.
 //! Sources are built in a copy of their folder, in the sandbox, so that a build changes nothing of the submission.
-use super::{config::BuildStep, execute::Cancellation, grade::Build, temporary::Temporary, upload};
+use super::{
+    config::BuildStep,
+    execute::Cancellation,
+    grade::Build,
+    result::{BuildEnd, Unusable},
+    temporary::Temporary,
+    upload,
+};
 use fosssim_sandbox::{
     Backend, Ended, Identity, Job, Limits, Policy, SandboxError, StartProblem,
     collect::{self, CollectError, Entry, Folder},
@@ -39,7 +46,7 @@ pub struct Staged {
     /// How it was built.
     pub build: Option<Build>,
     /// Why the submission itself can't be run: its own fault.
-    pub refused: Option<String>,
+    pub refused: Option<Unusable>,
     /// Which file the copy is.
     pub(super) identity: Option<Identity>,
     _folder: Option<Temporary>,
@@ -102,19 +109,19 @@ fn unreadable(name: &Path, error: io::Error) -> CopyError {
 /// # Errors
 /// When the file can't be read for a fault of the machine, or the copy can't be written.
 pub fn program(path: &Path) -> Result<Staged, StagingError> {
-    let could_not_start = |problem: StartProblem| format!("the program {}", Ended::CouldNotStart(problem));
+    let refused = |why: Unusable| Ok(Staged::refused(path, why));
     match collect::open_file(path, true) {
         Ok((file, _)) => copied(file, path),
         Err(CollectError::NotRegular { what: "a folder", .. }) => {
-            Ok(Staged::refused(path, could_not_start(StartProblem::IsFolder)))
+            refused(Unusable::CouldNotStart(StartProblem::IsFolder))
         }
-        Err(CollectError::NotRegular { .. }) => Ok(Staged::refused(path, could_not_start(StartProblem::NotAFile))),
-        Err(CollectError::Missing { .. }) => Ok(Staged::refused(path, could_not_start(StartProblem::NotFound))),
+        Err(CollectError::NotRegular { .. }) => refused(Unusable::CouldNotStart(StartProblem::NotAFile)),
+        Err(CollectError::Missing { .. }) => refused(Unusable::CouldNotStart(StartProblem::NotFound)),
         Err(CollectError::System { source, .. }) => match unreadable(path, source) {
-            CopyError::Submission(why) => Ok(Staged::refused(path, format!("the program can't be used: {why}"))),
+            CopyError::Submission(why) => refused(Unusable::Unreadable(why)),
             CopyError::Ours(error) => Err(error),
         },
-        Err(error) => Ok(Staged::refused(path, format!("the program can't be used: {error}"))),
+        Err(error) => refused(Unusable::Unreadable(error.to_string())),
     }
 }
 
@@ -133,7 +140,7 @@ pub fn program_in(folder: &Path, name: &str) -> Result<Staged, StagingError> {
         {
             Err(at(&path)(source))
         }
-        Err(error) => Ok(Staged::refused(&path, format!("the program can't be used: {error}"))),
+        Err(error) => Ok(Staged::refused(&path, Unusable::Unreadable(error.to_string()))),
     }
 }
 
@@ -160,7 +167,7 @@ impl Staged {
         Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
     }
 
-    fn refused(path: &Path, why: String) -> Self {
+    fn refused(path: &Path, why: Unusable) -> Self {
         Self { refused: Some(why), ..Self::nothing(path) }
     }
 }
@@ -174,13 +181,12 @@ fn copied(file: File, path: &Path) -> Result<Staged, StagingError> {
     let digest = match copy_file(file, path, &copy, &mut room) {
         Ok(digest) => digest,
         Err(CopyError::Submission(why)) => {
-            return Ok(Staged::refused(path, format!("the program can't be used: {why}")));
+            return Ok(Staged::refused(path, Unusable::Unreadable(why)));
         }
         Err(CopyError::Ours(error)) => return Err(error),
     };
     if is_own(LARGEST_FOLDER - room, &digest, (metadata.dev(), metadata.ino())) {
-        let why = Ended::CouldNotStart(StartProblem::GradersOwn);
-        return Ok(Staged::refused(path, format!("the program {why}")));
+        return Ok(Staged::refused(path, Unusable::CouldNotStart(StartProblem::GradersOwn)));
     }
     let identity = Identity::of(&copy);
     Ok(Staged { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
@@ -199,13 +205,13 @@ pub fn build(
 ) -> Result<Staged, StagingError> {
     let folder = Temporary::make("build").map_err(at(&std::env::temp_dir()))?;
     let copy = folder.path().join("submission");
-    let failed = |end: String, output: String| {
-        let build = Some(Build { succeeded: false, end, output });
+    let failed = |end: BuildEnd, output: String| {
+        let build = Some(Build { end, output });
         Staged { build, ..Staged::nothing(&sources.join(&step.program)) }
     };
     match copy_sources(sources, &copy) {
         Err(CopyError::Submission(why)) => {
-            return Ok(failed(format!("the submission can't be built: {why}"), String::new()));
+            return Ok(failed(BuildEnd::Sources(why), String::new()));
         }
         Err(CopyError::Ours(error)) => return Err(error),
         Ok(()) => {}
@@ -217,7 +223,7 @@ pub fn build(
         Some(tool) => tool,
         // A script of the submission's own that is missing is the submission's fault.
         None if command.contains('/') => {
-            return Ok(failed(format!("the submission holds no {command}, which builds it"), String::new()));
+            return Ok(failed(BuildEnd::NoScript(command.clone()), String::new()));
         }
         None => return Err(StagingError::NoCommand { command: command.clone() }),
     };
@@ -249,17 +255,17 @@ pub fn build(
         output.push_str("\n[cut short]");
     }
     if outcome.ended != Ended::Exited(0) {
-        return Ok(failed(format!("the build {}", outcome.ended), output));
+        return Ok(failed(BuildEnd::Ended(outcome.ended), output));
     }
     // The build could have left a link to anything where the program should be.
     let made = made.map_or_else(|| Folder::open(&copy), Ok).map_err(at(&copy))?;
     match made.regular_file(&step.program, LARGEST_FOLDER) {
         Ok((file, _)) => {
-            let build = Some(Build { succeeded: true, end: "the build succeeded".to_owned(), output });
+            let build = Some(Build { end: BuildEnd::Made, output });
             Ok(Staged { build, ..copied(file, &copy.join(&step.program))? })
         }
-        Err(CollectError::Missing { .. }) => Ok(failed(format!("the build made no {}", step.program), output)),
-        Err(error) => Ok(failed(format!("what the build made can't be used: {error}"), output)),
+        Err(CollectError::Missing { .. }) => Ok(failed(BuildEnd::MadeNo(step.program.clone()), output)),
+        Err(error) => Ok(failed(BuildEnd::Unusable(error.to_string()), output)),
     }
 }
 
@@ -405,7 +411,12 @@ mod tests {
             let staged = program(&sources.join(name)).unwrap();
             assert!(staged.refused.is_some() && digest(&sources.join(name)).is_none(), "{name}");
         }
-        assert!(program_in(&sources, "link").unwrap().refused.is_some_and(|why| why.contains("symbolic link")));
+        assert!(
+            program_in(&sources, "link")
+                .unwrap()
+                .refused
+                .is_some_and(|why| format!("{why:?}").contains("symbolic link"))
+        );
     }
 
     #[test]
@@ -465,9 +476,9 @@ mod tests {
         File::create(sources.join("huge")).unwrap().set_len(100 << 30).unwrap();
         assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("no submission"));
         let staged = program(&folder.path().join("none")).unwrap();
-        assert!(staged.refused.unwrap().contains("no such program"));
+        assert_eq!(staged.refused, Some(Unusable::CouldNotStart(StartProblem::NotFound)));
         let staged = program(&sources).unwrap();
-        assert!(staged.refused.unwrap().contains("this is a folder"));
+        assert_eq!(staged.refused, Some(Unusable::CouldNotStart(StartProblem::IsFolder)));
     }
 
     #[test]
@@ -476,6 +487,6 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let copy = folder.path().join("FOSSSim");
         std::fs::copy(own, &copy).unwrap();
-        assert!(program(&copy).unwrap().refused.unwrap().contains("the grader's own program"));
+        assert_eq!(program(&copy).unwrap().refused, Some(Unusable::CouldNotStart(StartProblem::GradersOwn)));
     }
 }

@@ -1,4 +1,5 @@
-//! What a submission's folder holds, in words, for whoever looks for a program in it and finds none.
+//! What a submission's folder holds, for whoever looks for a program in it and finds none.
+use super::result::{Found, Unusable};
 use fosssim_sandbox::collect::{Entry, Folder};
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
@@ -22,26 +23,27 @@ pub fn name(name: &OsStr) -> String {
 }
 
 /// Why there is nothing to run: what was looked for, and what is there instead.
-pub(super) fn without(program: &str, folder: &Path) -> String {
-    let sought = format!("no program called {} in the upload", program.escape_debug());
-    let opened = match Folder::open(folder) {
-        Ok(opened) => opened,
-        Err(error) => return format!("{sought}: it can't be read: {error}"),
+pub(super) fn without(program: &str, folder: &Path) -> Unusable {
+    let found = match Folder::open(folder) {
+        Ok(opened) => found(program, &opened),
+        Err(error) => Found::Unreadable(error.to_string()),
     };
-    let mut names = opened.names().unwrap_or_default();
+    Unusable::NoProgram { sought: program.escape_debug().to_string(), found }
+}
+
+fn found(program: &str, folder: &Folder) -> Found {
+    let mut names = folder.names().unwrap_or_default();
     names.retain(|name| !name.as_bytes().starts_with(b"."));
     names.sort();
     if names.is_empty() {
-        return format!("{sought}; it is empty");
+        return Found::Nothing;
     }
-    let shown: Vec<String> = names.iter().take(NAMED).map(|name| entry(&opened, name)).collect();
-    let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
     let wanted = Path::new(program).file_name().unwrap_or_default();
-    let elsewhere = match deeper(&opened, wanted, Path::new(""), DEEPEST, &mut LOOKED_AT.clone()) {
-        Some(path) => format!("; {} is not where it is looked for", shown_path(&path)),
-        None => String::new(),
-    };
-    format!("{sought}; it holds {}{more}{elsewhere}", shown.join(", "))
+    Found::Others {
+        names: names.iter().take(NAMED).map(|name| entry(folder, name)).collect(),
+        more: names.len().saturating_sub(NAMED),
+        elsewhere: deeper(folder, wanted, Path::new(""), DEEPEST, &mut LOOKED_AT.clone()).map(|path| shown_path(&path)),
+    }
 }
 
 fn entry(folder: &Folder, name: &OsStr) -> String {
@@ -78,26 +80,32 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn what_was_sought_and_what_was_found_is_one_sentence() {
+    fn what_is_there_instead_of_the_program_is_listed_and_looked_through() {
         let folder = tempfile::tempdir().unwrap();
-        let says = || without("FOSSSim", folder.path());
-        assert_eq!(says(), "no program called FOSSSim in the upload; it is empty");
+        let found = || match without("FOSSSim", folder.path()) {
+            Unusable::NoProgram { sought, found } if sought == "FOSSSim" => found,
+            other => panic!("{other:?}"),
+        };
+        let others = |names: &[&str], elsewhere: Option<&str>| Found::Others {
+            names: names.iter().map(|&name| name.to_owned()).collect(),
+            more: 0,
+            elsewhere: elsewhere.map(str::to_owned),
+        };
+        assert_eq!(found(), Found::Nothing);
         for name in ["main.cpp", "fosssim-sample", ".git"] {
             fs::write(folder.path().join(name), "").unwrap();
         }
-        assert_eq!(says(), "no program called FOSSSim in the upload; it holds fosssim-sample, main.cpp");
+        assert_eq!(found(), others(&["fosssim-sample", "main.cpp"], None));
         fs::create_dir_all(folder.path().join("work/build")).unwrap();
         fs::write(folder.path().join("work/build/FOSSSim"), "").unwrap();
-        assert_eq!(
-            says(),
-            "no program called FOSSSim in the upload; it holds fosssim-sample, main.cpp, work/; \
-             work/build/FOSSSim is not where it is looked for"
-        );
+        assert_eq!(found(), others(&["fosssim-sample", "main.cpp", "work/"], Some("work/build/FOSSSim")));
         for number in 0..9 {
             fs::write(folder.path().join(format!("a{number}\n")), "").unwrap();
         }
-        assert!(says().contains("it holds a0\\n, a1\\n") && says().contains(" and 6 more;"), "{}", says());
-        assert!(without("FOSSSim", Path::new("/nowhere")).contains("it can't be read"));
+        let Found::Others { names, more, .. } = found() else { panic!("it holds something") };
+        assert_eq!((names[0].as_str(), names[1].as_str(), more), ("a0\\n", "a1\\n", 6));
+        let nowhere = without("FOSSSim", Path::new("/nowhere"));
+        assert!(matches!(nowhere, Unusable::NoProgram { found: Found::Unreadable(_), .. }));
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! What is said about one scene or one submission.
+use serde::{Deserialize, Serialize};
 
 /// The verdict words, from best to worst; of several, the worst counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Verdict {
     /// Everything is right.
     Accepted,

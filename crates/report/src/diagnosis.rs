@@ -2,8 +2,9 @@
 use super::{
     explain::{ExplanationView, lines},
     style::{Look, Style},
+    words::first_divergence,
 };
-use fosssim_judge::Finding;
+use fosssim_grading::told::ToldFinding;
 use fosssim_mistakes::diagnose::Explanation;
 use serde::Serialize;
 use std::fmt::Write;
@@ -22,8 +23,8 @@ pub struct Case {
     pub accepted: bool,
     /// What else is to be said of it, such as how its program ended, or why it can't be read.
     pub note: Option<String>,
-    /// The first thing that is wrong, as far as it may be told: a line, and with values.
-    pub first: Option<(String, Option<Finding>)>,
+    /// The first thing that is wrong, as far as it may be told.
+    pub first: Option<ToldFinding>,
     /// Likely mistakes, the likeliest first.
     pub explanations: Vec<Explanation>,
 }
@@ -87,7 +88,10 @@ impl Diagnosis {
             first_divergence: case
                 .first
                 .as_ref()
-                .and_then(|(_, first)| first.as_ref())
+                .and_then(|first| match first {
+                    ToldFinding::Full(finding) => Some(finding),
+                    ToldFinding::Place { .. } => None,
+                })
                 .map(super::view::FindingView::fair),
             explanations: case.explanations.iter().map(ExplanationView::from).collect(),
         });
@@ -108,8 +112,8 @@ fn head(case: &Case, style: Style) -> String {
     if let Some(note) = &case.note {
         let _ = write!(line, ": {note}");
     }
-    if let (Some((first, _)), true) = (&case.first, case.explanations.is_empty()) {
-        let _ = write!(line, ": {first}");
+    if let (Some(first), true) = (&case.first, case.explanations.is_empty()) {
+        let _ = write!(line, ": {}", first_divergence(first));
     }
     line
 }
@@ -124,8 +128,8 @@ fn alone(case: &Case, style: Style) -> String {
         let _ = writeln!(text, "{}", style.paint(Look::Good, "There is nothing to explain: the fair rules accept it."));
         return text;
     }
-    if let Some((first, _)) = first {
-        let _ = writeln!(text, "{first}");
+    if let Some(first) = first {
+        let _ = writeln!(text, "{}", first_divergence(first));
     }
     if explanations.is_empty() && first.is_none() {
         text += "No known mistake explains it.\n";

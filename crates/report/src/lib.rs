@@ -22,4 +22,5 @@ pub mod suite;
 pub mod table;
 pub mod trace;
 pub mod view;
+pub mod words;
 pub mod wrap;

@@ -1,13 +1,16 @@
 //! How a run ended, as the kernel saw it.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use super::layers::LayerReport;
 
 /// One of the streams that a program writes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Stream {
     /// Standard output.
     Stdout,
@@ -28,7 +31,7 @@ impl fmt::Display for Stream {
 }
 
 /// How a run ended. Every variant but [`Ended::Exited`] and [`Ended::Signalled`] is a decision of the sandbox.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ended {
     /// It ended by itself with this exit code.
     Exited(i32),
@@ -119,7 +122,7 @@ pub fn signal_name(signal: i32) -> &'static str {
 }
 
 /// Why a program never ran. The text says what is wrong and what to do.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 pub enum StartProblem {
     /// There is no such file.
     #[error("there is no such program; check the path and build the program first")]
@@ -143,7 +146,7 @@ pub enum StartProblem {
     #[error("the file is {what}, not a linked program; upload what the linker wrote")]
     NotLinked {
         /// What it is instead.
-        what: &'static str,
+        what: Cow<'static, str>,
     },
     /// A 32-bit program.
     #[error("this is a 32-bit program; build it for 64 bits (without -m32)")]
@@ -154,7 +157,7 @@ pub enum StartProblem {
         /// What it was built for.
         machine: String,
         /// What this machine is.
-        here: &'static str,
+        here: Cow<'static, str>,
     },
     /// The program names a dynamic loader that is not here.
     #[error("the program needs the loader {loader}, which is not on this machine; build it on the grading platform")]
@@ -177,7 +180,7 @@ pub enum StartProblem {
         /// The interpreter's path.
         interpreter: String,
         /// Advice, or nothing.
-        hint: &'static str,
+        hint: Cow<'static, str>,
     },
     /// The loader or interpreter is not one of the system's.
     #[error(

@@ -102,8 +102,10 @@ fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, Star
     const DEEPEST: u32 = 4;
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
     let hint = "; install it, or name another one";
-    let missing =
-        |name: &str, hint| StartProblem::MissingInterpreter { interpreter: name.escape_default().to_string(), hint };
+    let missing = |name: &str, hint: &'static str| StartProblem::MissingInterpreter {
+        interpreter: name.escape_default().to_string(),
+        hint: hint.into(),
+    };
     if line.ends_with('\r') {
         // The kernel takes it for the last character of the name.
         let hint =
@@ -219,12 +221,12 @@ fn elf(file: &mut File, start: &[u8], own: &[PathBuf]) -> Result<Program, StartP
         |offset: usize| start.get(offset..offset + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
     let (machine, here) = (half(18), this_machine());
     if start.get(5) != Some(&1) || machine != here {
-        return Err(StartProblem::WrongMachine { machine: machine_name(machine), here: std::env::consts::ARCH });
+        return Err(StartProblem::WrongMachine { machine: machine_name(machine), here: std::env::consts::ARCH.into() });
     }
     match half(16) {
         2 | 3 => {}
-        1 => return Err(StartProblem::NotLinked { what: "an object file" }),
-        4 => return Err(StartProblem::NotLinked { what: "a core dump" }),
+        1 => return Err(StartProblem::NotLinked { what: "an object file".into() }),
+        4 => return Err(StartProblem::NotLinked { what: "a core dump".into() }),
         _ => return Err(StartProblem::NotAProgram),
     }
     let mut program = Program::default();
@@ -355,7 +357,7 @@ mod tests {
         let (_kept, path) = written("a", &header(2, 2, 21), 0o755);
         assert!(matches!(examine(&path, &[]), Err(StartProblem::WrongMachine { machine, .. }) if machine == "PowerPC"));
         let (_kept, path) = written("a", &header(2, 1, here), 0o755);
-        assert_eq!(examine(&path, &[]), Err(StartProblem::NotLinked { what: "an object file" }));
+        assert_eq!(examine(&path, &[]), Err(StartProblem::NotLinked { what: "an object file".into() }));
         let (_kept, path) = written("a", &header(2, 2, here), 0o755);
         assert_eq!(
             examine(&path, &[]),

@@ -1,7 +1,7 @@
 //! What to type to look closer at a scene that is not accepted: the command that was typed, with the scene.
 use crate::{
     cli::grading::Grade as Arguments,
-    suite::{Grade, SceneGrade, Verdict, batch::Submission, config::Hints, library, plan::Plan},
+    suite::{Grade, SceneGrade, Submission, Verdict, config::Hints, library, plan::Plan},
 };
 use std::path::{Path, PathBuf};
 

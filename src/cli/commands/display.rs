@@ -2,10 +2,7 @@
 use crate::{
     cli::console,
     report::grade::{no_points, one_line, score},
-    suite::{
-        batch::{Event, Submission},
-        plan::Plan,
-    },
+    suite::{Submission, batch::Event, plan::Plan},
 };
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;

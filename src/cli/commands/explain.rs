@@ -96,10 +96,7 @@ fn case(
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == Verdict::Accepted && note.is_none();
     let explanations = if fair.verdict == Verdict::Accepted { Vec::new() } else { diagnose::explain(scene, bytes) };
-    let first = fair
-        .first_divergence
-        .as_ref()
-        .and_then(|first| Some((hints.first_divergence(first)?, (hints == Hints::Full).then_some(*first))));
+    let first = fair.first_divergence.as_ref().and_then(|first| hints.finding(first));
     let explanations = hints.cut(explanations);
     let draws = arguments.format == ExplainFormat::Html && !accepted;
     let source = Source {

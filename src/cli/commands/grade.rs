@@ -16,15 +16,16 @@ use crate::{
         grade::{self, Format, Shown, Text},
         number::counted,
         style::Style,
+        words,
     },
     sandbox::{Backend, Supervisor},
     suite::{
-        Cancellation, Grade, SceneTask, Verdict,
-        batch::{self, Batch, BatchOptions, Submission},
+        Cancellation, Grade, Grader, SceneTask, Submission, Verdict, batch,
         cards::{Cards, Judged},
         config,
-        journal::Journal,
+        grader::Options,
         plan::{self, Plan},
+        results::Folder,
     },
 };
 use anyhow::{Context, Result, bail};
@@ -240,15 +241,15 @@ impl Session<'_> {
 
     /// The grades, and what kept the rest from being graded or kept.
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
-        let mut journal = match &self.folder {
+        let kept = match &self.folder {
             Some(folder) => {
                 fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-                Some(Journal::open(folder, fresh)?)
+                Some(Folder::open(folder, fresh)?)
             }
             None => None,
         };
         let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        let options = BatchOptions {
+        let options = Options {
             jobs: self.arguments.jobs.map_or(cores, NonZeroUsize::get),
             fail_fast: self.arguments.fail_fast,
             recorded: self.arguments.recorded,
@@ -260,11 +261,10 @@ impl Session<'_> {
             pages.forget();
         }
         let draw = |judged: &Judged<'_>| self.draw(judged);
-        let batch = Batch {
+        let grader = Grader {
             plan: self.plan,
             backend: self.backend,
             options,
-            cancellation: self.cancellation,
             faults: &faults,
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },
             cards: self.pages.as_ref().map(|pages| Cards { folder: pages.cards(), draw: &draw }),
@@ -272,7 +272,7 @@ impl Session<'_> {
         };
         let mut display = Display::new(self.plan, submissions);
         let mut log_error = None;
-        let graded = batch.run(submissions, journal.as_mut(), &mut |event| {
+        let mut on_event = |event: batch::Event<'_>| {
             display.event(&event);
             if let (Some(folder), batch::Event::Graded { grade, .. }) = (&self.folder, &event)
                 && log_error.is_none()
@@ -280,10 +280,20 @@ impl Session<'_> {
             {
                 log_error = Some(error);
             }
-        });
+        };
+        let results = kept.as_ref().map(|kept| kept as &dyn crate::suite::results::Results);
+        let (grades, fault) = match submissions {
+            [submission] => {
+                let (grade, fault) = grader.grade_submission(submission, results, self.cancellation, &mut on_event);
+                (Vec::from_iter(grade), fault)
+            }
+            class => {
+                let graded = batch::run(&grader, class, results, self.cancellation, &mut on_event);
+                (graded.grades, graded.fault)
+            }
+        };
         drop(display);
-        let fault = graded.fault.map(anyhow::Error::from);
-        Ok((graded.grades, fault.or(log_error)))
+        Ok((grades, fault.map(anyhow::Error::from).or(log_error)))
     }
 
     /// Writes the reports and, into the folder, the files that a batch ends with.
@@ -394,20 +404,20 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let folder = folder.join("logs").join(file_name(&grade.submission));
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     if let Some(build) = &grade.build {
-        let text = format!("{}\n\n{}\n", build.end, grade::plain(&build.output));
+        let text = format!("{}\n\n{}\n", words::build(&build.end), grade::plain(&build.output));
         output::write(&folder.join("build.log"), &[], text.as_bytes())?;
     }
     for scene in grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun) {
         let details: String = grade::difference(scene)
-            .iter()
-            .chain(&scene.details)
-            .chain(&explain::lines(&scene.explanations))
-            .map(|line| format!("{}\n", grade::plain(line)))
+            .into_iter()
+            .chain(words::details(scene))
+            .chain(explain::lines(&scene.explanations))
+            .map(|line| format!("{}\n", grade::plain(&line)))
             .collect();
         let text = format!(
             "{}: {}\n{details}\n--- standard output ---\n{}\n--- standard error ---\n{}\n",
             scene.verdict,
-            grade::plain(&scene.summary),
+            grade::plain(&words::summary(scene)),
             grade::plain(&scene.stdout),
             grade::plain(&scene.stderr),
         );

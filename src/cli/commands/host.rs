@@ -17,9 +17,9 @@ use crate::{
     sandbox::{self, selftest},
     student,
     suite::{
-        Verdict,
-        batch::{Batch, BatchOptions, Submission},
+        Grader, Submission, Verdict,
         cards::{Cards, Judged},
+        grader::Options,
         plan,
     },
 };
@@ -94,17 +94,17 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     ] {
         let plan = plan::Plan { run, ..plan.clone() };
         let submission = Submission { name, path: sample.clone(), program: None };
-        let batch = Batch {
+        let grader = Grader {
             plan: &plan,
             backend: &backend,
-            options: BatchOptions { jobs, fail_fast: false, recorded: false },
-            cancellation: &cancellation,
+            options: Options { jobs, fail_fast: false, recorded: false },
             faults: Path::new("fosssim-faults"),
             traces: None,
             cards: Some(Cards { folder: pages.cards(), draw: &draw }),
             rehearse: &rehearse,
         };
-        let grades = batch.run(&[submission], None, &mut |_| {}).grades;
+        let (grade, _) = grader.grade_submission(&submission, None, &cancellation, &mut |_| {});
+        let grades = Vec::from_iter(grade);
         console::print(Format::Text.render(&grades).as_bytes())?;
         if cancellation.is_cancelled() {
             return Ok(exit::INTERRUPTED);

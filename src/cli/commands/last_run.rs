@@ -4,7 +4,7 @@
 //! is forgotten.
 use crate::{
     cli::output,
-    suite::{Grade, Verdict, batch::Submission},
+    suite::{Grade, Submission, Verdict},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -14,7 +14,7 @@ use crate::{
     },
     suite::{
         Grade,
-        journal::{self, Journal},
+        results::{Folder, Results as _, read_line},
     },
 };
 use anyhow::{Context, Result, bail};
@@ -41,21 +41,16 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     }
     fs::create_dir_all(&output).with_context(|| format!("cannot make {}", output.display()))?;
     // Held to the end: nobody else works in this folder.
-    let mut journal = Journal::open(&output, true)?;
+    let kept = Folder::open(&output, true)?;
     for (folder, _) in &parts {
         for name in FOLDERS {
             copy(&folder.join(name), &output.join(name), DEEPEST)?;
         }
-        keep_results(folder, &mut journal)?;
+        keep_results(folder, &kept)?;
     }
     let suite = first.common.suite.clone();
     let order = names.clone();
-    let mut grades = Vec::new();
-    for (folder, part) in parts {
-        for grade in part.grades {
-            grades.push(grade.into_grade().with_context(|| folder.display().to_string())?);
-        }
-    }
+    let mut grades: Vec<Grade> = parts.into_iter().flat_map(|(_, part)| part.grades).collect();
     let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
     grades.sort_by_key(place);
     let pages = Pages::new(Some(&output))?;
@@ -128,8 +123,8 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &Merge) -> Result<(&'a 
     Ok((first, output))
 }
 
-/// Keeps a shard's results in the merged journal, so that a grading in one go finds them there.
-fn keep_results(folder: &Path, journal: &mut Journal) -> Result<()> {
+/// Keeps a shard's results in the merged folder, so that a grading in one go finds them there.
+fn keep_results(folder: &Path, kept: &Folder) -> Result<()> {
     let file = folder.join("journal.jsonl");
     let text = match fs::read(&file) {
         Ok(text) => text,
@@ -138,11 +133,9 @@ fn keep_results(folder: &Path, journal: &mut Journal) -> Result<()> {
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
     };
     for line in text.split_inclusive(|byte| *byte == b'\n') {
-        let submission = serde_json::from_slice::<serde_json::Value>(line).ok();
-        let submission = submission.as_ref().and_then(|line| line.get("submission")?.as_str()).unwrap_or_default();
         // What somebody damaged is graded again, as in any folder.
-        if let Some((key, result)) = journal::read_line(line) {
-            journal.keep(&key, submission, &result)?;
+        if let Some(entry) = read_line(line) {
+            kept.keep(&entry.key, &entry.submission, &entry.result)?;
         }
     }
     Ok(())

@@ -8,7 +8,6 @@ mod explain;
 mod grade;
 mod headroom;
 mod host;
-mod kept;
 mod last_run;
 mod merge;
 mod pages;

@@ -1,12 +1,11 @@
 //! A part of a grading that was shared out among machines: which submissions are its own, and what it leaves for `merge`.
-use super::kept::KeptGrade;
 use crate::{
     cli::{
         console,
         grading::{Grade as Arguments, Shard},
         output,
     },
-    suite::{Grade, batch::Submission, plan::Plan},
+    suite::{Grade, Submission, plan::Plan},
 };
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
@@ -64,7 +63,7 @@ pub(super) struct Part {
     /// Which one it is, from 1.
     pub(super) number: usize,
     /// The grades of its own submissions, in order.
-    pub(super) grades: Vec<KeptGrade>,
+    pub(super) grades: Vec<Grade>,
 }
 
 impl Part {
@@ -144,11 +143,7 @@ impl Sharding {
     /// # Errors
     /// When they can't be written.
     pub(super) fn end(&self, grades: &[Grade]) -> Result<()> {
-        let part = Part {
-            common: self.common.clone(),
-            number: self.shard.number,
-            grades: grades.iter().map(KeptGrade::of).collect::<Result<_>>()?,
-        };
+        let part = Part { common: self.common.clone(), number: self.shard.number, grades: grades.to_vec() };
         output::write(&self.folder.join(FILE), &[], &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
         let line = format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.of);

@@ -1,7 +1,7 @@
 //! Finds the submissions that the arguments of `grade` mean.
 use crate::{
     cli::{console, grading::Grade},
-    suite::{batch::Submission, config::BuildStep, upload},
+    suite::{Submission, config::BuildStep, upload},
 };
 use anyhow::{Context, Result, bail};
 use std::{

@@ -1,5 +1,6 @@
 //! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
 use super::{likely_mistakes, no_points, one_line, points};
+use crate::words;
 use fosssim_grading::Grade;
 use fosssim_judge::fair::Cause;
 
@@ -20,7 +21,7 @@ pub(super) fn scenes(grades: &[Grade]) -> String {
                     scene.steps.to_string(),
                     format!("{:.3}", scene.cpu.as_secs_f64()),
                     format!("{:.3}", scene.wall.as_secs_f64()),
-                    safe(&scene.summary),
+                    safe(&words::summary(scene)),
                     scene.differs.map_or("", Cause::key).to_owned(),
                     scene.explanations.first().map(|likeliest| safe(&likeliest.key)).unwrap_or_default(),
                 ]
@@ -54,7 +55,7 @@ pub fn submissions(grades: &[Grade]) -> String {
             format!("{:.3}", grade.wall.as_secs_f64()),
             grade.differing().to_string(),
             safe(&mistakes.join(" ")),
-            safe(&no_points(grade).or_else(|| grade.reason()).unwrap_or_default()),
+            safe(&no_points(grade).or_else(|| words::reason(grade)).unwrap_or_default()),
         ];
         row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
         row

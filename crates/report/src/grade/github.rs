@@ -1,5 +1,6 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
 use super::{super::explain, difference, head_lines, no_points, one_line, points, reached, wrong_first};
+use crate::words;
 use fosssim_grading::{Grade, Verdict};
 use std::fmt::Write;
 
@@ -10,15 +11,15 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
         for warning in &grade.warnings {
             let _ = writeln!(text, "::warning title={}::{}", property(&grade.submission), data(warning));
         }
-        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
-            let title = property(&format!("{}: {}", grade.submission, build.end));
+        if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
+            let title = property(&format!("{}: {}", grade.submission, words::build(&build.end)));
             let words: String = build.output.chars().take(4000).collect();
             let _ =
                 writeln!(text, "::error title={title}::{}", words.lines().map(data).collect::<Vec<_>>().join("%0A"));
         }
         // GitHub shows the first ten: what matters most comes first, and once.
         let head = head_lines(grade);
-        if !head.is_empty() && grade.build.as_ref().is_none_or(|build| build.succeeded) {
+        if !head.is_empty() && grade.build.as_ref().is_none_or(|build| build.end.is_success()) {
             let title = property(&format!("{}: {}, {}", grade.submission, grade.verdict, score(grade)));
             let _ = writeln!(
                 text,
@@ -31,7 +32,7 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
             let words: Vec<String> =
-                std::iter::once(scene.summary.clone()).chain(explain::sentence(&scene.explanations)).collect();
+                std::iter::once(words::summary(scene)).chain(explain::sentence(&scene.explanations)).collect();
             let _ = writeln!(text, "::{level} title={title}::{}", data(&words.join("; ")));
         }
         for scene in grade.scenes() {
@@ -69,9 +70,9 @@ pub(super) fn summary(grades: &[Grade]) -> String {
         for warning in &grade.warnings {
             let _ = writeln!(text, "**Warning:** {}\n", cell(warning));
         }
-        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
+        if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
             if grade.unfit().is_none() {
-                let _ = writeln!(text, "{}\n", cell(&build.end));
+                let _ = writeln!(text, "{}\n", cell(&words::build(&build.end)));
             }
             for line in build.output.lines().take(40) {
                 let _ = writeln!(text, "    {}", one_line(line));
@@ -84,10 +85,10 @@ pub(super) fn summary(grades: &[Grade]) -> String {
         let _ = writeln!(text, "| scene | verdict | points | what happened |\n|---|---|---:|---|");
         for scene in wrong_first(grade.groups.iter()) {
             let name = cell(&scene.scene);
-            let words: Vec<String> = std::iter::once(&scene.summary)
-                .chain(&explain::sentence(&scene.explanations))
-                .chain(&difference(scene))
-                .map(|words| cell(words))
+            let words: Vec<String> = std::iter::once(words::summary(scene))
+                .chain(explain::sentence(&scene.explanations))
+                .chain(difference(scene))
+                .map(|words| cell(&words))
                 .collect();
             let words = words.join("; ");
             let _ = writeln!(text, "| {name} | {} | {} | {words} |", scene.verdict, reached(scene.points));

@@ -1,6 +1,6 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
 use super::{super::explain, difference, head_lines, plain, points};
-use crate::number::counted;
+use crate::{number::counted, words};
 use fosssim_grading::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
 use std::fmt::Write;
@@ -93,11 +93,11 @@ fn overall(grade: &Grade) -> String {
         }
         None => out_of_time(grade),
     }];
-    if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
-        lines.push(format!("{}\n{}", plain(&build.end), plain(&build.output)));
+    if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
+        lines.push(format!("{}\n{}", plain(&words::build(&build.end)), plain(&build.output)));
     }
     // What is wrong with the upload itself tells of no scene.
-    let told = grade.build.as_ref().is_some_and(|build| !build.succeeded);
+    let told = grade.build.as_ref().is_some_and(|build| !build.end.is_success());
     if grade.unfit().is_some() && !told || all_visible && grade.unfit().is_none() {
         lines.extend(head_lines(grade).iter().map(|line| plain(line)));
     }
@@ -116,7 +116,8 @@ fn out_of_time(grade: &Grade) -> String {
     let longest = scenes.max_by_key(|(_, scene)| scene.wall).filter(|(_, scene)| !scene.wall.is_zero());
     if let Some((group, longest)) = longest {
         let _ = write!(text, " Your program took {:.1} s", grade.wall.as_secs_f64());
-        let (seconds, scene, summary) = (longest.wall.as_secs_f64(), plain(&longest.scene), plain(&longest.summary));
+        let (seconds, scene, summary) =
+            (longest.wall.as_secs_f64(), plain(&longest.scene), plain(&words::summary(longest)));
         let _ = match group.visibility {
             Visibility::Visible => write!(text, ", {seconds:.1} s of it in scene {scene}: {summary}."),
             _ => write!(text, ", {seconds:.1} s of it in one scene."),
@@ -126,9 +127,9 @@ fn out_of_time(grade: &Grade) -> String {
 }
 
 fn output(scene: &SceneGrade, shows_output: bool) -> String {
-    let mut lines = vec![format!("{}: {}", scene.verdict, plain(&scene.summary))];
+    let mut lines = vec![format!("{}: {}", scene.verdict, plain(&words::summary(scene)))];
     lines.extend(difference(scene));
-    lines.extend(scene.details.iter().map(|detail| plain(detail)));
+    lines.extend(words::details(scene).iter().map(|detail| plain(detail)));
     lines.extend(explain::lines(&scene.explanations).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(match shows_output {

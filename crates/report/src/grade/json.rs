@@ -1,5 +1,6 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
 use super::{super::explain::ExplanationView, plain};
+use crate::words;
 use fosssim_grading::{Grade, GroupGrade, SceneGrade};
 use serde::Serialize;
 
@@ -112,8 +113,8 @@ fn view(grade: &Grade) -> GradeView {
         sandbox: grade.layers.clone(),
         warnings: grade.warnings.iter().map(|warning| plain(warning)).collect(),
         build: grade.build.as_ref().map(|build| BuildView {
-            succeeded: build.succeeded,
-            end: plain(&build.end),
+            succeeded: build.end.is_success(),
+            end: plain(&words::build(&build.end)),
             output: plain(&build.output),
         }),
         likely_mistake: grade.likely_mistake().as_ref().map(ExplanationView::from),
@@ -138,9 +139,9 @@ fn scene(scene: &SceneGrade) -> SceneView {
         scene: plain(&scene.scene),
         verdict: scene.verdict.words(),
         code: scene.verdict.code(),
-        summary: plain(&scene.summary),
+        summary: plain(&words::summary(scene)),
         difference: scene.differs.map(|cause| DifferenceView { key: cause.key(), text: cause.to_string() }),
-        details: scene.details.iter().map(|detail| plain(detail)).collect(),
+        details: words::details(scene).iter().map(|detail| plain(detail)).collect(),
         explanations: scene.explanations.iter().map(ExplanationView::from).collect(),
         points: scene.points,
         max_points: scene.max_points,

@@ -1,5 +1,6 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
 use super::{super::explain, difference, head_lines, plain, wrong_first};
+use crate::words;
 use fosssim_grading::{Grade, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -7,8 +8,8 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 pub(super) fn render(grades: &[Grade]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
-        if let Some(unfit) = grade.unfit() {
-            report.add_test_suite(submission(grade, unfit));
+        if let Some(unfit) = words::unfit(grade) {
+            report.add_test_suite(submission(grade, &unfit));
         }
         for group in &grade.groups {
             let mut suite = TestSuite::new(format!("{}: {}", plain(&grade.submission), plain(&group.name)));
@@ -56,11 +57,11 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             let kind = if verdict == Verdict::JudgeError { NonSuccessKind::Error } else { NonSuccessKind::Failure };
             let mut status = TestCaseStatus::non_success(kind);
             status.set_type(verdict.words());
-            status.set_message(plain(&scene.summary));
-            let mut description = scene.details.clone();
+            status.set_message(plain(&words::summary(scene)));
+            let mut description = words::details(scene);
             description.extend(explain::lines(&scene.explanations));
-            if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
-                description.extend([build.end.clone(), build.output.clone()]);
+            if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
+                description.extend([words::build(&build.end), build.output.clone()]);
             }
             if !description.is_empty() {
                 status.set_description(plain(&description.join("\n")));

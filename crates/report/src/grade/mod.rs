@@ -12,7 +12,7 @@ mod junit;
 mod prairielearn;
 mod text;
 
-use crate::{number::counted, page::Graded};
+use crate::{number::counted, page::Graded, words};
 use fosssim_grading::{
     Grade, GroupGrade, SceneGrade, SceneResult, Verdict,
     config::{Credit, Visibility},
@@ -135,8 +135,8 @@ pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
 /// mistakes are.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
-    if let Some(unfit) = grade.unfit() {
-        return vec![unfit.to_owned()];
+    if let Some(unfit) = words::unfit(grade) {
+        return vec![unfit];
     }
     let wrong = |scene: &&SceneGrade| matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
     let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");

@@ -1,5 +1,6 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
 use super::{super::explain, difference, head_lines, one_line, plain, wrong_first};
+use crate::words;
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
 
@@ -36,11 +37,15 @@ pub(super) fn render(grade: &Grade) -> String {
             description: scene.verdict.words().to_owned(),
             points: scene.points,
             max_points: scene.max_points,
-            message: if grade.unfit().is_some() { "not run, see above".to_owned() } else { cut(&scene.summary) },
+            message: if grade.unfit().is_some() {
+                "not run, see above".to_owned()
+            } else {
+                cut(&words::summary(scene))
+            },
             output: cut(&output(scene)),
         })
         .collect();
-    let build = grade.build.as_ref().filter(|build| !build.succeeded);
+    let build = grade.build.as_ref().filter(|build| !build.end.is_success());
     // What is wrong with the upload itself tells of no scene; mistakes could tell of hidden ones.
     let all_visible = grade.groups.iter().all(|group| group.visibility == Visibility::Visible);
     let is_told = build.is_none() && (all_visible || grade.unfit().is_some());
@@ -59,7 +64,7 @@ pub(super) fn render(grade: &Grade) -> String {
             .iter()
             .map(|warning| format!("warning: {warning}"))
             .chain(head)
-            .chain(build.map(|build| format!("{}\n{}", build.end, build.output)))
+            .chain(build.map(|build| format!("{}\n{}", words::build(&build.end), build.output)))
             .map(|text| cut(&text))
             .collect::<Vec<_>>()
             .join("\n"),
@@ -73,7 +78,7 @@ pub(super) fn render(grade: &Grade) -> String {
 /// Everything about a scene that its message does not say.
 fn output(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = difference(scene).into_iter().collect();
-    lines.extend(scene.details.iter().cloned());
+    lines.extend(words::details(scene));
     lines.extend(explain::lines(&scene.explanations));
     lines.join("\n")
 }

@@ -1,11 +1,19 @@
 //! Grades for tests: one good, one bad in every way, with hostile words in it.
 use fosssim_grading::{
-    Build, Grade, GroupGrade, SceneResult, Verdict,
+    Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Visibility},
+    result::{BuildEnd, Ended, Failure, Found, Unusable},
     score::{self, Stakes},
+    told::{Account, Place, Told, ToldFinding},
 };
-use fosssim_judge::{Rules, fair::Cause};
+use fosssim_judge::{Book, Counts, Kind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
+use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::time::Duration;
+
+/// A reason of these words: somebody else's may stand in every report.
+pub(crate) fn saying(words: &str) -> Reason {
+    Reason::Failed(Failure::Machine(words.to_owned()))
+}
 
 fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
     SceneResult {
@@ -13,7 +21,7 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
         cpu: Duration::from_millis(120),
         wall: Duration::from_millis(150),
         memory: Some(7 << 20),
-        ..SceneResult::without_run(name, 100, verdict, summary)
+        ..SceneResult::without_run(name, 100, verdict, saying(summary))
     }
 }
 
@@ -61,7 +69,26 @@ pub(crate) fn bad() -> Grade {
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
     wrong.differs = Some(Cause::AbsoluteCoefficients);
     wrong.explanations = crate::explain::tests::explanations();
-    wrong.details = vec!["first divergence: step 3: overlap polynomial of particles 0 and 1".to_owned()];
+    let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
+    let pass = Pass { stage: Stage::Impulses { round: 0 }, index: 0 };
+    let place = Place::Polynomial(PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 });
+    let first = ToldFinding::Place { step: 3, kind: Kind::Coefficient, place };
+    let mut counts = Counts::default();
+    counts.add(Kind::Coefficient, 1);
+    wrong.told = Some(Told {
+        official: Book::Parity,
+        parity: Account {
+            ruling: Ruling::WrongAnswer,
+            wrong_steps: 40,
+            counts,
+            first_divergence: Some(first.clone()),
+            examples: vec![first],
+        },
+        fair: None,
+        residuals: None,
+        damage: None,
+        trailing_bytes: false,
+    });
     let mut crash = scene("Detection/b", Verdict::RuntimeError, "the program ended by signal 11");
     crash.stderr =
         "\u{1b}[32mOverall success: Passed.\u{1b}[m\n<b>]]></b>&amp;\u{202e}\0\n::error::forged\n".to_owned();
@@ -78,19 +105,18 @@ pub(crate) fn bad() -> Grade {
         ],
     );
     grade.warnings = vec!["graded without a sandbox".to_owned()];
-    grade.build = Some(Build {
-        succeeded: false,
-        end: "the build exited with code 2".to_owned(),
-        output: "a.cpp:1: error: \u{1b}[1mno".to_owned(),
-    });
+    grade.build =
+        Some(Build { end: BuildEnd::Ended(Ended::Exited(2)), output: "a.cpp:1: error: \u{1b}[1mno".to_owned() });
     grade
 }
 
 /// No program is in the upload.
 pub(crate) fn unfit() -> Grade {
-    let why = "no program called FOSSSim in the upload; it holds main.cpp, fosssim-sample";
+    let names = ["main.cpp", "fosssim-sample"].map(str::to_owned).into();
+    let found = Found::Others { names, more: 0, elsewhere: None };
+    let why = Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found });
     let scenes = |names: &[&str]| {
-        let result = |name: &&str| SceneResult::without_run(name, 100, Verdict::Unusable, why);
+        let result = |name: &&str| SceneResult::without_run(name, 100, Verdict::Unusable, why.clone());
         names.iter().map(result).collect::<Vec<_>>()
     };
     grade(
@@ -112,7 +138,7 @@ pub(crate) fn stopped() -> Grade {
 }
 
 fn missing(name: &str) -> SceneResult {
-    SceneResult::without_run(name, 100, Verdict::NotRun, "grading was stopped")
+    SceneResult::without_run(name, 100, Verdict::NotRun, Reason::Stopped)
 }
 
 /// The grader failed.

@@ -3,6 +3,7 @@ use super::{document, markup::text};
 use crate::{
     grade::{class_head, hardest, likely_mistakes, one_line, points, reached},
     number::counted,
+    words,
 };
 use fosssim_grading::{Grade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
@@ -81,7 +82,7 @@ impl Class<'_> {
             let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
             let _ = write!(out, "<td class=\"num\" data-sort=\"{accepted}\">{accepted} of {all}</td>");
             let likely: Vec<String> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake.what).collect();
-            let words = if likely.is_empty() { grade.reason().unwrap_or_default() } else { likely.join(" ") };
+            let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
             let _ = write!(out, "<td class=\"words\">{}</td>", text(&short(&words)));
             for name in &groups {
                 let group = grade.groups.iter().find(|group| group.name == *name);
@@ -115,7 +116,8 @@ impl Class<'_> {
         for members in &signed {
             let grade = &self.grades[members[0]];
             let wrong: Vec<&SceneGrade> = grade.scenes().filter(|scene| is_failed(scene)).collect();
-            let first = wrong.first().map_or(String::new(), |scene| format!("{}: {}", scene.scene, scene.summary));
+            let first =
+                wrong.first().map_or(String::new(), |scene| format!("{}: {}", scene.scene, words::summary(scene)));
             let _ = writeln!(
                 out,
                 "<section class=\"cluster\"><h3>No mistake is named, but {} in the same words</h3>\n<p>The first: {}</p>\n\
@@ -196,10 +198,10 @@ fn by_mistake(grades: &[Grade]) -> (Vec<(String, Vec<usize>)>, Vec<usize>) {
 
 /// Submissions that fail the same scenes in the same words, the largest cluster first.
 fn by_signature(grades: &[Grade], among: &[usize]) -> Vec<Vec<usize>> {
-    let mut found: BTreeMap<Vec<(&str, Verdict, &str)>, Vec<usize>> = BTreeMap::new();
+    let mut found: BTreeMap<Vec<(&str, Verdict, String)>, Vec<usize>> = BTreeMap::new();
     for &number in among {
         let failed = grades[number].scenes().filter(|scene| is_failed(scene));
-        let signature = failed.map(|scene| (scene.scene.as_str(), scene.verdict, scene.summary.as_str())).collect();
+        let signature = failed.map(|scene| (scene.scene.as_str(), scene.verdict, words::summary(scene))).collect();
         found.entry(signature).or_default().push(number);
     }
     let mut several: Vec<_> = found.into_values().filter(|members| members.len() > 1).collect();
@@ -286,7 +288,7 @@ mod tests {
     use super::*;
     use crate::grade::samples;
     use fosssim_grading::{
-        GroupGrade, SceneResult,
+        GroupGrade, Reason, SceneResult,
         config::{Credit, Visibility},
         score::{self, Stakes},
     };
@@ -297,11 +299,11 @@ mod tests {
             .map(|group| {
                 let scenes = (0..16).map(|number| {
                     let scene = 16 * group + number;
-                    let (verdict, words) = match fails(scene) {
-                        Some(words) => (Verdict::WrongAnswer, words),
-                        None => (Verdict::Accepted, String::new()),
+                    let (verdict, why) = match fails(scene) {
+                        Some(words) => (Verdict::WrongAnswer, samples::saying(&words)),
+                        None => (Verdict::Accepted, Reason::Right),
                     };
-                    (SceneResult::without_run(&format!("Group/a-scene-of-number-{scene}"), 100, verdict, words), false)
+                    (SceneResult::without_run(&format!("Group/a-scene-of-number-{scene}"), 100, verdict, why), false)
                 });
                 score::group(&format!("Group {group}"), stakes, scenes.collect())
             })

@@ -1,6 +1,9 @@
 //! The page of `explain`: what is likely wrong with a program, trace by trace and all together.
 use super::{Card, SCRIPT, case::mistakes, document, graded::key, markup::text};
-use crate::diagnosis::{Case, Diagnosis};
+use crate::{
+    diagnosis::{Case, Diagnosis},
+    words::first_divergence,
+};
 use std::fmt::Write;
 
 /// One trace with what was drawn of it.
@@ -60,8 +63,8 @@ fn article(one: &ExplainedCase<'_>, number: usize, open: bool) -> String {
         if open { " open" } else { "" },
         text(trace),
     );
-    for line in note.iter().chain(first.iter().map(|(line, _)| line)) {
-        let _ = writeln!(out, "<p>{}</p>", text(line));
+    for line in note.iter().cloned().chain(first.as_ref().map(first_divergence)) {
+        let _ = writeln!(out, "<p>{}</p>", text(&line));
     }
     if !*accepted && explanations.is_empty() {
         out += "<p>No known mistake explains it.</p>\n";

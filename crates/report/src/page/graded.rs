@@ -3,6 +3,7 @@ use super::{Card, SCRIPT, case::mistakes, document, markup::text};
 use crate::{
     grade::{difference, likely_mistakes, no_points, one_line, points, reached, score},
     number::counted,
+    words,
 };
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
 use fosssim_mistakes::diagnose::Explanation;
@@ -73,11 +74,11 @@ impl Graded<'_> {
         for warning in &grade.warnings {
             let _ = writeln!(out, "<p class=\"bad\">Warning: {}</p>", text(warning));
         }
-        if let Some(build) = grade.build.as_ref().filter(|build| !build.succeeded) {
-            let _ = writeln!(out, "<h2>The build</h2>\n<p>{}</p>", text(&build.end));
+        if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
+            let _ = writeln!(out, "<h2>The build</h2>\n<p>{}</p>", text(&words::build(&build.end)));
             out += &printed("What it printed", &build.output, &mut OUTPUTS.clone());
-        } else if let Some(unfit) = grade.unfit() {
-            let _ = writeln!(out, "<p>{}</p>", text(unfit));
+        } else if let Some(unfit) = words::unfit(grade) {
+            let _ = writeln!(out, "<p>{}</p>", text(&unfit));
         }
         let likely = likely_mistakes(grade);
         if !likely.is_empty() {
@@ -238,9 +239,9 @@ fn article(
         text(&one_line(&scene.scene)),
         reached(scene.points),
         points(scene.max_points),
-        text(&one_line(&scene.summary)),
+        text(&one_line(&words::summary(scene))),
     );
-    let lines: Vec<String> = difference(scene).into_iter().chain(scene.details.iter().cloned()).collect();
+    let lines: Vec<String> = difference(scene).into_iter().chain(words::details(scene)).collect();
     if !lines.is_empty() {
         let _ = writeln!(
             out,

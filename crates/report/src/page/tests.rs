@@ -1,8 +1,9 @@
 use super::*;
 use fosssim_evidence::{BUDGET, Focus, Rulings, gather};
 use fosssim_grading::{
-    Grade, SceneResult, Verdict,
+    Grade, Reason, SceneResult, Verdict,
     config::{Credit, Visibility},
+    result::Wrong,
     score::{self, Stakes},
 };
 use fosssim_judge::{Outcome, Rules, parity};
@@ -146,10 +147,9 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     };
     let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
     let card = Card::of(&case, 3).and_then(|card| Card::from_kept(&card.kept()));
-    let first = outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
-    let summary = "some steps are wrong";
-    let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, summary);
-    result.details = first.and_then(|first| hints.first_divergence(first)).into_iter().collect();
+    let why = Reason::Wrong(Wrong::Untold);
+    let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, why);
+    result.told = hints.tell(&outcome, Rules::Fair);
     result.explanations = explanations;
     (card, result)
 }

@@ -5,6 +5,7 @@ use crate::{
     number::counted,
     style::Look,
     table::{Align, Cell, Table},
+    words,
 };
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::fmt::Write;
@@ -37,7 +38,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     if let Some(scene) = first {
         let code = style.paint(look(scene.verdict), scene.verdict.code());
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "First scene that is not accepted"));
-        let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&scene.summary));
+        let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&words::summary(scene)));
         for line in options.closer.map(|closer| closer(grade, scene)).unwrap_or_default() {
             let _ = writeln!(text, "  {line}");
         }

@@ -9,7 +9,7 @@ pub use changes::changes;
 pub use table::table;
 
 use super::{super::style::Style, no_points, one_line, plain, points};
-use crate::{number::counted, style::Look};
+use crate::{number::counted, style::Look, words};
 use fosssim_grading::{Grade, SceneGrade, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
@@ -56,7 +56,7 @@ impl Text<'_> {
         let mut text = String::new();
         for grade in grades {
             if self.shown == Shown::Line {
-                let why = grade.unfit().map(|unfit| format!(": {}", one_line(unfit))).unwrap_or_default();
+                let why = words::unfit(grade).map(|unfit| format!(": {}", one_line(&unfit))).unwrap_or_default();
                 let _ = writeln!(text, "{}{why}", self.verdict(grade));
             } else {
                 self.submission(&mut text, grade);
@@ -97,13 +97,13 @@ impl Text<'_> {
         for warning in &grade.warnings {
             let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
         }
-        let build = grade.build.as_ref().filter(|build| !build.succeeded);
-        if let (Some(unfit), None) = (grade.unfit(), build) {
-            let _ = writeln!(text, "{}", one_line(unfit));
+        let build = grade.build.as_ref().filter(|build| !build.end.is_success());
+        if let (Some(unfit), None) = (words::unfit(grade), build) {
+            let _ = writeln!(text, "{}", one_line(&unfit));
         }
         if let Some(build) = build {
             let most = if self.shown < Shown::Wrong { SHOWN_LINES } else { usize::MAX };
-            let _ = writeln!(text, "\n{}\n{}", plain(&build.end), output(&build.output, most));
+            let _ = writeln!(text, "\n{}\n{}", plain(&words::build(&build.end)), output(&build.output, most));
         }
         text
     }

@@ -6,6 +6,7 @@ use crate::{
     grade::{difference, one_line, points, reached, text::SHOWN_LINES},
     number::counted,
     style::Look,
+    words,
     wrap::columns,
 };
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
@@ -29,19 +30,19 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
 }
 
 /// What is told of a scene whose program failed: scenes of which the same is told are told of once.
-type Words<'a> = (Verdict, &'a str, &'a [String]);
+type Words = (Verdict, String, Vec<String>);
 
 /// A wrong trace differs from scene to scene; a program that does not run ends in the same words each time.
-fn words(scene: &SceneGrade) -> Option<Words<'_>> {
+fn told(scene: &SceneGrade) -> Option<Words> {
     let fails = !matches!(scene.verdict, Verdict::Accepted | Verdict::WrongAnswer | Verdict::BadTrace);
-    fails.then_some((scene.verdict, scene.summary.as_str(), scene.details.as_slice()))
+    fails.then(|| (scene.verdict, words::summary(scene), words::details(scene)))
 }
 
 /// The scenes of which the same is told.
-fn alike(grade: &Grade) -> BTreeMap<Words<'_>, Vec<&str>> {
-    let mut alike: BTreeMap<Words<'_>, Vec<&str>> = BTreeMap::new();
+fn alike(grade: &Grade) -> BTreeMap<Words, Vec<&str>> {
+    let mut alike: BTreeMap<Words, Vec<&str>> = BTreeMap::new();
     for scene in grade.scenes() {
-        if let Some(words) = words(scene) {
+        if let Some(words) = told(scene) {
             alike.entry(words).or_default().push(&scene.scene);
         }
     }
@@ -54,8 +55,8 @@ struct Scenes<'a, 'b> {
     /// Columns of the longest name.
     width: usize,
     /// How often a scene's words have been told.
-    told: BTreeMap<Words<'a>, usize>,
-    alike: BTreeMap<Words<'a>, Vec<&'a str>>,
+    told: BTreeMap<Words, usize>,
+    alike: BTreeMap<Words, Vec<&'a str>>,
 }
 
 impl<'a> Scenes<'a, '_> {
@@ -78,7 +79,7 @@ impl<'a> Scenes<'a, '_> {
     }
 
     fn scene(&mut self, scene: &'a SceneGrade, folds: bool) -> String {
-        let seen = words(scene).map_or(0, |words| {
+        let seen = told(scene).map_or(0, |words| {
             let times = self.told.entry(words).or_default();
             *times += 1;
             *times - 1
@@ -103,12 +104,12 @@ impl<'a> Scenes<'a, '_> {
     fn details(&self, scene: &SceneGrade) -> String {
         let mut lines = Vec::new();
         if !scene.verdict.is_accepted() {
-            lines.push(one_line(&scene.summary));
+            lines.push(one_line(&words::summary(scene)));
         }
         lines.extend(difference(scene));
-        lines.extend(scene.details.iter().map(|line| one_line(line)));
+        lines.extend(words::details(scene).iter().map(|line| one_line(line)));
         lines.extend(explain::lines(&scene.explanations).iter().map(|line| one_line(line)));
-        let alike = words(scene).and_then(|words| self.alike.get(&words)).map_or(&[][..], |names| &names[1..]);
+        let alike = told(scene).and_then(|words| self.alike.get(&words)).map_or(&[][..], |names| &names[1..]);
         if !alike.is_empty() {
             lines.push(the_same(alike));
         }

@@ -1,0 +1,132 @@
+//! A stage for tests: programs that do what their names say, played by the sandbox's stand-in.
+use super::{
+    batch,
+    execute::Cancellation,
+    grade::Grade,
+    grader::{Grader, Options, Submission},
+    plan::{self, Plan},
+};
+use fosssim_model::{
+    sim::{RootSearch, Simulation},
+    trace::{Layout, Recorder},
+};
+use fosssim_sandbox::{Backend, Ended, FakeRun, Job, Stream};
+use std::{
+    path::Path,
+    sync::{Arc, Mutex},
+    time::Duration,
+};
+
+const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n[[group]]\nname = \"first\"\npoints = 10\n\
+                     scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
+                     scenes = [\"asset:PenaltyTests/*\"]\n";
+
+/// A limit for traces that the right ones of the small plan keep, in bytes.
+pub(super) const SMALL_TRACE: usize = 1 << 20;
+
+pub(super) fn small_plan() -> Plan {
+    plan::load(SUITE, Path::new("nowhere")).expect("a sound suite")
+}
+
+/// The right trace of the scene in a job's working folder.
+pub(super) fn right_trace(job: &Job) -> Vec<u8> {
+    let xml = std::fs::read(job.folder.join("scene.xml")).expect("the scene");
+    let scene = fosssim_model::scene::read("scene.xml", &xml).expect("a sound scene").scene;
+    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut recorder).expect("a step");
+    }
+    recorder.finish().expect("memory").0
+}
+
+/// Programs of this cast do what their names say.
+fn act(job: &Job) -> FakeRun {
+    match job.program.file_name().and_then(|name| name.to_str()) {
+        Some("right") => FakeRun::wrote(right_trace(job)),
+        Some("wrong") => {
+            let mut trace = right_trace(job);
+            // The first particle starts elsewhere: the first step does not follow from it, all others do.
+            let x = f64::from_le_bytes(trace[..8].try_into().expect("eight bytes"));
+            trace[..8].copy_from_slice(&(x + 1.0).to_le_bytes());
+            FakeRun::wrote(trace)
+        }
+        Some("trailing") => FakeRun::wrote([&right_trace(job)[..], b"more"].concat()),
+        Some("crash-after-right-trace") => FakeRun { ended: Ended::Signalled(11), ..FakeRun::wrote(right_trace(job)) },
+        Some("exit-1-after-right-trace") => FakeRun { ended: Ended::Exited(1), ..FakeRun::wrote(right_trace(job)) },
+        Some("nothing") => FakeRun::wrote([]),
+        Some("half") => {
+            let trace = right_trace(job);
+            FakeRun::wrote(&trace[..trace.len() / 2])
+        }
+        Some("slow") => FakeRun { ended: Ended::WallLimit, ..FakeRun::wrote([]) },
+        Some("lengthy") => FakeRun { cpu: Duration::from_secs(10), ..FakeRun::wrote(right_trace(job)) },
+        Some("fault-while-judging" | "fault-while-explaining") => FakeRun::wrote(right_trace(job)),
+        Some(name) if name.starts_with("right-then-") => {
+            let more = if name.contains("flood") { 2 * SMALL_TRACE } else { usize::from(name.contains("byte")) };
+            let ended = match name.rsplit('-').next() {
+                Some("exits") => Ended::Exited(0),
+                Some("fails") => Ended::Exited(1),
+                Some("crashes") => Ended::Signalled(11),
+                Some("unread") => Ended::Signalled(13),
+                Some("stopped") => Ended::OutputLimit(Stream::Trace),
+                Some("sleeps") => Ended::WallLimit,
+                other => panic!("no end {other:?}"),
+            };
+            FakeRun { ended, ..FakeRun::wrote([&right_trace(job)[..], &vec![b'x'; more]].concat()) }
+        }
+        Some("flood-of-nonsense") => FakeRun::wrote(vec![0xff; 2 * SMALL_TRACE]),
+        Some("hostile") => FakeRun::ended(Ended::Violation { call: "ptrace".to_owned() }),
+        name => panic!("no part for {name:?}"),
+    }
+}
+
+pub(super) struct Stage {
+    pub(super) folder: tempfile::TempDir,
+    backend: Backend,
+    pub(super) starts: Arc<Mutex<Vec<String>>>,
+}
+
+impl Stage {
+    pub(super) fn new() -> Self {
+        let starts: Arc<Mutex<Vec<String>>> = Arc::default();
+        let seen = starts.clone();
+        let backend = Backend::fake(move |job| {
+            let scene = std::fs::read(job.folder.join("scene.xml")).expect("the scene");
+            let name = job.program.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let begun = format!("{name} {}", blake3::hash(&scene));
+            seen.lock().expect("lock").push(begun);
+            act(job)
+        });
+        Self { folder: tempfile::tempdir().expect("folder"), backend, starts }
+    }
+
+    pub(super) fn submissions(&self, names: &[&str]) -> Vec<Submission> {
+        names
+            .iter()
+            .map(|name| {
+                let path = self.folder.path().join(name);
+                std::fs::write(&path, name).expect("a program");
+                Submission { name: (*name).to_owned(), path, program: None }
+            })
+            .collect()
+    }
+
+    pub(super) fn grader<'a>(&'a self, plan: &'a Plan) -> Grader<'a> {
+        let options = Options { jobs: 2, fail_fast: false, recorded: false };
+        let faults = self.folder.path();
+        Grader { plan, backend: &self.backend, options, faults, traces: None, cards: None, rehearse: &|_| {} }
+    }
+
+    pub(super) fn grade_by(&self, plan: &Plan, names: &[&str]) -> Vec<Grade> {
+        batch::run(&self.grader(plan), &self.submissions(names), None, &Cancellation::default(), &mut |_| {}).grades
+    }
+
+    pub(super) fn grade(&self, names: &[&str]) -> Vec<Grade> {
+        self.grade_by(&small_plan(), names)
+    }
+
+    pub(super) fn started(&self) -> usize {
+        self.starts.lock().expect("lock").len()
+    }
+}

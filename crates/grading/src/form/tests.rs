@@ -1,0 +1,237 @@
+use super::*;
+use crate::{
+    Key, Verdict,
+    result::{BadTrace, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, Stage as Doing, Unusable, Wrong},
+    told::{Account, Place, Told, ToldFinding},
+};
+use fosssim_sandbox::{Ended, StartProblem, Stream};
+use std::{path::PathBuf, time::Duration};
+
+fn key() -> Key {
+    Key::of(&blake3::hash(b"program"), b"scene", &[])
+}
+
+/// What comes back of a result.
+fn again(result: &SceneResult) -> SceneResult {
+    let entry = read(&write(&key(), "submission", result)).expect("our own form is sound");
+    assert_eq!((&entry.key, entry.submission.as_str()), (&key(), "submission"));
+    entry.result
+}
+
+fn pair(kind: PairKind) -> Pair {
+    Pair { kind, first: 3, second: 1 }
+}
+
+/// A finding of every sort, with the strangest numbers.
+fn findings() -> Vec<Finding> {
+    let pass = |stage| Pass { stage, index: 2 };
+    let place = |kind, stage, role| PolynomialPlace { pass: pass(stage), pair: pair(kind), role, index: 17 };
+    let first = place(PairKind::ParticleParticle, Stage::Simple, Role::Overlap);
+    let second = place(PairKind::ParticleEdge, Stage::ContinuousTime, Role::AlphaAboveZero);
+    let third = place(PairKind::ParticleHalfPlane, Stage::Impulses { round: 4 }, Role::AlphaBelowOne);
+    let last = place(PairKind::ParticleEdge, Stage::Geometric { round: 1 }, Role::Approach);
+    let expected =
+        Impulse { pair: pair(PairKind::ParticleEdge), normal: Vec2::new(-0.0, f64::INFINITY), time: 1.0 / 3.0 };
+    let actual = LoggedImpulse { kind: 9, first: -1, second: 2, normal: Vec2::new(5e-324, -1e308), time: 0.1 };
+    let polynomial = Polynomial::untrimmed(&[1e-300, f64::NEG_INFINITY, 0.3]);
+    let rescaled = Rescaled { power: 1, expected: 1.0, actual: 2.5, residual: 1.5 };
+    let details = [
+        Detail::MissedCollision { expected },
+        Detail::SuperfluousCollision { actual },
+        Detail::WrongNormal { expected, actual, residual: 0.7 },
+        Detail::PolynomialCount { expected: 4, actual: 8, per_pass: 4 },
+        Detail::PassCount { part: Part::Impulses, expected: 1, actual: 2 },
+        Detail::PassCount { part: Part::Geometric, expected: 1, actual: 2 },
+        Detail::PolynomialDegree {
+            place: first,
+            expected: polynomial,
+            actual_size: 9,
+            actual: Polynomial::untrimmed(&[]),
+        },
+        Detail::VanishingPolynomial { place: second, expected: polynomial, actual: polynomial },
+        Detail::Coefficient {
+            place: third,
+            power: 2,
+            expected: 0.1,
+            actual: 0.2,
+            residual: 0.1,
+            rescaled: Some(rescaled),
+            expected_polynomial: polynomial,
+            actual_polynomial: polynomial,
+        },
+        Detail::Position { particle: 2, expected: [0.1, 0.2], actual: [-0.0, 1e17], residual: f64::INFINITY },
+        Detail::Velocity { particle: 2, expected: [0.1, 0.2], actual: [0.3, 0.4], residual: 0.5 },
+        Detail::ContactTime { expected, actual },
+        Detail::RepeatedCollision { actual },
+        Detail::PassPositions { place: last },
+        Detail::RecordsDiffer { part: RecordPart::State },
+        Detail::RecordsDiffer { part: RecordPart::Impulses },
+        Detail::RecordsDiffer { part: RecordPart::Polynomials },
+        Detail::ImpossibleLog,
+        Detail::TrimmedDecision { place: last, collides: true },
+        Detail::TrimmedTime { place: last, expected: 0.5, actual: 2.0 },
+        Detail::BeyondReach { particle: 0, position: [1e300, 0.0], velocity: [0.0, f64::NEG_INFINITY] },
+        Detail::MixedForms { place: last },
+    ];
+    details.into_iter().map(|detail| Finding { step: 7, frame: 14, detail }).collect()
+}
+
+fn wrong() -> SceneResult {
+    let examples: Vec<_> = findings().into_iter().map(ToldFinding::Full).collect();
+    let places =
+        [Place::Step, Place::Pair(pair(PairKind::ParticleHalfPlane)), Place::Particle(3), Place::Objects(-1, i32::MAX)];
+    let mut counts = Counts::default();
+    for (number, kind) in Kind::ALL.into_iter().enumerate() {
+        counts.add(kind, u64::MAX / 20 * (number as u64 % 2));
+    }
+    let account = Account {
+        ruling: Ruling::WrongAnswer,
+        wrong_steps: u64::MAX,
+        counts,
+        first_divergence: examples.first().cloned(),
+        examples,
+    };
+    let told = |place| ToldFinding::Place { step: 0, kind: Kind::MixedForms, place };
+    let fair = Account {
+        ruling: Ruling::BadTrace,
+        first_divergence: None,
+        examples: places.map(told).into(),
+        ..account.clone()
+    };
+    let residuals = Residuals { accumulated_position: f64::INFINITY, maximum_position: 0.1, ..Residuals::default() };
+    let damage = Damage { frame: 1, step: 2, offset: 3, message: "\u{1b}[31m\n\"".to_owned() };
+    let example = Example {
+        step: 7,
+        place: "particles 0 and 1".to_owned(),
+        given: vec![ExampleValue { name: "x1".to_owned(), value: vec![0.1, -1e-300] }],
+        expected: vec![f64::INFINITY, 1.0 / 3.0],
+        actual: vec![f64::NEG_INFINITY],
+    };
+    let explanation = |example| Explanation {
+        key: "reversed".to_owned(),
+        what: "The coefficients are reversed.".to_owned(),
+        details: vec!["t^2".to_owned()],
+        reproduced: 4,
+        samples: 5,
+        example,
+        same_as: vec!["other".to_owned()],
+    };
+    let why = Reason::Wrong(Wrong::Steps { wrong: 3, first: 7, kind: Kind::Coefficient });
+    SceneResult {
+        ended: Some(Ended::Exited(0)),
+        differs: Some(Cause::ContactTime),
+        told: Some(Told {
+            official: Book::Fair,
+            parity: account,
+            fair: Some(fair),
+            residuals: Some(residuals),
+            damage: Some(damage),
+            trailing_bytes: true,
+        }),
+        explanations: vec![explanation(Some(example)), explanation(None)],
+        right_steps: 3,
+        cpu: Duration::new(5, 123_456_789),
+        wall: Duration::MAX,
+        memory: Some(u64::MAX),
+        stdout: "out\u{1b}[31m\u{202e}\0".to_owned(),
+        card: Some("0123".to_owned()),
+        ..SceneResult::without_run("Group/scene", 5, Verdict::WrongAnswer, why)
+    }
+}
+
+#[test]
+fn a_result_reads_back_the_same_to_the_last_bit() {
+    let result = wrong();
+    // Equality does not see the sign of a zero; this does.
+    assert_eq!(format!("{:?}", again(&result)), format!("{result:?}"));
+    let nan = Detail::WrongNormal {
+        expected: Impulse { pair: pair(PairKind::ParticleEdge), normal: Vec2::new(0.0, 1.0), time: f64::NAN },
+        actual: LoggedImpulse { kind: 0, first: 0, second: 0, normal: Vec2::new(f64::NAN, 0.0), time: 0.0 },
+        residual: f64::NAN,
+    };
+    let mut strange = result;
+    let told = strange.told.as_mut().expect("something");
+    told.parity.examples = vec![ToldFinding::Full(Finding { step: 1, frame: 1, detail: nan })];
+    assert_eq!(format!("{:?}", again(&strange)), format!("{strange:?}"));
+}
+
+#[test]
+fn every_reason_and_every_end_reads_back() {
+    let unreadable = |cause| BadTrace::Unreadable { frame: 9, step: 5, cause, offset: 77, damage: "cut".to_owned() };
+    let errors = [
+        StepError::RootSearch { step: 1, pair: pair(PairKind::ParticleEdge) },
+        StepError::Newton { step: 2 },
+        StepError::VortexHessian { step: 3 },
+        StepError::Work { step: 4 },
+    ];
+    let causes = [Unreadable::State, Unreadable::Impulses, Unreadable::Memory, Unreadable::Limit, Unreadable::Io];
+    let others = Found::Others { names: vec!["a/".to_owned()], more: 3, elsewhere: Some("b/c".to_owned()) };
+    let mut reasons: Vec<Reason> = vec![
+        Reason::Right,
+        Reason::NoTrace,
+        Reason::Program(None),
+        Reason::Program(Some(Reached { limit: Limit::Time(Duration::from_millis(1500)), steps: 3 })),
+        Reason::Program(Some(Reached { limit: Limit::Memory(1 << 30), steps: 0 })),
+        Reason::Stopped,
+        Reason::DoesNotBuild,
+    ];
+    let wrong = [Wrong::Untold, Wrong::FirstRecord(Kind::Position), Wrong::Damaged, Wrong::SmallErrors];
+    reasons.extend(wrong.map(Reason::Wrong));
+    reasons.extend(errors.map(|error| Reason::Trace(BadTrace::NoResult(error))));
+    reasons.extend(causes.map(|cause| Reason::Trace(unreadable(cause))));
+    reasons.extend(
+        [BadTrace::NoEnd, BadTrace::Damaged, BadTrace::TrailingBytes, BadTrace::Undecided, BadTrace::Unfinished]
+            .map(Reason::Trace),
+    );
+    let total = LeftOut::Total(Duration::from_secs(600));
+    reasons.extend([LeftOut::TimeOuts(3), total, LeftOut::FailFast].map(Reason::LeftOut));
+    let missing = StartProblem::MissingInterpreter { interpreter: "/bin/x".to_owned(), hint: "; install it".into() };
+    for found in [Found::Unreadable("no".to_owned()), Found::Nothing, others] {
+        reasons.push(Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found }));
+    }
+    reasons.push(Reason::Unusable(Unusable::CouldNotStart(missing.clone())));
+    reasons.push(Reason::Unusable(Unusable::Unreadable("closed".to_owned())));
+    reasons.push(Reason::Failed(Failure::Machine("no space".to_owned())));
+    let kept = KeptTrace::In(PathBuf::from("faults/a.bin"));
+    let lost = KeptTrace::Lost { folder: PathBuf::from("faults"), error: "full".to_owned() };
+    for (stage, trace) in [
+        (None, None),
+        (Some(Doing::Judging), Some(kept)),
+        (Some(Doing::Explaining), Some(lost)),
+        (Some(Doing::Reporting), None),
+    ] {
+        reasons.push(Reason::Failed(Failure::Panic { stage, fault: "at x.rs:1".to_owned(), trace }));
+    }
+    for reason in reasons {
+        let result = SceneResult::without_run("a/b", 5, Verdict::RuntimeError, reason);
+        assert_eq!(again(&result), result);
+    }
+    for ended in [
+        Ended::Exited(-1),
+        Ended::Signalled(11),
+        Ended::CpuLimit,
+        Ended::OutputLimit(Stream::Trace),
+        Ended::Violation { call: "ptrace".to_owned() },
+        Ended::CouldNotStart(missing),
+        Ended::Cancelled,
+    ] {
+        let result = SceneResult {
+            ended: Some(ended),
+            ..SceneResult::without_run("a/b", 5, Verdict::RuntimeError, Reason::Program(None))
+        };
+        assert_eq!(again(&result), result);
+    }
+}
+
+#[test]
+fn another_version_and_damage_are_not_read() {
+    let written = String::from_utf8(write(&key(), "submission", &wrong())).expect("text");
+    assert!(read(written.as_bytes()).is_some());
+    assert!(!written.contains('\n'), "one line");
+    assert!(read(written.replacen("\"form\":1", "\"form\":2", 1).as_bytes()).is_none());
+    assert!(read(written.replacen("\"coefficient\"", "\"coeficient\"", 1).as_bytes()).is_none());
+    let seven = "[1,2,3,4,5,6,7]";
+    let many = written.replacen("[1e-300,\"-inf\",0.3]", seven, 1);
+    assert!(many.contains(seven) && read(many.as_bytes()).is_none(), "no polynomial is that long");
+    assert!(read(&written.as_bytes()[..written.len() - 3]).is_none());
+}

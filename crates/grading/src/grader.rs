@@ -1,0 +1,379 @@
+//! Grades one submission: the unit of which everything that grades consists.
+//!
+//! A single submission, a class and an autograder all go through a `Grading`, scene by scene: whoever has several jobs
+//! shares the scenes out among them ([`batch`]). A result is kept before it is told; what is found is not run
+//! again. A panic in the work on one scene is a judge error of that scene.
+use super::{
+    batch::{self, Event, GradeFault},
+    cards::Cards,
+    execute::{Cancellation, Runner, SceneTask},
+    grade::Grade,
+    guard::guarded,
+    key::Key,
+    patience,
+    plan::Plan,
+    result::{Failure, LeftOut, Reason, SceneResult},
+    results::{KeepError, Results},
+    staging::{self, Staged, StagingError},
+    verdict::Verdict,
+};
+use fosssim_judge::Rules;
+use fosssim_sandbox::Backend;
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
+    time::{Duration, Instant},
+};
+
+mod assemble;
+
+/// What is graded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Submission {
+    /// Its name in reports.
+    pub name: String,
+    /// The program, or the folder of sources when the plan builds.
+    pub path: PathBuf,
+    /// The program's name in the folder `path`, which somebody else filled. Links are not followed, and nothing is built.
+    pub program: Option<String>,
+}
+
+impl Submission {
+    /// The name of its program's file.
+    fn called(&self) -> String {
+        called(&self.program.as_ref().map_or_else(|| self.path.clone(), |program| self.path.join(program)))
+    }
+}
+
+/// How to go about it.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Runs at one time.
+    pub jobs: usize,
+    /// Whether a submission's first scene that is not accepted is the last one that is run.
+    pub fail_fast: bool,
+    /// Whether traces are judged against the recordings instead of the reference simulator.
+    pub recorded: bool,
+}
+
+/// Where to put the trace of a submission's scene.
+pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> PathBuf + Sync + 'a;
+
+/// Everything that the submissions of one grading have in common.
+#[derive(Clone, Copy)]
+pub struct Grader<'a> {
+    /// What to run.
+    pub plan: &'a Plan,
+    /// Where to run it.
+    pub backend: &'a Backend,
+    /// How.
+    pub options: Options,
+    /// The folder for traces on which the grader itself failed; made when it is needed.
+    pub faults: &'a Path,
+    /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
+    pub traces: Option<&'a TraceFile<'a>>,
+    /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
+    pub cards: Option<Cards<'a>>,
+    /// Shows a result in the forms in which it will be reported, for nobody to see ([`Runner::rehearse`]).
+    pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
+}
+
+impl Grader<'_> {
+    /// Grades one submission. Its number in events is 0. After a cancellation the scenes that were not run say so.
+    ///
+    /// Without `results` nothing is looked up or kept. The fault is what went wrong besides, beside a whole grade.
+    pub fn grade_submission(
+        &self,
+        submission: &Submission,
+        results: Option<&dyn Results>,
+        cancellation: &Cancellation,
+        events: &mut dyn FnMut(Event<'_>),
+    ) -> (Option<Grade>, Option<GradeFault>) {
+        let graded = batch::run(self, std::slice::from_ref(submission), results, cancellation, events);
+        (graded.grades.into_iter().next(), graded.fault)
+    }
+
+    /// Against recordings there is nothing but the original's rules: the fair ones follow the submission.
+    const fn effective_rules(&self) -> Rules {
+        if self.options.recorded { Rules::Parity } else { self.plan.rules }
+    }
+
+    /// Everything besides program and scene that a result depends on.
+    fn words(&self) -> Vec<String> {
+        let walls = self.backend.layers().iter().filter(|report| report.active);
+        vec![
+            walls.map(|report| report.layer.name()).collect::<Vec<_>>().join(","),
+            self.effective_rules().name().to_owned(),
+            self.plan.run.join("\u{1f}"),
+            format!("{:?}", self.plan.limits),
+            format!("{:?}", self.plan.hints),
+            format!("recorded={}", self.options.recorded),
+        ]
+    }
+}
+
+/// What the submissions of one grading share while they are graded.
+pub(super) struct Shared<'a> {
+    cancellation: &'a Cancellation,
+    results: Option<&'a dyn Results>,
+    /// What keys hold besides program and scene.
+    words: Vec<String>,
+    /// Kept by this very grading: equal programs of two submissions are both run, whatever the number of jobs.
+    kept: Mutex<BTreeSet<Key>>,
+    /// Why results can't be kept any more.
+    full: OnceLock<KeepError>,
+}
+
+impl<'a> Shared<'a> {
+    pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
+        Self { cancellation, results, words: grader.words(), kept: Mutex::default(), full: OnceLock::new() }
+    }
+
+    /// Why results could no longer be kept.
+    pub(super) fn into_fault(self) -> Option<KeepError> {
+        self.full.into_inner()
+    }
+
+    fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str) -> Key {
+        // A program may behave as it is called, so its name belongs to what is graded.
+        let own = [scene.name.as_str(), called];
+        let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
+        Key::of(digest, &scene.xml, &words)
+    }
+
+    /// An earlier result. Where traces or cards are wanted, it is none without them.
+    fn find(&self, key: &Key, trace: Option<&Path>, cards: Option<Cards<'_>>) -> Option<Done> {
+        let results = self.results?;
+        if lock(&self.kept).contains(key) {
+            return None;
+        }
+        let result = results.find(key)?;
+        let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.exists());
+        let lacks_card = cards.is_some_and(|cards| cards.lack(&result));
+        (!lacks_trace && !lacks_card).then_some(Done { result, cached: true, key: None })
+    }
+
+    /// Keeps a result. When that fails, grading is stopped: what can't be kept would be done in vain. Faults of ours and
+    /// scenes that were not run are tried again instead.
+    fn keep(&self, key: Key, submission: &Submission, result: &SceneResult) {
+        let Some(results) = self.results else { return };
+        if self.full.get().is_some() || matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
+            return;
+        }
+        lock(&self.kept).insert(key.clone());
+        let kept = guarded(|| results.keep(&key, &submission.name, result));
+        if let Err(error) = kept.unwrap_or_else(|fault| Err(KeepError::from(Box::from(fault.to_string())))) {
+            let _ = self.full.set(error);
+            self.cancellation.cancel();
+        }
+    }
+}
+
+/// A scene that has its result.
+struct Done {
+    result: SceneResult,
+    /// Taken from an earlier run.
+    cached: bool,
+    /// Under what it is to be kept; what was found needs no keeping.
+    key: Option<Key>,
+}
+
+impl Done {
+    fn unkept(result: SceneResult) -> Self {
+        Self { result, cached: false, key: None }
+    }
+}
+
+/// What is told of a scene at work.
+pub(super) enum Progress {
+    /// It begins.
+    Begins,
+    /// Steps have been judged up to this one; not every step is told.
+    Step(u32),
+}
+
+/// One submission at work. Any number of jobs may take its scenes: it is staged once, by the first job that has to run it,
+/// and its copy stays until the grade is drawn.
+pub(super) struct Grading<'a> {
+    grader: &'a Grader<'a>,
+    shared: &'a Shared<'a>,
+    submission: &'a Submission,
+    /// The digest of the program as it lies there; none for what has to be built or copied first.
+    digest: OnceLock<Option<blake3::Hash>>,
+    staged: Mutex<Option<Arc<Result<Staged, String>>>>,
+    known: Mutex<Known>,
+}
+
+/// What is known of a submission's scenes.
+struct Known {
+    /// Verdict and wall time of every scene that is done.
+    done: Vec<Option<(Verdict, Duration)>>,
+    /// The first scene that is not run any more, and why.
+    end: Option<(usize, LeftOut)>,
+}
+
+impl<'a> Grading<'a> {
+    /// A submission of which nothing is known yet.
+    pub(super) fn new(grader: &'a Grader<'a>, shared: &'a Shared<'a>, submission: &'a Submission) -> Self {
+        let done = vec![None; grader.plan.scenes().count()];
+        Self {
+            grader,
+            shared,
+            submission,
+            digest: OnceLock::new(),
+            staged: Mutex::default(),
+            known: Mutex::new(Known { done, end: None }),
+        }
+    }
+
+    /// Finds or makes the result of a scene, by its number in the plan, and keeps it; with the word whether it was found.
+    pub(super) fn scene(
+        &self,
+        number: usize,
+        scene: &SceneTask,
+        tell: &mut dyn FnMut(Progress),
+    ) -> (SceneResult, bool) {
+        let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
+            let failure = Failure::Panic { stage: None, fault: fault.to_string(), trace: None };
+            let (steps, why) = (scene.scene.steps(), Reason::Failed(failure));
+            Done::unkept(SceneResult::without_run(&scene.name, steps, Verdict::JudgeError, why))
+        });
+        let Done { result, cached, key } = done;
+        self.note(number, &result);
+        if let Some(key) = key {
+            self.shared.keep(key, self.submission, &result);
+        }
+        (result, cached)
+    }
+
+    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(Progress)) -> Done {
+        let without_run =
+            |verdict, why| Done::unkept(SceneResult::without_run(&scene.name, scene.scene.steps(), verdict, why));
+        if let Some(why) = self.left_out(number) {
+            return Done::unkept(patience::left_out(scene, why));
+        }
+        tell(Progress::Begins);
+        let (grader, shared, submission) = (self.grader, self.shared, self.submission);
+        let trace = grader.traces.map(|path| path(submission, scene));
+        let trace = trace.as_deref();
+        let found = self
+            .digest()
+            .and_then(|digest| shared.find(&shared.key(&digest, scene, &submission.called()), trace, grader.cards));
+        if let Some(done) = found {
+            return done;
+        }
+        match &*self.staged() {
+            Err(message) => {
+                let failure = Failure::Machine(message.clone());
+                without_run(Verdict::JudgeError, Reason::Failed(failure))
+            }
+            Ok(Staged { refused: Some(why), .. }) => without_run(Verdict::Unusable, Reason::Unusable(why.clone())),
+            Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.end.is_success()) => {
+                match shared.cancellation.is_cancelled() {
+                    true => without_run(Verdict::NotRun, Reason::Stopped),
+                    false => without_run(Verdict::CompileError, Reason::DoesNotBuild),
+                }
+            }
+            Ok(staged) => {
+                let key = shared.key(&staged.digest, scene, &called(&staged.program));
+                shared.find(&key, trace, grader.cards).unwrap_or_else(|| {
+                    let result = self.run(staged, scene, trace, tell);
+                    Done { result, cached: false, key: Some(key) }
+                })
+            }
+        }
+    }
+
+    fn run(
+        &self,
+        staged: &Staged,
+        scene: &SceneTask,
+        trace: Option<&Path>,
+        tell: &mut dyn FnMut(Progress),
+    ) -> SceneResult {
+        let grader = self.grader;
+        let mut told = Instant::now();
+        let mut on_step = |step| {
+            // A display can't show more, and a channel should not hold more.
+            if told.elapsed() > Duration::from_millis(100) {
+                told = Instant::now();
+                tell(Progress::Step(step));
+            }
+        };
+        let to = |_: &SceneTask| trace.map(Path::to_owned).unwrap_or_default();
+        let traces: Option<&(dyn Fn(&SceneTask) -> PathBuf + Sync)> = if trace.is_some() { Some(&to) } else { None };
+        let runner = Runner {
+            backend: grader.backend,
+            run: &grader.plan.run,
+            limits: &grader.plan.limits,
+            rules: grader.effective_rules(),
+            hints: grader.plan.hints,
+            recorded: grader.options.recorded,
+            cancellation: self.shared.cancellation,
+            faults: grader.faults,
+            traces,
+            cards: grader.cards,
+            rehearse: grader.rehearse,
+        };
+        runner.grade(staged, scene, &mut on_step)
+    }
+
+    /// Why this scene is not to be run.
+    fn left_out(&self, scene: usize) -> Option<LeftOut> {
+        lock(&self.known).end.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
+    }
+
+    /// Notes a result, and whether it is the end.
+    fn note(&self, scene: usize, result: &SceneResult) {
+        let mut known = lock(&self.known);
+        known.done[scene] = Some((result.verdict, result.wall));
+        if known.end.is_none_or(|(end, _)| scene < end) {
+            let end = patience::end(&self.grader.plan.patience, self.grader.options.fail_fast, &known.done);
+            known.end = end.or(known.end);
+        }
+    }
+
+    /// The digest of a program that needs no build and no copy to be known.
+    fn digest(&self) -> Option<blake3::Hash> {
+        *self.digest.get_or_init(|| match &self.submission.program {
+            _ if self.builds() => None,
+            Some(program) => staging::digest_in(&self.submission.path, program),
+            None => staging::digest(&self.submission.path),
+        })
+    }
+
+    /// Whether it is a folder of sources.
+    fn builds(&self) -> bool {
+        let Submission { path, program, .. } = self.submission;
+        self.grader.plan.build.is_some() && program.is_none() && path.is_dir()
+    }
+
+    /// The staged submission; whoever comes first stages it, the others wait.
+    fn staged(&self) -> Arc<Result<Staged, String>> {
+        lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage().map_err(|error| error.to_string()))).clone()
+    }
+
+    fn stage(&self) -> Result<Staged, StagingError> {
+        let Submission { path, program, .. } = self.submission;
+        match (&self.grader.plan.build, program) {
+            (Some(step), None) if self.builds() => {
+                staging::build(path, step, self.grader.backend, self.shared.cancellation)
+            }
+            (_, Some(program)) => staging::program_in(path, program),
+            (_, None) => staging::program(path),
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The name of a program's file.
+fn called(program: &Path) -> String {
+    program.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,110 @@
+use super::*;
+use crate::{
+    batch::GradeFault,
+    cast::{Stage, small_plan},
+    results::{Folder, Memory},
+};
+
+fn grade(
+    grader: &Grader<'_>,
+    submission: &Submission,
+    results: &dyn Results,
+) -> (Grade, Option<GradeFault>, Vec<String>) {
+    let mut told = Vec::new();
+    let (grade, fault) = grader.grade_submission(submission, Some(results), &Cancellation::default(), &mut |event| {
+        if let Event::SceneDone { submission: 0, result, cached, .. } = event {
+            told.push(format!("{} {cached}", result.scene));
+        }
+    });
+    (grade.expect("a grade"), fault, told)
+}
+
+/// What a grade says, but for whether its results were found.
+fn says(grade: &Grade) -> (Verdict, Option<f64>, Vec<SceneResult>) {
+    (grade.verdict, grade.points, grade.scenes().map(|scene| scene.result.clone()).collect())
+}
+
+#[test]
+fn a_submission_is_graded_the_same_wherever_its_results_are_kept_and_nothing_is_run_twice() {
+    let (stage, plan) = (Stage::new(), small_plan());
+    let scenes = plan.scenes().count();
+    let grader = stage.grader(&plan);
+    let folder = tempfile::tempdir().expect("folder");
+    for name in ["right", "wrong", "half"] {
+        let submission = stage.submissions(&[name]).remove(0);
+        let before = stage.started();
+        let memory = Memory::default();
+        let (first, fault, told) = grade(&grader, &submission, &memory);
+        assert!(fault.is_none() && first.taken_over() == 0);
+        assert_eq!((told.len(), memory.len(), stage.started() - before), (scenes, scenes, scenes));
+        let (again, _, told) = grade(&grader, &submission, &memory);
+        assert_eq!((again.taken_over(), stage.started() - before), (scenes, scenes), "all of it is found");
+        assert!(told.iter().all(|line| line.ends_with("true")));
+        let journal = Folder::open(folder.path(), false).expect("a journal");
+        let (on_disk, _, _) = grade(&grader, &submission, &journal);
+        drop(journal);
+        let read = Folder::open(folder.path(), false).expect("a journal");
+        let (from_disk, _, _) = grade(&grader, &submission, &read);
+        assert_eq!((on_disk.taken_over(), from_disk.taken_over()), (0, scenes));
+        for other in [&again, &on_disk, &from_disk] {
+            assert_eq!(says(other), says(&first), "{name}");
+        }
+    }
+}
+
+#[test]
+fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() {
+    let (stage, plan) = (Stage::new(), small_plan());
+    let mut grader = stage.grader(&plan);
+    grader.options.jobs = 1;
+    let submission = stage.submissions(&["right"]).remove(0);
+    let small = Memory::with_room(3);
+    let (stopped, fault, told) = grade(&grader, &submission, &small);
+    assert!(matches!(&fault, Some(GradeFault::Keeping(error)) if error.to_string().contains("room")), "{fault:?}");
+    assert_eq!((stopped.points, stopped.is_incomplete(), stopped.verdict), (None, true, Verdict::NotRun));
+    assert_eq!((small.len(), stage.started()), (3, 4), "the fourth result was one too many");
+    assert_eq!(told.len(), plan.scenes().count(), "every scene is told of all the same");
+    // Whoever makes room goes on from there.
+    let (resumed, _, _) = grade(&grader, &submission, &small);
+    assert_eq!((resumed.taken_over(), stage.started()), (3, 5));
+}
+
+#[test]
+fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
+    let (stage, plan) = (Stage::new(), small_plan());
+    let scenes = plan.scenes().count();
+    let troubled = plan.scenes().nth(2).expect("a scene").name.clone();
+    let submission = stage.submissions(&["wrong"]).remove(0);
+    let memory = Memory::default();
+    let rehearse = |result: &SceneResult| assert!(result.scene != troubled, "no report of this");
+    let grader = Grader { rehearse: &rehearse, ..stage.grader(&plan) };
+    let (failed, fault, _) = grade(&grader, &submission, &memory);
+    assert!(fault.is_none());
+    let errors: Vec<_> = failed.scenes().filter(|scene| scene.verdict == Verdict::JudgeError).collect();
+    assert_eq!(errors.iter().map(|scene| scene.scene.as_str()).collect::<Vec<_>>(), [troubled.as_str()]);
+    assert_eq!((failed.points, memory.len()), (None, scenes - 1), "nobody's zero, and not kept");
+    let (mended, _, _) = grade(&stage.grader(&plan), &submission, &memory);
+    assert_eq!((mended.verdict, mended.taken_over()), (Verdict::WrongAnswer, scenes - 1));
+}
+
+/// A place that fails in the worst way.
+struct Panics;
+
+impl Results for Panics {
+    fn find(&self, _: &Key) -> Option<SceneResult> {
+        None
+    }
+
+    fn keep(&self, _: &Key, _: &str, _: &SceneResult) -> Result<(), KeepError> {
+        panic!("no place")
+    }
+}
+
+#[test]
+fn a_place_that_panics_is_a_fault_and_no_end() {
+    let (stage, plan) = (Stage::new(), small_plan());
+    let submission = stage.submissions(&["right"]).remove(0);
+    let (stopped, fault, _) = grade(&stage.grader(&plan), &submission, &Panics);
+    assert!(matches!(&fault, Some(GradeFault::Keeping(error)) if error.to_string().contains("no place")), "{fault:?}");
+    assert!(stopped.is_incomplete());
+}

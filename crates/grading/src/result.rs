@@ -1,0 +1,279 @@
+//! What happened on one scene, as values: renderers make the words of it (`fosssim_report::words`), scoring the points.
+use super::{form, told::Told, verdict::Verdict};
+use fosssim_judge::{Kind, Unreadable, fair::Cause};
+use fosssim_mistakes::diagnose::Explanation;
+use fosssim_model::sim::StepError;
+use serde::{Deserialize, Serialize};
+use std::{path::PathBuf, time::Duration};
+
+pub use fosssim_sandbox::{Ended, StartProblem};
+
+/// What happened on one scene: everything but its points, which follow from the suite. It holds no more than the suite's
+/// hints let through, so that nothing that is made of it can give away more.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneResult {
+    /// The scene's name, `Group/name`.
+    pub scene: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why that is the verdict.
+    pub reason: Reason,
+    /// How the program ended, if it was run.
+    pub ended: Option<Ended>,
+    /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
+    #[serde(with = "form::cause")]
+    pub differs: Option<Cause>,
+    /// What may be told of the trace.
+    pub told: Option<Told>,
+    /// Likely mistakes, the likeliest first; no more of them than the suite's hints let through.
+    #[serde(with = "form::explanations")]
+    pub explanations: Vec<Explanation>,
+    /// Steps without a finding, of all steps.
+    pub right_steps: u32,
+    /// Steps of the scene.
+    pub steps: u32,
+    /// Processor time of the program.
+    pub cpu: Duration,
+    /// Wall time of the run.
+    pub wall: Duration,
+    /// Peak memory of the program in bytes, when known.
+    pub memory: Option<u64>,
+    /// What the program wrote to its standard output, capped; raw text that a report has to escape.
+    pub stdout: String,
+    /// What the program wrote to its standard error, capped; raw text that a report has to escape.
+    pub stderr: String,
+    /// The name of the card that was drawn of its trace ([`cards`](crate::cards)).
+    pub card: Option<String>,
+}
+
+impl SceneResult {
+    /// A scene without a run, with the reason.
+    #[must_use]
+    pub fn without_run(scene: &str, steps: u32, verdict: Verdict, reason: Reason) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            verdict,
+            reason,
+            ended: None,
+            differs: None,
+            told: None,
+            explanations: Vec::new(),
+            right_steps: 0,
+            steps,
+            cpu: Duration::ZERO,
+            wall: Duration::ZERO,
+            memory: None,
+            stdout: String::new(),
+            stderr: String::new(),
+            card: None,
+        }
+    }
+}
+
+/// Why a scene has its verdict.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Reason {
+    /// Every step is right.
+    Right,
+    /// The trace is complete and wrong.
+    Wrong(Wrong),
+    /// The trace can't be followed to its end.
+    Trace(BadTrace),
+    /// The program wrote no trace.
+    NoTrace,
+    /// How the program ended ([`SceneResult::ended`]), with the limit that it ran into, if it was stopped at one.
+    Program(Option<Reached>),
+    /// The scene was left out.
+    LeftOut(LeftOut),
+    /// Grading was stopped.
+    Stopped,
+    /// The sources do not build.
+    DoesNotBuild,
+    /// The submission itself can't be run.
+    Unusable(Unusable),
+    /// The grader failed.
+    Failed(Failure),
+}
+
+/// In what a trace is wrong, as far as hints tell it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Wrong {
+    /// Hints tell nothing.
+    Untold,
+    /// In its first record alone.
+    FirstRecord(#[serde(with = "form::kind")] Kind),
+    /// In steps.
+    Steps {
+        /// So many of them.
+        wrong: u64,
+        /// The first one.
+        first: u32,
+        /// What is wrong there first.
+        #[serde(with = "form::kind")]
+        kind: Kind,
+    },
+    /// Only in that its records are damaged.
+    Damaged,
+    /// In no step: small errors add up beyond the tolerance.
+    SmallErrors,
+}
+
+/// Why a trace can't be followed to its end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum BadTrace {
+    /// A record can't be read.
+    Unreadable {
+        /// The frame, from 0.
+        frame: u64,
+        /// The step it belongs to; 0 for the first record.
+        step: u32,
+        /// What of it.
+        #[serde(with = "form::UnreadableForm")]
+        cause: Unreadable,
+        /// Byte offset of the damage.
+        offset: u64,
+        /// The damage, as the reader tells it.
+        damage: String,
+    },
+    /// The trace's own states lead into a step without result.
+    NoResult(#[serde(with = "form::StepErrorForm")] StepError),
+    /// By the fair rules: the trace's own polynomials lead into a search without end.
+    NoEnd,
+    /// By the fair rules: it is damaged.
+    Damaged,
+    /// By the fair rules: bytes follow its last record.
+    TrailingBytes,
+    /// By the fair rules: most of its decisions differ from the reference's, though round-off may flip them.
+    Undecided,
+    /// It was not judged to its end.
+    Unfinished,
+}
+
+/// A limit that a program was stopped at, and how far its trace had come by then.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Reached {
+    /// The limit.
+    pub limit: Limit,
+    /// Steps that had been judged.
+    pub steps: u32,
+}
+
+/// A limit of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Limit {
+    /// Of time: on the processor or on the clock, as the program's end says.
+    Time(Duration),
+    /// Of memory, in bytes.
+    Memory(u64),
+}
+
+/// Why a scene is not run any more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LeftOut {
+    /// So many scenes in a row ran out of time.
+    TimeOuts(u32),
+    /// The submission has used up its time.
+    Total(Duration),
+    /// A scene is not accepted, and somebody has asked to stop there.
+    FailFast,
+}
+
+/// Why a submission can't be run: its own fault.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Unusable {
+    /// Its program can't be started.
+    CouldNotStart(StartProblem),
+    /// There is no program of the name that is looked for.
+    NoProgram {
+        /// That name.
+        sought: String,
+        /// What is there instead.
+        found: Found,
+    },
+    /// Its program can't be read or copied, for this reason of the operating system or of the copy.
+    Unreadable(String),
+}
+
+/// What a submission's folder holds where a program is missing.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Found {
+    /// It can't be read, for this reason of the operating system.
+    Unreadable(String),
+    /// It is empty.
+    Nothing,
+    /// It holds other files and folders.
+    Others {
+        /// The first ones by name; folders end in a slash.
+        names: Vec<String>,
+        /// How many there are besides.
+        more: usize,
+        /// A file of the right name in another place.
+        elsewhere: Option<String>,
+    },
+}
+
+/// What the grader failed on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Failure {
+    /// The machine, or what the grader was given, in its own words.
+    Machine(String),
+    /// Itself: a panic, with its words and its place in the source.
+    Panic {
+        /// What it was doing; nothing, where that is not known.
+        stage: Option<Stage>,
+        /// The panic.
+        fault: String,
+        /// Where the trace is that it failed on.
+        trace: Option<KeptTrace>,
+    },
+}
+
+/// What the grader was doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Stage {
+    /// Comparing the trace with the reference.
+    Judging,
+    /// Looking for the likely mistake.
+    Explaining,
+    /// Making reports.
+    Reporting,
+}
+
+/// What became of a trace on which the grader failed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum KeptTrace {
+    /// It is in this file.
+    In(PathBuf),
+    /// It could not be kept.
+    Lost {
+        /// The folder for it.
+        folder: PathBuf,
+        /// Why, as the operating system says it.
+        error: String,
+    },
+}
+
+/// How a build ended.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BuildEnd {
+    /// It made the program.
+    Made,
+    /// It ended in another way than with exit code 0.
+    Ended(Ended),
+    /// It ended well and made no program of this name.
+    MadeNo(String),
+    /// What it made can't be used, for this reason.
+    Unusable(String),
+    /// The sources can't be copied, for this reason.
+    Sources(String),
+    /// The sources lack this script, which builds them.
+    NoScript(String),
+}
+
+impl BuildEnd {
+    /// Whether there is a program.
+    #[must_use]
+    pub const fn is_success(&self) -> bool {
+        matches!(self, Self::Made)
+    }
+}

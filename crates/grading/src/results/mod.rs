@@ -1,0 +1,32 @@
+//! Where results are kept, so that nothing is lost and nothing is done twice.
+//!
+//! Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene, rule or grader
+//! is simply not found. What becomes of a grading does not depend on where its results are kept.
+mod folder;
+mod memory;
+
+pub use folder::{Folder, OpenError, line, read_line};
+pub use memory::Memory;
+
+pub use super::form::Entry;
+
+use super::{key::Key, result::SceneResult};
+use std::error::Error;
+
+/// A place for results, which several jobs use at one time.
+pub trait Results: Sync {
+    /// The result that was kept under this key; of several the last one.
+    fn find(&self, key: &Key) -> Option<SceneResult>;
+
+    /// Keeps a result. A place that outlives the grader has it written when this returns. The submission's name is for
+    /// people only.
+    ///
+    /// # Errors
+    /// When it can't be kept, for example because the disk is full. What was kept before stays.
+    fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError>;
+}
+
+/// Why a result can't be kept: always ours or the machine's fault.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+pub struct KeepError(#[from] Box<dyn Error + Send + Sync>);

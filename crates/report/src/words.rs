@@ -1,0 +1,232 @@
+//! What happened on scenes, in words. Results travel as values up to here; every report takes its sentences from this place.
+use fosssim_grading::{
+    Grade, Unfit, Verdict,
+    result::{
+        BadTrace, BuildEnd, Ended, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, SceneResult, Stage,
+        Unusable, Wrong,
+    },
+    told::{Account, Place, ToldFinding},
+};
+use fosssim_judge::{Kind, PairWords, Unreadable, share};
+
+/// The exit code of shells and loaders that did not find what they were to run.
+const NOT_FOUND: i32 = 127;
+
+/// One sentence that says what happened on a scene.
+#[must_use]
+pub fn summary(result: &SceneResult) -> String {
+    match &result.reason {
+        Reason::Right => share::right(result.steps, number),
+        Reason::Wrong(wrong) => of_wrong(wrong, result.steps),
+        Reason::Trace(bad) => of_bad_trace(bad),
+        Reason::NoTrace => "the program wrote no trace; it has to write the file that -o names".to_owned(),
+        Reason::Program(reached) => {
+            let ended = result.ended.as_ref().map(Ended::to_string).unwrap_or_default();
+            let limit = reached.map(|reached| of_limit(reached, result.steps)).unwrap_or_default();
+            format!("the program {ended}{limit}")
+        }
+        Reason::LeftOut(why) => of_left_out(*why),
+        Reason::Stopped => "grading was stopped".to_owned(),
+        Reason::DoesNotBuild => "the sources do not build".to_owned(),
+        Reason::Unusable(why) => of_unusable(why),
+        Reason::Failed(failure) => of_failure(failure),
+    }
+}
+
+/// What else is to be said of a scene, line by line: the first divergence, counts, damage, where a trace is kept.
+#[must_use]
+pub fn details(result: &SceneResult) -> Vec<String> {
+    let mut lines = Vec::new();
+    if result.ended == Some(Ended::Exited(NOT_FOUND)) {
+        lines.push(
+            "exit code 127 usually means that something was not found: the program is alone when it runs, and files \
+             that lie beside it are not there"
+                .to_owned(),
+        );
+    }
+    if let Some(told) = &result.told {
+        lines.extend(told.account().first_divergence.as_ref().map(first_divergence));
+        lines.extend(counts(told.account()));
+        if let Some(damage) = &told.damage {
+            lines.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.message));
+        }
+        if told.trailing_bytes {
+            lines.push("bytes follow the last record".to_owned());
+        }
+    }
+    if let Reason::Failed(Failure::Panic { trace: Some(trace), .. }) = &result.reason {
+        lines.push(match trace {
+            KeptTrace::In(path) => {
+                format!("the trace is kept in {}; please report this with the scene and the trace", path.display())
+            }
+            KeptTrace::Lost { folder, error } => {
+                format!("the trace could not be kept in {}: {error}", folder.display())
+            }
+        });
+    }
+    lines
+}
+
+/// What is wrong with the submission itself, and so with each of its scenes.
+#[must_use]
+pub fn unfit(grade: &Grade) -> Option<String> {
+    grade.unfit().map(|unfit| match unfit {
+        Unfit::Build(end) => build(end),
+        Unfit::Scene(result) => summary(result),
+    })
+}
+
+/// In one sentence why not everything is accepted; nothing where it is.
+#[must_use]
+pub fn reason(grade: &Grade) -> Option<String> {
+    if let Some(unfit) = unfit(grade) {
+        return Some(unfit);
+    }
+    let Some(first) = grade.scenes().find(|scene| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun)) else {
+        return grade.is_incomplete().then(|| format!("{} scenes were not run", grade.count(Verdict::NotRun)));
+    };
+    let (all, accepted) = (grade.scenes().count(), grade.count(Verdict::Accepted));
+    Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summary(first)))
+}
+
+/// How a build ended.
+#[must_use]
+pub fn build(end: &BuildEnd) -> String {
+    match end {
+        BuildEnd::Made => "the build succeeded".to_owned(),
+        BuildEnd::Ended(ended) => format!("the build {ended}"),
+        BuildEnd::MadeNo(program) => format!("the build made no {program}"),
+        BuildEnd::Unusable(why) => format!("what the build made can't be used: {why}"),
+        BuildEnd::Sources(why) => format!("the submission can't be built: {why}"),
+        BuildEnd::NoScript(command) => format!("the submission holds no {command}, which builds it"),
+    }
+}
+
+fn number(count: u64) -> String {
+    count.to_string()
+}
+
+fn of_wrong(wrong: &Wrong, steps: u32) -> String {
+    match wrong {
+        Wrong::Untold => "the trace is wrong".to_owned(),
+        Wrong::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
+        Wrong::Steps { wrong, first, kind } => {
+            format!("{}, first step {first}: {kind}", share::wrong(*wrong, steps, number))
+        }
+        Wrong::Damaged => "the trace is damaged".to_owned(),
+        Wrong::SmallErrors => "small errors add up beyond the tolerance".to_owned(),
+    }
+}
+
+fn of_bad_trace(bad: &BadTrace) -> String {
+    match bad {
+        BadTrace::Unreadable { frame, step, cause, offset, damage } => {
+            let what = match cause {
+                Unreadable::State | Unreadable::Impulses => "the trace ends too early",
+                Unreadable::Memory => "the trace holds a count that it can not satisfy",
+                Unreadable::Limit => "the trace is beyond a limit of this grader",
+                Unreadable::Io => "the trace could not be read",
+            };
+            format!("{what}: frame {frame} (step {step}), byte {offset}: {damage}")
+        }
+        BadTrace::NoResult(error) => format!("the trace's own states lead nowhere: {error}"),
+        BadTrace::NoEnd => "the trace's own polynomials lead into a search without end".to_owned(),
+        BadTrace::Damaged => "the trace is damaged".to_owned(),
+        BadTrace::TrailingBytes => "bytes follow the trace's last record".to_owned(),
+        BadTrace::Undecided => {
+            "most of the trace's decisions are not the reference's, though round-off may flip them".to_owned()
+        }
+        BadTrace::Unfinished => "the trace was not judged to its end".to_owned(),
+    }
+}
+
+/// The limit at which a program was stopped, and how far its trace came.
+fn of_limit(reached: Reached, steps: u32) -> String {
+    let limit = match reached.limit {
+        Limit::Time(time) => format!("{} s", time.as_secs_f64()),
+        Limit::Memory(bytes) => format!("{} MiB", bytes >> 20),
+    };
+    match reached.steps {
+        done if done == steps => format!(" ({limit}) after its last step"),
+        done => format!(" ({limit}) at step {} of {steps}", done + 1),
+    }
+}
+
+fn of_left_out(why: LeftOut) -> String {
+    match why {
+        LeftOut::TimeOuts(1) => "not run: the scene before it ran out of time".to_owned(),
+        LeftOut::TimeOuts(many) => format!("not run: {many} scenes in a row before it ran out of time"),
+        LeftOut::Total(total) => {
+            let seconds = total.as_secs_f64();
+            format!("not run: the scenes before it took {seconds} s, all that a submission has")
+        }
+        LeftOut::FailFast => "not run: a scene before it is not accepted (--fail-fast)".to_owned(),
+    }
+}
+
+fn of_unusable(why: &Unusable) -> String {
+    match why {
+        Unusable::CouldNotStart(problem) => format!("the program {}", Ended::CouldNotStart(problem.clone())),
+        Unusable::Unreadable(why) => format!("the program can't be used: {why}"),
+        Unusable::NoProgram { sought, found } => {
+            let sought = format!("no program called {sought} in the upload");
+            match found {
+                Found::Unreadable(error) => format!("{sought}: it can't be read: {error}"),
+                Found::Nothing => format!("{sought}; it is empty"),
+                Found::Others { names, more, elsewhere } => {
+                    let more = if *more > 0 { format!(" and {more} more") } else { String::new() };
+                    let elsewhere = elsewhere.as_ref().map(|path| format!("; {path} is not where it is looked for"));
+                    format!("{sought}; it holds {}{more}{}", names.join(", "), elsewhere.unwrap_or_default())
+                }
+            }
+        }
+    }
+}
+
+fn of_failure(failure: &Failure) -> String {
+    match failure {
+        Failure::Machine(words) => words.clone(),
+        Failure::Panic { stage: None, fault, .. } => format!("the grader failed: {fault}; please report this"),
+        Failure::Panic { stage: Some(stage), fault, .. } => {
+            let doing = match stage {
+                Stage::Judging => "judging",
+                Stage::Explaining => "explaining",
+                Stage::Reporting => "reporting",
+            };
+            format!("the grader failed while {doing} this scene: {fault}")
+        }
+    }
+}
+
+/// Where a trace parts from the reference, as far as it may be told.
+pub(crate) fn first_divergence(first: &ToldFinding) -> String {
+    match first {
+        ToldFinding::Full(finding) => format!("first divergence: {finding}"),
+        ToldFinding::Place { step, kind, place } => {
+            let place = match place {
+                Place::Step => String::new(),
+                Place::Pair(pair) => format!(", {}", PairWords(*pair)),
+                Place::Polynomial(place) => format!(", {place}"),
+                Place::Particle(particle) => format!(", particle {particle}"),
+                Place::Objects(first, second) => format!(", objects {first} and {second}"),
+            };
+            format!("first divergence: step {step}{place}: {kind}")
+        }
+    }
+}
+
+/// `12 wrong coefficients, 3 missed collisions`, when there is more than the first finding tells.
+fn counts(account: &Account) -> Option<String> {
+    let counts = &account.counts;
+    // What is found in damaged records alone has no example, and says nothing about the program.
+    let has_example = |kind: Kind| account.examples.iter().any(|example| example.kind() == kind);
+    let list: Vec<String> = Kind::ALL
+        .into_iter()
+        .filter(|&kind| counts.get(kind) > 0 && has_example(kind))
+        .map(|kind| format!("{kind}: {}", counts.get(kind)))
+        .collect();
+    (counts.total() > 1 && !list.is_empty()).then(|| format!("counts: {}", list.join(", ")))
+}
+
+#[cfg(test)]
+mod tests;

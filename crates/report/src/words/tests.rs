@@ -1,0 +1,87 @@
+use super::*;
+use fosssim_grading::told::Told;
+use fosssim_judge::{Book, Counts, Damage, Ruling};
+use std::time::Duration;
+
+fn says(reason: Reason) -> String {
+    summary(&SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, reason))
+}
+
+#[test]
+fn what_is_there_instead_of_the_program_is_one_sentence() {
+    let says = |found| says(Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found }));
+    let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    assert_eq!(says(Found::Nothing), "no program called FOSSSim in the upload; it is empty");
+    let closed = Found::Unreadable("permission denied".to_owned());
+    assert_eq!(says(closed), "no program called FOSSSim in the upload: it can't be read: permission denied");
+    let found = Found::Others { names: names(&["fosssim-sample", "main.cpp"]), more: 0, elsewhere: None };
+    assert_eq!(says(found), "no program called FOSSSim in the upload; it holds fosssim-sample, main.cpp");
+    let elsewhere = Some("work/build/FOSSSim".to_owned());
+    assert_eq!(
+        says(Found::Others { names: names(&["a", "work/"]), more: 6, elsewhere }),
+        "no program called FOSSSim in the upload; it holds a, work/ and 6 more; \
+         work/build/FOSSSim is not where it is looked for"
+    );
+}
+
+#[test]
+fn a_limit_says_how_far_the_trace_came() {
+    let stopped = |limit, steps| {
+        let why = Reason::Program(Some(Reached { limit, steps }));
+        let result = SceneResult::without_run("a/b", 15, Verdict::TimeLimit, why);
+        summary(&SceneResult { ended: Some(Ended::WallLimit), ..result })
+    };
+    let time = Limit::Time(Duration::from_millis(2500));
+    assert_eq!(stopped(time, 4), "the program used up its time on the clock (2.5 s) at step 5 of 15");
+    assert_eq!(stopped(time, 15), "the program used up its time on the clock (2.5 s) after its last step");
+    assert!(stopped(Limit::Memory(512 << 20), 0).ends_with("(512 MiB) at step 1 of 15"));
+}
+
+#[test]
+fn a_wrong_trace_says_how_many_steps_and_where_first() {
+    let steps = |wrong| says(Reason::Wrong(Wrong::Steps { wrong, first: 3, kind: Kind::Coefficient }));
+    assert_eq!(steps(12), "12 of 15 steps are wrong, first step 3: wrong coefficient");
+    assert_eq!(steps(1), "1 of 15 steps is wrong, first step 3: wrong coefficient");
+    assert_eq!(says(Reason::Wrong(Wrong::Untold)), "the trace is wrong");
+    assert_eq!(says(Reason::Wrong(Wrong::FirstRecord(Kind::Position))), "the first record is wrong: wrong position");
+    assert_eq!(says(Reason::Right), "all 15 steps are right");
+}
+
+#[test]
+fn details_are_what_is_told_and_nothing_else() {
+    let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(Wrong::Untold));
+    assert_eq!(details(&result), [""; 0]);
+    let first = ToldFinding::Place { step: 4, kind: Kind::Position, place: Place::Particle(2) };
+    let objects = ToldFinding::Place { step: 5, kind: Kind::SuperfluousCollision, place: Place::Objects(1, 2) };
+    let mut counts = Counts::default();
+    counts.add(Kind::Position, 7);
+    counts.add(Kind::SuperfluousCollision, 2);
+    // What is found in damaged records alone has no example.
+    counts.add(Kind::Velocity, 1);
+    let told = Told {
+        official: Book::Fair,
+        parity: Account {
+            ruling: Ruling::WrongAnswer,
+            wrong_steps: 7,
+            counts,
+            first_divergence: Some(first.clone()),
+            examples: vec![objects, first],
+        },
+        fair: None,
+        residuals: None,
+        damage: Some(Damage { frame: 1, step: 1, offset: 77, message: "an odd count".to_owned() }),
+        trailing_bytes: true,
+    };
+    let result = SceneResult { told: Some(told), ended: Some(Ended::Exited(127)), ..result };
+    let lines = details(&result);
+    assert!(lines[0].starts_with("exit code 127 usually means"));
+    assert_eq!(
+        lines[1..],
+        [
+            "first divergence: step 4, particle 2: wrong position",
+            "counts: superfluous collision: 2, wrong position: 7",
+            "damaged at byte 77 (frame 1): an odd count",
+            "bytes follow the last record",
+        ]
+    );
+}
