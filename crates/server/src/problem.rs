@@ -58,6 +58,14 @@ impl Problem {
         )
     }
 
+    /// No account has this login and this password.
+    #[must_use]
+    pub fn wrong_password() -> Self {
+        let detail = "there is no account of this login with this password";
+        let remedy = "try again, or ask the course's staff for a link that signs you in";
+        Self::new(StatusCode::UNAUTHORIZED, "wrong-password", "Not signed in", detail, remedy)
+    }
+
     /// Known, and not allowed.
     #[must_use]
     pub fn not_allowed(detail: impl Into<String>) -> Self {

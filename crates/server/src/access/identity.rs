@@ -171,13 +171,23 @@ pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Resul
         .await?;
     let Some(row) = row else { return Ok(None) };
     let account = row.int("account")?;
-    let able = transaction.row("SELECT id FROM account WHERE id = ? AND disabled_at IS NULL", values![account]).await?;
+    // Who needs a link has forgotten the password: the next one is set without it.
+    let able = transaction
+        .row("UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id", values![account])
+        .await?;
     Ok(able.map(|_| account))
 }
 
-/// Somebody may do more from now on: whoever signed in for them before is to do so again.
-pub(super) async fn end_all(transaction: &mut Transaction, account: i64, tokens: bool) -> Result<(), DbError> {
+/// Ends all sessions of an account.
+pub(super) async fn end_sessions(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await?;
+    Ok(())
+}
+
+/// Somebody may do more from now on: whoever signed in for them before, or set a password, is to do so again.
+pub(super) async fn end_all(transaction: &mut Transaction, account: i64, tokens: bool) -> Result<(), DbError> {
+    end_sessions(transaction, account).await?;
+    transaction.execute("UPDATE account SET password = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
     if tokens {
         transaction

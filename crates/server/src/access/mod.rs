@@ -7,6 +7,7 @@ mod admin;
 mod example;
 mod identity;
 mod member;
+mod password;
 mod person;
 mod regrade;
 mod remote;
@@ -22,6 +23,7 @@ mod visitor;
 pub use admin::Admin;
 pub use identity::{NewSecret, Session};
 pub use member::Member;
+pub use password::Passwords;
 pub use person::{Account, CourseOf, Person, TokenInfo};
 pub use regrade::{Change, Regrade, RegradeState};
 pub use remote::{Claimed, Remote};
@@ -66,6 +68,8 @@ pub struct Parts {
     pub requests_per_minute: u32,
     /// Counts these requests.
     pub throttle: Throttle,
+    /// What signing in with passwords needs; nothing where that is not allowed.
+    pub passwords: Option<Passwords>,
     /// Cancelled when the server is to end: whoever waits for something to happen stops waiting.
     pub closing: CancellationToken,
 }

@@ -67,6 +67,12 @@ impl Person {
         &self.account
     }
 
+    /// The house.
+    #[must_use]
+    pub fn house(&self) -> &House {
+        &self.house
+    }
+
     /// The courses that they may see.
     ///
     /// # Errors

@@ -85,6 +85,9 @@ pub(super) struct Serve {
     /// After so many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
+    /// Let people sign in with passwords, too.
+    #[arg(long)]
+    pub(super) passwords: bool,
     /// For so many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0)]
     pub(super) keep_days: u32,

@@ -6,7 +6,7 @@ use super::{
     worker::{Local, grader, policy},
 };
 use crate::{
-    access::{House, Parts, Throttle},
+    access::{House, Parts, Passwords, Throttle},
     db::{self, Address, Database},
     queue::Bell,
     retention,
@@ -58,6 +58,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         patience,
         requests_per_minute: arguments.requests_per_minute,
         throttle: Throttle::default(),
+        passwords: arguments.passwords.then(Passwords::default),
         closing: stop.clone(),
     });
     if arguments.keep_days > 0 {
@@ -180,6 +181,7 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
         patience: Duration::from_secs(30),
         requests_per_minute: 1,
         throttle: Throttle::default(),
+        passwords: None,
         closing: CancellationToken::new(),
         database: database.clone(),
     });

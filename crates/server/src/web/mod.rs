@@ -9,7 +9,7 @@ mod upload;
 
 pub(crate) use api::{Alive, Fault, Finished, Held, Manners};
 
-use crate::{access::House, problem::Problem};
+use crate::{access::House, problem::Problem, task::OutputFile};
 use axum::{Router, extract::DefaultBodyLimit, middleware};
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
@@ -25,7 +25,7 @@ const BODY: usize = 1 << 20;
                        `application/problem+json`, and say how to mend them. Times are milliseconds since 1970.",
         license(name = "MIT OR Apache-2.0")
     ),
-    components(schemas(Problem))
+    components(schemas(Problem, OutputFile))
 )]
 struct Document;
 

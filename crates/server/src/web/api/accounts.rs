@@ -24,6 +24,17 @@ pub(super) struct TokenName {
     name: String,
 }
 
+/// A password as it is to be.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PasswordWish {
+    /// The one so far, if there is one.
+    #[serde(default)]
+    old: String,
+    /// 10 to 200 characters.
+    new: String,
+}
+
 /// An account as it is to be.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -53,21 +64,30 @@ pub(super) fn link(house: &crate::access::House, secret: Option<NewSecret>) -> L
 
 /// Who asks.
 #[utoipa::path(get, path = "/api/v1/me", tag = "accounts",
-    responses((status = 200, body = Account), (status = "default", body = Problem)))]
+    responses((status = 200, body = Account), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn me(person: Person) -> Json<Account> {
     Json(person.account().clone())
 }
 
+/// Sets one's own password, where the server takes passwords. All sessions end.
+#[utoipa::path(put, path = "/api/v1/password", tag = "accounts", request_body = PasswordWish,
+    responses((status = 204, description = "Set"),
+        (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn set_password(person: Person, Body(wish): Body<PasswordWish>) -> Result<StatusCode, Problem> {
+    person.set_password(&wish.old, &wish.new).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
 /// One's own tokens.
 #[utoipa::path(get, path = "/api/v1/tokens", tag = "accounts",
-    responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn tokens(person: Person) -> Result<Json<Vec<TokenInfo>>, Problem> {
     Ok(Json(person.tokens().await?))
 }
 
 /// Makes a token for oneself.
 #[utoipa::path(post, path = "/api/v1/tokens", tag = "accounts", request_body = TokenName,
-    responses((status = 201, body = NewToken), (status = "default", body = Problem)))]
+    responses((status = 201, body = NewToken), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn new_token(
     person: Person,
     Body(wish): Body<TokenName>,
@@ -78,7 +98,7 @@ pub(super) async fn new_token(
 
 /// Revokes one of one's own tokens.
 #[utoipa::path(delete, path = "/api/v1/tokens/{id}", tag = "accounts", params(("id" = i64, Path)),
-    responses((status = 204, description = "Revoked"), (status = "default", body = Problem)))]
+    responses((status = 204, description = "Revoked"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn revoke_token(person: Person, Params(id): Params<i64>) -> Result<StatusCode, Problem> {
     person.revoke_token(id).await?;
     Ok(StatusCode::NO_CONTENT)
@@ -86,14 +106,14 @@ pub(super) async fn revoke_token(person: Person, Params(id): Params<i64>) -> Res
 
 /// All accounts.
 #[utoipa::path(get, path = "/api/v1/accounts", tag = "administration",
-    responses((status = 200, body = Vec<Account>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<Account>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn accounts(admin: Admin) -> Result<Json<Vec<Account>>, Problem> {
     Ok(Json(admin.accounts().await?))
 }
 
 /// Makes an account or changes it, and returns a link that signs in once.
 #[utoipa::path(put, path = "/api/v1/accounts/{login}", tag = "administration", params(("login" = String, Path)),
-    request_body = AccountWish, responses((status = 200, body = Link), (status = "default", body = Problem)))]
+    request_body = AccountWish, responses((status = 200, body = Link), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn set_account(
     admin: Admin,
     Params(login): Params<String>,
@@ -105,7 +125,7 @@ pub(super) async fn set_account(
 
 /// Shuts an account.
 #[utoipa::path(delete, path = "/api/v1/accounts/{login}", tag = "administration", params(("login" = String, Path)),
-    responses((status = 204, description = "Shut"), (status = "default", body = Problem)))]
+    responses((status = 204, description = "Shut"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn disable_account(admin: Admin, Params(login): Params<String>) -> Result<StatusCode, Problem> {
     admin.disable_account(&login).await?;
     Ok(StatusCode::NO_CONTENT)
@@ -113,14 +133,14 @@ pub(super) async fn disable_account(admin: Admin, Params(login): Params<String>)
 
 /// The tokens of workers.
 #[utoipa::path(get, path = "/api/v1/worker-tokens", tag = "administration",
-    responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn worker_tokens(admin: Admin) -> Result<Json<Vec<TokenInfo>>, Problem> {
     Ok(Json(admin.worker_tokens().await?))
 }
 
 /// Makes a token for workers on other machines.
 #[utoipa::path(post, path = "/api/v1/worker-tokens", tag = "administration", request_body = TokenName,
-    responses((status = 201, body = NewToken), (status = "default", body = Problem)))]
+    responses((status = 201, body = NewToken), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn new_worker_token(
     admin: Admin,
     Body(wish): Body<TokenName>,
@@ -131,7 +151,7 @@ pub(super) async fn new_worker_token(
 
 /// Revokes a token of workers.
 #[utoipa::path(delete, path = "/api/v1/worker-tokens/{id}", tag = "administration", params(("id" = i64, Path)),
-    responses((status = 204, description = "Revoked"), (status = "default", body = Problem)))]
+    responses((status = 204, description = "Revoked"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn revoke_worker_token(admin: Admin, Params(id): Params<i64>) -> Result<StatusCode, Problem> {
     admin.revoke_worker_token(id).await?;
     Ok(StatusCode::NO_CONTENT)
@@ -139,7 +159,7 @@ pub(super) async fn revoke_worker_token(admin: Admin, Params(id): Params<i64>) -
 
 /// The queue and the workers.
 #[utoipa::path(get, path = "/api/v1/queue", tag = "administration",
-    responses((status = 200, body = Queue), (status = "default", body = Problem)))]
+    responses((status = 200, body = Queue), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn queue(admin: Admin) -> Result<Json<Queue>, Problem> {
     Ok(Json(admin.queue().await?))
 }
@@ -147,7 +167,7 @@ pub(super) async fn queue(admin: Admin) -> Result<Json<Queue>, Problem> {
 /// Everything that happened, latest first, 200 at a time.
 #[utoipa::path(get, path = "/api/v1/audit", tag = "administration",
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
-    responses((status = 200, body = Vec<Event>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<Event>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn audit(admin: Admin, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
     Ok(Json(admin.audit(asked.before).await?))
 }

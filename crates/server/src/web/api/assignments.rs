@@ -41,7 +41,7 @@ pub(super) struct Format {
 /// The assignments of a course.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments", tag = "assignments",
     params(("course" = String, Path)),
-    responses((status = 200, body = Vec<Assignment>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<Assignment>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn assignments(member: Member) -> Result<Json<Vec<Assignment>>, Problem> {
     Ok(Json(member.assignments().await?))
 }
@@ -49,7 +49,7 @@ pub(super) async fn assignments(member: Member) -> Result<Json<Vec<Assignment>>,
 /// An assignment.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments",
     params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Assignment), (status = "default", body = Problem)))]
+    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn assignment(
     member: Member,
     Params((_, assignment)): Params<(String, String)>,
@@ -60,7 +60,7 @@ pub(super) async fn assignment(
 /// Makes an assignment or changes it. Submissions that are graded already stay as they are: that takes a regrade.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments",
     params(("course" = String, Path), ("assignment" = String, Path)), request_body = AssignmentWish,
-    responses((status = 200, body = Assignment), (status = "default", body = Problem)))]
+    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn set_assignment(
     staff: Staff,
     Params((_, assignment)): Params<(String, String)>,
@@ -73,7 +73,7 @@ pub(super) async fn set_assignment(
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
     params(("course" = String, Path), ("assignment" = String, Path)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses((status = 200, body = Assignment), (status = "default", body = Problem)))]
+    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn set_suite(
     staff: Staff,
     Params((_, assignment)): Params<(String, String)>,
@@ -118,7 +118,7 @@ fn check_suite(archive: &Path, incoming: &Path) -> Result<(), Problem> {
 /// How all students stand: which submission counts, and for what.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/class", tag = "assignments",
     params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Vec<Standing>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<Standing>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn standings(
     staff: Staff,
     Params((_, assignment)): Params<(String, String)>,
@@ -130,7 +130,7 @@ pub(super) async fn standings(
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/export", tag = "assignments",
     params(("course" = String, Path), ("assignment" = String, Path),
         ("format" = Option<String>, Query, description = "csv (the default) or jsonl")),
-    responses((status = 200, description = "The grades"), (status = "default", body = Problem)))]
+    responses((status = 200, description = "The grades"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn export(
     staff: Staff,
     Params((_, assignment)): Params<(String, String)>,

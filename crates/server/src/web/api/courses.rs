@@ -31,14 +31,14 @@ pub(super) struct MemberWish {
 
 /// The courses that one is in.
 #[utoipa::path(get, path = "/api/v1/courses", tag = "courses",
-    responses((status = 200, body = Vec<CourseOf>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<CourseOf>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn courses(person: Person) -> Result<Json<Vec<CourseOf>>, Problem> {
     Ok(Json(person.courses().await?))
 }
 
 /// Makes a course.
 #[utoipa::path(post, path = "/api/v1/courses", tag = "administration", request_body = CourseWish,
-    responses((status = 201, body = Course), (status = "default", body = Problem)))]
+    responses((status = 201, body = Course), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn new_course(
     admin: Admin,
     Body(wish): Body<CourseWish>,
@@ -48,7 +48,7 @@ pub(super) async fn new_course(
 
 /// The members of a course.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/members", tag = "courses", params(("course" = String, Path)),
-    responses((status = 200, body = Vec<MemberInfo>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<MemberInfo>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn members(staff: Staff) -> Result<Json<Vec<MemberInfo>>, Problem> {
     Ok(Json(staff.members().await?))
 }
@@ -56,7 +56,7 @@ pub(super) async fn members(staff: Staff) -> Result<Json<Vec<MemberInfo>>, Probl
 /// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/members/{login}", tag = "courses",
     params(("course" = String, Path), ("login" = String, Path)), request_body = MemberWish,
-    responses((status = 200, body = Link), (status = "default", body = Problem)))]
+    responses((status = 200, body = Link), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn set_member(
     staff: Staff,
     Params((_, login)): Params<(String, String)>,
@@ -69,7 +69,7 @@ pub(super) async fn set_member(
 /// Takes somebody out of the course; what they handed in stays.
 #[utoipa::path(delete, path = "/api/v1/courses/{course}/members/{login}", tag = "courses",
     params(("course" = String, Path), ("login" = String, Path)),
-    responses((status = 204, description = "They are out"), (status = "default", body = Problem)))]
+    responses((status = 204, description = "They are out"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn remove_member(
     staff: Staff,
     Params((_, login)): Params<(String, String)>,
@@ -81,7 +81,7 @@ pub(super) async fn remove_member(
 /// A new link that signs a student of this course in once.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members/{login}/link", tag = "courses",
     params(("course" = String, Path), ("login" = String, Path)),
-    responses((status = 200, body = Link), (status = "default", body = Problem)))]
+    responses((status = 200, body = Link), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn member_link(
     staff: Staff,
     Params((_, login)): Params<(String, String)>,
@@ -93,7 +93,7 @@ pub(super) async fn member_link(
 /// What happened in the course, latest first, 200 at a time.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/audit", tag = "courses",
     params(("course" = String, Path), ("before" = Option<i64>, Query, description = "Only events before this one")),
-    responses((status = 200, body = Vec<Event>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<Event>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
     Ok(Json(staff.audit(asked.before).await?))
 }

@@ -25,6 +25,7 @@ pub(super) fn routes() -> OpenApiRouter<House> {
         .routes(routes!(operations::metrics))
         .routes(routes!(operations::openapi))
         .routes(routes!(accounts::me))
+        .routes(routes!(accounts::set_password))
         .routes(routes!(accounts::tokens, accounts::new_token))
         .routes(routes!(accounts::revoke_token))
         .routes(routes!(accounts::accounts))

@@ -13,7 +13,7 @@ pub(super) async fn health() -> &'static str {
 
 /// Whether requests can be served: the database answers, and its tables are of this version.
 #[utoipa::path(get, path = "/ready", tag = "operations",
-    responses((status = 200, description = "They can"), (status = "default", body = Problem)))]
+    responses((status = 200, description = "They can"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn ready(visitor: Visitor) -> Result<&'static str, Problem> {
     visitor.ready().await?;
     Ok("ready\n")
@@ -33,7 +33,7 @@ fn line(text: &mut String, line: &str) {
 
 /// Numbers for Prometheus. They tell of nobody.
 #[utoipa::path(get, path = "/metrics", tag = "operations",
-    responses((status = 200, description = "Prometheus' text format"), (status = "default", body = Problem)))]
+    responses((status = 200, description = "Prometheus' text format"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn metrics(visitor: Visitor) -> Result<Response, Problem> {
     let metrics = visitor.metrics().await?;
     let mut text = String::new();

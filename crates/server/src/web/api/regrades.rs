@@ -21,7 +21,7 @@ pub(super) struct RegradeWish {
 /// The regrades of an assignment, latest first.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
     params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Vec<Regrade>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<Regrade>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn regrades(
     staff: Staff,
     Params((_, assignment)): Params<(String, String)>,
@@ -32,7 +32,7 @@ pub(super) async fn regrades(
 /// Grades all submissions again, beside their grades. Nothing changes until it is applied.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
     params(("course" = String, Path), ("assignment" = String, Path)), request_body = RegradeWish,
-    responses((status = 201, body = Regrade), (status = "default", body = Problem)))]
+    responses((status = 201, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn begin(
     staff: Staff,
     Params((_, assignment)): Params<(String, String)>,
@@ -45,7 +45,7 @@ pub(super) async fn begin(
 /// What a regrade would change, or did, and why.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
     params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Regrade), (status = "default", body = Problem)))]
+    responses((status = 200, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn show(
     staff: Staff,
     Params((_, assignment, id)): Params<(String, String, i64)>,
@@ -56,7 +56,7 @@ pub(super) async fn show(
 /// Makes its results count, all in one step.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply",
     tag = "regrades", params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Regrade), (status = "default", body = Problem)))]
+    responses((status = 200, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn apply(
     staff: Staff,
     Params((_, assignment, id)): Params<(String, String, i64)>,
@@ -67,7 +67,7 @@ pub(super) async fn apply(
 /// Gives it up; nothing changes.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard",
     tag = "regrades", params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Regrade), (status = "default", body = Problem)))]
+    responses((status = 200, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn discard(
     staff: Staff,
     Params((_, assignment, id)): Params<(String, String, i64)>,

@@ -26,7 +26,7 @@ pub(super) struct About {
 /// One's own submissions, newest first.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
     params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Vec<Submission>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<Submission>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn own(
     member: Member,
     Params((_, assignment)): Params<(String, String)>,
@@ -43,7 +43,7 @@ pub(super) async fn own(
         ("Idempotency-Key" = Option<String>, Header, description = "A name of the sender's own for this upload")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 201, body = Submission), (status = 200, body = Submission),
-        (status = "default", body = Problem)))]
+        (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn submit(
     member: Member,
     Params((_, assignment)): Params<(String, String)>,
@@ -91,7 +91,7 @@ pub(in crate::web) async fn receive(
 /// A submission: where it is in the queue, and what it came to.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}", tag = "submissions",
     params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Submission), (status = "default", body = Problem)))]
+    responses((status = 200, body = Submission), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn submission(
     member: Member,
     Params((_, id)): Params<(String, i64)>,
@@ -102,7 +102,7 @@ pub(super) async fn submission(
 /// How its grade came to be: who, when, why, by which version and rules.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/history", tag = "submissions",
     params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Vec<History>), (status = "default", body = Problem)))]
+    responses((status = 200, body = Vec<History>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn history(
     member: Member,
     Params((_, id)): Params<(String, i64)>,
@@ -114,7 +114,7 @@ pub(super) async fn history(
 /// whole state, so that nothing is lost with a connection.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/events", tag = "submissions",
     params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, description = "text/event-stream of submissions"), (status = "default", body = Problem)))]
+    responses((status = 200, description = "text/event-stream of submissions"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn events(member: Member, Params((_, id)): Params<(String, i64)>) -> Result<Response, Problem> {
     status::stream(member, id).await
 }
@@ -122,7 +122,7 @@ pub(super) async fn events(member: Member, Params((_, id)): Params<(String, i64)
 /// A report on it, as the grader wrote it: `grade.json`, `report.txt`, ...
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/files/{name}", tag = "submissions",
     params(("course" = String, Path), ("id" = i64, Path), ("name" = String, Path)),
-    responses((status = 200, description = "The report"), (status = "default", body = Problem)))]
+    responses((status = 200, description = "The report"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn report(
     member: Member,
     Params((_, id, name)): Params<(String, i64, String)>,
@@ -146,7 +146,7 @@ pub(in crate::web) fn report_response(file: &OutputFile, bytes: Vec<u8>) -> Resp
 /// What was handed in.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
     params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, description = "The file"), (status = "default", body = Problem)))]
+    responses((status = 200, description = "The file"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn upload(member: Member, Params((_, id)): Params<(String, i64)>) -> Result<Response, Problem> {
     let (submission, bytes) = member.upload(id).await?;
     Ok(upload_response(&submission, bytes))

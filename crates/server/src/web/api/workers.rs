@@ -65,7 +65,7 @@ pub(crate) struct Finished {
 
 /// Says that the worker is alive.
 #[utoipa::path(post, path = "/api/v1/worker/tick", tag = "workers", request_body = Alive,
-    responses((status = 200, body = Manners), (status = "default", body = Problem)))]
+    responses((status = 200, body = Manners), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn tick(remote: Remote, Body(alive): Body<Alive>) -> Result<Json<Manners>, Problem> {
     remote.tick(alive.slots).await?;
     Ok(Json(Manners { tick_every: remote.tick_every() }))
@@ -74,7 +74,7 @@ pub(super) async fn tick(remote: Remote, Body(alive): Body<Alive>) -> Result<Jso
 /// Claims the next job; 204 when there is none.
 #[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
     responses((status = 200, body = Claimed), (status = 204, description = "No job"),
-        (status = "default", body = Problem)))]
+        (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
     Ok(match remote.claim().await? {
         Some(job) => Json(job).into_response(),
@@ -84,28 +84,28 @@ pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
 
 /// Extends a lease.
 #[utoipa::path(post, path = "/api/v1/worker/renew", tag = "workers", request_body(content = Object),
-    responses((status = 200, body = Held), (status = "default", body = Problem)))]
+    responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn renew(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.renew(&lease).await? }))
 }
 
 /// Gives a job back at no cost.
 #[utoipa::path(post, path = "/api/v1/worker/release", tag = "workers", request_body(content = Object),
-    responses((status = 200, body = Held), (status = "default", body = Problem)))]
+    responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn release(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.release(&lease).await? }))
 }
 
 /// Says that a try came to nothing.
 #[utoipa::path(post, path = "/api/v1/worker/fail", tag = "workers", request_body = Fault,
-    responses((status = 200, body = Held), (status = "default", body = Problem)))]
+    responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn fail(remote: Remote, Body(fault): Body<Fault>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.fail(&fault.lease, &fault.fault).await? }))
 }
 
 /// Brings a result.
 #[utoipa::path(post, path = "/api/v1/worker/finish", tag = "workers", request_body = Finished,
-    responses((status = 200, body = Held), (status = "default", body = Problem)))]
+    responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn finish(remote: Remote, Body(result): Body<Finished>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.finish(&result.lease, &result.outcome).await? }))
 }
@@ -123,7 +123,7 @@ fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
 /// A file of a job that the worker holds.
 #[utoipa::path(get, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("digest" = String, Path), ("Fosssim-Lease" = String, Header)),
-    responses((status = 200, description = "Its bytes"), (status = "default", body = Problem)))]
+    responses((status = 200, description = "Its bytes"), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn artefact(
     remote: Remote,
     Params(digest): Params<String>,
@@ -148,7 +148,7 @@ pub(super) async fn artefact(
 #[utoipa::path(put, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("digest" = String, Path), ("Fosssim-Lease" = String, Header)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses((status = 200, body = Object), (status = "default", body = Problem)))]
+    responses((status = 200, body = Object), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn store(
     remote: Remote,
     Params(digest): Params<String>,

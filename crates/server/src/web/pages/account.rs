@@ -25,6 +25,14 @@ struct AccountPage {
     frame: Frame,
     tokens: Vec<TokenInfo>,
     new: Option<String>,
+    takes_passwords: bool,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewPassword {
+    #[serde(default)]
+    old: String,
+    new: String,
 }
 
 #[derive(Deserialize)]
@@ -39,7 +47,8 @@ pub(super) async fn home(person: Person) -> Result<Html<String>, Problem> {
 
 async fn page(person: &Person, new: Option<String>) -> Result<Html<String>, Problem> {
     let frame = Frame::of(person.account()).then("/account".to_owned(), "Account");
-    show(&AccountPage { frame, tokens: person.tokens().await?, new })
+    let takes_passwords = person.house().takes_passwords();
+    show(&AccountPage { frame, tokens: person.tokens().await?, new, takes_passwords })
 }
 
 pub(super) async fn account(person: Person) -> Result<Html<String>, Problem> {
@@ -55,4 +64,10 @@ pub(super) async fn new_token(person: Person, Fields(form): Fields<Name>) -> Res
 pub(super) async fn revoke_token(person: Person, Params(id): Params<i64>) -> Result<Redirect, Problem> {
     person.revoke_token(id).await?;
     Ok(see("/account"))
+}
+
+/// Everybody who is signed in as this person is to sign in again, by the new one.
+pub(super) async fn set_password(person: Person, Fields(form): Fields<NewPassword>) -> Result<Redirect, Problem> {
+    person.set_password(&form.old, &form.new).await?;
+    Ok(see("/sign-in"))
 }

@@ -18,6 +18,7 @@ use serde::Deserialize;
 #[template(path = "sign_in.html")]
 struct SignIn {
     frame: Frame,
+    takes_passwords: bool,
 }
 
 #[derive(Template)]
@@ -29,6 +30,12 @@ struct Welcome {
 #[derive(Deserialize)]
 pub(super) struct Token {
     token: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Password {
+    login: String,
+    password: String,
 }
 
 /// A new session's cookie, and the way in.
@@ -51,8 +58,13 @@ fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-pub(super) async fn page(_: Visitor) -> Result<Html<String>, Problem> {
-    show(&SignIn { frame: Frame::nobody() })
+pub(super) async fn page(visitor: Visitor) -> Result<Html<String>, Problem> {
+    show(&SignIn { frame: Frame::nobody(), takes_passwords: visitor.house().takes_passwords() })
+}
+
+pub(super) async fn by_password(visitor: Visitor, Fields(form): Fields<Password>) -> Result<Response, Problem> {
+    let session = visitor.sign_in_by_password(form.login.trim(), &form.password).await?;
+    Ok(enter(visitor.house(), &session))
 }
 
 pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {

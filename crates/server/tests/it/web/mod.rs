@@ -3,6 +3,7 @@
 mod example;
 mod flows;
 mod hostile;
+mod passwords;
 mod replay;
 mod roles;
 mod suspicion;

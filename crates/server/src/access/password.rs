@@ -1,0 +1,211 @@
+//! Passwords, for servers that allow them: a way in beside links and tokens.
+//!
+//! They are kept as Argon2id digests with the parameters that OWASP recommends (Password Storage Cheat Sheet: 19 MiB, two
+//! passes, one lane). Each check costs that memory and some hundredths of a second of a core, so that only a few run at one
+//! time, and each account is tried a few times a minute only.
+use super::{House, Person, Session, Visitor, identity};
+use crate::{
+    problem::Problem,
+    secret::{hex, random_hex},
+    values,
+};
+use argon2::{Algorithm, Argon2, Params, Version};
+use std::{
+    hash::{DefaultHasher, Hash, Hasher},
+    sync::Arc,
+    time::{Duration, Instant},
+};
+use tokio::sync::Semaphore;
+
+/// Memory in KiB, passes, lanes.
+const COST: (u32, u32, u32) = (19 * 1024, 2, 1);
+
+/// Digests that are computed at one time: more would only cost memory.
+const AT_ONE_TIME: usize = 2;
+
+/// How long somebody waits for their turn.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Tries in a minute, for each login that somebody claims to have.
+const TRIES: u32 = 10;
+
+/// How long a password may be.
+const LENGTH: std::ops::RangeInclusive<usize> = 10..=200;
+
+/// What passwords need: nothing of it is there on a server that does not allow them.
+#[derive(Debug)]
+pub struct Passwords {
+    room: Arc<Semaphore>,
+    tries: super::Throttle,
+}
+
+impl Default for Passwords {
+    fn default() -> Self {
+        Self { room: Arc::new(Semaphore::new(AT_ONE_TIME)), tries: super::Throttle::default() }
+    }
+}
+
+/// The digest of a password with a salt.
+fn digest(password: &str, salt: &str) -> Result<String, Problem> {
+    let fault = |_| Problem::fault();
+    let params = Params::new(COST.0, COST.1, COST.2, Some(32)).map_err(fault)?;
+    let mut key = [0; 32];
+    Argon2::new(Algorithm::Argon2id, Version::V0x13, params)
+        .hash_password_into(password.as_bytes(), salt.as_bytes(), &mut key)
+        .map_err(fault)?;
+    Ok(format!("argon2id$m={},t={},p={}${salt}${}", COST.0, COST.1, COST.2, hex(&key)))
+}
+
+/// Whether a password is the one that is kept. Without one the same work is done, so that the time tells nobody who has one.
+fn is_kept(password: &str, kept: Option<&str>) -> Result<bool, Problem> {
+    let salt = kept.and_then(|kept| kept.split('$').nth(2)).unwrap_or("0123456789abcdef0123456789abcdef");
+    let digest = digest(password, salt)?;
+    let Some(kept) = kept else { return Ok(false) };
+    // Looked at to the end, wherever they differ.
+    let differs = digest.bytes().zip(kept.bytes()).fold(0, |differs, (one, other)| differs | (one ^ other));
+    Ok(differs == 0 && digest.len() == kept.len())
+}
+
+impl Passwords {
+    /// Does something with a password when it is its turn, away from the threads that must not wait.
+    async fn work<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        let turn = tokio::time::timeout(PATIENCE, self.room.clone().acquire_owned()).await;
+        let turn = turn.map_err(|_| Problem::unavailable("too many sign in at this moment"))?;
+        let turn = turn.map_err(|_| Problem::fault())?;
+        let done = tokio::task::spawn_blocking(move || {
+            let done = work();
+            drop(turn);
+            done
+        });
+        done.await.map_err(|_| Problem::fault())?
+    }
+
+    /// Counts a try to be somebody, also somebody who does not exist.
+    fn count(&self, login: &str) -> Result<(), Problem> {
+        let mut hasher = DefaultHasher::new();
+        login.hash(&mut hasher);
+        match self.tries.pass(hasher.finish().cast_signed(), TRIES, Instant::now()) {
+            true => Ok(()),
+            false => Err(Problem::too_many("too many passwords were tried for this login")),
+        }
+    }
+}
+
+impl House {
+    /// What passwords need, where they are allowed.
+    fn passwords(&self) -> Result<&Passwords, Problem> {
+        self.0.passwords.as_ref().ok_or_else(|| Problem::not_allowed("this server takes no passwords"))
+    }
+
+    /// Whether people may sign in with a password.
+    #[must_use]
+    pub fn takes_passwords(&self) -> bool {
+        self.0.passwords.is_some()
+    }
+}
+
+impl Visitor {
+    /// Signs in with a password.
+    ///
+    /// # Errors
+    /// When it is not the account's, there is no such account, or there were too many tries. Which of the first two, nobody
+    /// learns.
+    pub async fn sign_in_by_password(&self, login: &str, password: &str) -> Result<Session, Problem> {
+        let passwords = self.house.passwords()?;
+        passwords.count(login)?;
+        let mut transaction = self.house.0.database.read().await?;
+        let row = transaction
+            .row("SELECT id, password FROM account WHERE login = ? AND disabled_at IS NULL", values![login])
+            .await?;
+        drop(transaction);
+        let kept = match &row {
+            Some(row) => row.maybe_text("password")?,
+            None => None,
+        };
+        let (given, of_account) = (password.to_owned(), kept.clone());
+        let right = passwords.work(move || is_kept(&given, of_account.as_deref())).await?;
+        let (true, Some(row)) = (right, row) else { return Err(Problem::wrong_password()) };
+        let account = row.int("id")?;
+        let mut transaction = self.house.0.database.begin().await?;
+        // It may have been changed, or the account shut, while the digest was computed.
+        let still = transaction
+            .row(
+                "SELECT id FROM account WHERE id = ? AND password = ? AND disabled_at IS NULL {for update}",
+                values![account, kept],
+            )
+            .await?;
+        if still.is_none() {
+            return Err(Problem::wrong_password());
+        }
+        let session = identity::begin_session(&mut transaction, account).await?;
+        transaction.commit().await?;
+        Ok(session)
+    }
+}
+
+impl Person {
+    /// Sets one's own password, or changes it; whoever has one shows it. All sessions end, so that whoever signed in by the old
+    /// one is out.
+    ///
+    /// # Errors
+    /// When the old one is wrong, or the new one too short.
+    pub async fn set_password(&self, old: &str, new: &str) -> Result<(), Problem> {
+        let passwords = self.house.passwords()?;
+        if !LENGTH.contains(&new.chars().count()) || new == self.account.login || new.chars().any(char::is_control) {
+            return Err(Problem::invalid("a password is 10 to 200 characters long, and not the login"));
+        }
+        passwords.count(&self.account.login)?;
+        let mut transaction = self.house.0.database.read().await?;
+        let row = transaction.one("SELECT password FROM account WHERE id = ?", values![self.account.id]).await?;
+        drop(transaction);
+        let kept = row.maybe_text("password")?;
+        let (old, new, of_account) = (old.to_owned(), new.to_owned(), kept.clone());
+        let digest = passwords
+            .work(move || match of_account {
+                Some(kept) if !is_kept(&old, Some(&kept))? => Err(Problem::wrong_password()),
+                _ => digest(&new, &random_hex()),
+            })
+            .await?;
+        let mut transaction = self.house.0.database.begin().await?;
+        let changed = transaction
+            .execute(
+                "UPDATE account SET password = ? WHERE id = ? AND coalesce(password, '') = ?",
+                values![digest, self.account.id, kept.unwrap_or_default()],
+            )
+            .await?;
+        if changed == 0 {
+            return Err(Problem::conflict("the password was changed meanwhile", "sign in again"));
+        }
+        identity::end_sessions(&mut transaction, self.account.id).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_password_is_known_again_and_no_other() {
+        let kept = digest("correct horse battery", &random_hex()).expect("a digest");
+        assert!(kept.starts_with("argon2id$m=19456,t=2,p=1$") && !kept.contains("horse"), "{kept}");
+        assert!(is_kept("correct horse battery", Some(&kept)).expect("an answer"));
+        for (other, kept) in [
+            ("correct horse batter", Some(kept.as_str())),
+            ("", Some(kept.as_str())),
+            ("correct horse battery", None),
+            ("correct horse battery", Some("argon2id$m=19456,t=2,p=1$")),
+            ("correct horse battery", Some("")),
+        ] {
+            assert!(!is_kept(other, kept).unwrap_or(false), "{other} {kept:?}");
+        }
+        assert_ne!(
+            digest("the same one", &random_hex()).expect("one"),
+            digest("the same one", &random_hex()).expect("two")
+        );
+    }
+}
