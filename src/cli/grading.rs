@@ -1,6 +1,6 @@
 //! Arguments of the commands that run programs, as typed.
 use super::arguments::{Rules, at_least_one};
-use crate::suite::config;
+use crate::{report::page, suite::config};
 use clap::{Args, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
@@ -12,6 +12,7 @@ Example:
   fosssim-oracle grade submissions/ --suite course.toml --output grades
   fosssim-oracle grade ./FOSSSim --format text --format gradescope=results.json
   fosssim-oracle grade ./FOSSSim --scene 'GeometricTests/*' --hints full
+  fosssim-oracle grade submissions/ --suite course.toml --output grades --for student
   fosssim-oracle grade ./FOSSSim --failed
 
 A folder holds one submission per entry: a program, or a folder with a program of the name that --program gives. A \
@@ -39,6 +40,10 @@ pub(super) struct Grade {
     /// A report: text, json, junit, gradescope, prairielearn, github, markdown, csv or html; with =FILE into a file.
     #[arg(long, value_name = "FORMAT[=FILE]")]
     pub(super) format: Vec<String>,
+    /// Whom HTML pages are for: students' hold no group that the suite hides from them, nor what tells of it. Into the output
+    /// folder both kinds are written, those to hand out below students/.
+    #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Reader::Staff)]
+    pub(super) reader: Reader,
     /// Runs at one time. One per core by default.
     #[arg(short, long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
     pub(super) jobs: Option<NonZeroUsize>,
@@ -110,6 +115,24 @@ impl FromStr for Shard {
     }
 }
 
+/// Whom a page is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Reader {
+    /// Staff: everything.
+    Staff,
+    /// The student: what the suite shows students at once.
+    Student,
+}
+
+impl From<Reader> for page::Reader {
+    fn from(reader: Reader) -> Self {
+        match reader {
+            Reader::Staff => Self::Staff,
+            Reader::Student => Self::Student,
+        }
+    }
+}
+
 /// Puts together what `grade --shard` left: the results are those of a grading in one go.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -129,6 +152,9 @@ pub(super) struct Merge {
     /// A report: text, json, junit, github, markdown or csv; with =FILE into a file.
     #[arg(long, value_name = "FORMAT[=FILE]")]
     pub(super) format: Vec<String>,
+    /// Whom HTML pages are for: students' go to students/, beside those for staff.
+    #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Reader::Staff)]
+    pub(super) reader: Reader,
     /// Show a line per submission only.
     #[arg(short, long)]
     pub(super) quiet: bool,

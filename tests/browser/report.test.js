@@ -16,6 +16,8 @@ const CASES = {
   contact: ["ContinuousTimeTests/head-on-equal-masses", "pp-contact-reversed"],
   impulses: ["ImpulsesTests/off-centre-on-turning-edge", "decision-alpha-margin"],
   failsafe: ["GeometricTests/pair-becomes-rigid", "failsafe-angular-overwritten"],
+  pruned: ["ContinuousTimeTests/spinning-edge-sweeps-balls", "pairs-pruned"],
+  missed: ["ContinuousTimeTests/row-struck-in-one-step", "decision-half-step"],
 };
 
 function report(name, { traceName = `${name}.bin`, cut = null } = {}) {
@@ -84,7 +86,7 @@ test("a wrong failsafe is found by keyboard", async () => {
   await page.locator(".stepbox").fill(String(first));
   await page.locator(".stepbox").press("Enter");
   assert.equal(await step(), first);
-  assert.match(await page.locator(".facts").innerText(), /momentum after the step/);
+  assert.match(await page.locator(".facts").innerText(), /momentum after the impulses.*momentum after the failsafe/s);
   // The difference is too small or large to be judged by eye: the factor is said.
   assert.match(await page.locator(".viewer").innerText(), /magnified .*times \(largest difference/s);
   assert.deepEqual(complaints, []);
@@ -132,12 +134,81 @@ test("a pair is chosen, its numbers are exact, and a command line reproduces it"
   await close();
 });
 
+test("a pair that is left out lights up, is selected, and is told with its calls", async () => {
+  const { page, complaints, close } = await open(report("pruned"));
+  assert.match(await page.locator(".lights").innerText(), /Wrong pairs: particle 0 - particle 1: not tested/);
+  assert.match(await page.locator(".numbers h4").innerText(), /particle 0 - particle 1/);
+  const cell = page.locator(".pairs td.differs button").first();
+  assert.equal(await cell.innerText(), "0/1!");
+  assert.match(await cell.getAttribute("aria-label"), /0 of 1 calls, not tested/);
+  await page.locator(".lights button").nth(1).click();
+  assert.match(await page.locator(".numbers h4").innerText(), /particle 0 - particle 2/);
+  // Its curves are on the page, with nothing beside them.
+  assert.match(await page.locator("section[data-pair]").first().innerText(), /Your trace has logged nothing for this pair/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a contact that is missing lights up; findings and calls lead into the motion", async () => {
+  const { page, complaints, close } = await open(report("missed"));
+  assert.match(await page.locator(".lights").innerText(), /particle 0 - particle 1: its contact is missing/);
+  await page.locator(".stepbox").fill("3");
+  await page.locator(".stepbox").press("Enter");
+  await page.getByRole("button", { name: "Show step 1 in the motion" }).first().click();
+  assert.equal(await page.locator(".stepbox").inputValue(), "1");
+  assert.match(await page.locator(".numbers").innerText(), /contact's time of impact\s+0\.50\d+.*\s+none/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("a link leads to a moment", async () => {
   const html = report("failsafe");
   const scene = join(root, "assets", `${CASES.failsafe[0]}.xml`);
   const { page, close } = await open(html, { hash: `#${new URLSearchParams({ scene, step: 3, t: 0.25 })}` });
   assert.equal(await page.locator(".stepbox").inputValue(), "3");
   assert.equal(await page.locator("output").first().innerText(), "0.250");
+  await close();
+});
+
+test("a still and a clip are saved", async () => {
+  const { page, complaints, close } = await open(report("contact"));
+  const saved = async (name) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
+    return [download.suggestedFilename(), readFileSync(await download.path())];
+  };
+  const [still, png] = await saved("PNG");
+  assert.match(still, /^step-\d+\.png$/);
+  assert.deepEqual([...png.subarray(0, 8)], [137, 80, 78, 71, 13, 10, 26, 10]);
+  const [clip, film] = await saved("Clip");
+  assert.equal(clip, "motion.webm");
+  // Matroska's first four bytes.
+  assert.deepEqual([...film.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3]);
+  assert.ok(film.length > 1000, `${film.length}`);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("who asks for little motion gets a step a second", async () => {
+  const { page, close } = await open(report("failsafe"));
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.keyboard.press("Home");
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.waitForFunction(() => Number(document.querySelector(".stepbox").value) >= 1);
+  assert.ok(Number(await page.locator(".stepbox").inputValue()) <= 2);
+  await close();
+});
+
+test("what is copied as a scene shows the same mistake when it is run", async () => {
+  const { page, complaints, close } = await open(report("failsafe"));
+  await page.evaluate(() => { window.copied = ""; document.execCommand = () => { window.copied = document.activeElement.value ?? ""; return true; }; Object.defineProperty(navigator, "clipboard", { value: undefined }); });
+  await page.getByRole("button", { name: "Copy as scene" }).click();
+  writeFileSync(join(folder, "case.xml"), await page.evaluate(() => window.copied));
+  const commands = await page.locator(".numbers code").last().innerText();
+  // The command as it stands there, with the sample in the place of the student's program.
+  const run = spawnSync("sh", ["-c", commands.replace("./FOSSSim", `'${join(programs, "fosssim-sample")}' --mistake failsafe-angular-overwritten`).replace("fosssim-oracle", `'${join(programs, "fosssim-oracle")}'`)], { encoding: "utf8", cwd: folder });
+  assert.equal(run.status, 1, run.stdout + run.stderr);
+  assert.match(run.stdout, /The angular momentum is overwritten/);
+  assert.deepEqual(complaints, []);
   await close();
 });
 

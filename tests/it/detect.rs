@@ -108,6 +108,35 @@ fn a_wrong_polynomial_of_a_trace_is_shown_beside_the_right_one() {
     let run = detect(&workspace, "--scene scene.xml --trace trace.bin --step 1 --pair ph:0,0");
     assert!(run.out().contains("  overlap: differs\n    -0.75 t^2 + 0.5 t - 0.1875\n"), "{}", run.shown());
     assert!(run.out().contains("  approach: the same\n"), "{}", run.shown());
+    let table =
+        "          expected    logged\n    t^2      -0.25     -0.75   <- differs\n    t^1        0.5       0.5\n";
+    assert!(run.out().contains(table), "{}", run.shown());
+}
+
+/// From the trace's own mid record; and where the trace leaves pairs out, what it has for the others is found all the same.
+#[test]
+fn a_pair_of_a_trace_that_logs_too_little_is_found() {
+    let workspace = Workspace::new();
+    let scene = "asset:ContinuousTimeTests/spinning-edge-sweeps-balls";
+    let row = fosssim_oracle::student::find("pairs-pruned").expect("a mistake");
+    let read = fosssim_oracle::scene::original::read(
+        &std::fs::read(
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(&scene[6..]).with_extension("xml"),
+        )
+        .expect("a scene"),
+    );
+    let student = fosssim_oracle::student::Student::new(Some(row.mistake));
+    let trace = fosssim_oracle::student::trace(&read.expect("a scene").scene, student).expect("a trace");
+    workspace.write("pruned.bin", trace);
+    let pair = |word: &str| detect(&workspace, &format!("--scene {scene} --trace pruned.bin --step 1 --pair {word}"));
+    assert!(
+        pair("pp:0,1").out().contains("What the trace logged\n  nothing for this pair in this pass\n"),
+        "{}",
+        pair("pp:0,1").shown()
+    );
+    assert!(pair("pe:2,0").out().contains("  overlap: the same\n"), "{}", pair("pe:2,0").shown());
+    let json = answer(&workspace, &format!("--scene {scene} --trace pruned.bin --step 1 --pair pp:0,1"));
+    assert_eq!(json["place"]["logged"], serde_json::json!([]));
 }
 
 #[test]

@@ -104,3 +104,65 @@ fn explain_has_a_page_too() {
     assert!(body(&what).contains("likely mistake") && !body(&what).contains("id=\"reference-"), "{}", what.len());
     assert!(!body(&what).contains("Coefficients") && !body(&what).contains("data-plot"));
 }
+
+/// Against recordings a page has both motions, too, and tells own errors from those that follow.
+#[test]
+fn a_grading_against_recordings_has_its_motions() {
+    let Some(workspace) = grading::workspace() else { return };
+    let submission = grading::submit(&workspace, &["failsafe-angular-overwritten"]).remove(0);
+    let scene = "GeometricTests/pair-becomes-rigid";
+    let words = [
+        "grade",
+        &submission,
+        "--scene",
+        scene,
+        "--recorded",
+        "--hints",
+        "full",
+        "--quiet",
+        "--format",
+        "html=page.html",
+    ];
+    let run = workspace.run(words);
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    let page = text(&workspace, "page.html");
+    let body = body(&page);
+    assert!(body.contains("id=\"reference-") && body.contains("id=\"submission-"), "no motion");
+    assert!(body.contains("The verdict compares with the recording"), "{body}");
+    // One step is wrong by itself, although the recorded run is another one from there on.
+    assert!(body.contains(" 1 wrong by themselves, 9 right but starting from where a wrong step has led"), "{body}");
+    assert!(body.contains("likely mistake: "), "{body}");
+}
+
+/// What the suite hides from students is on no page that is handed out.
+#[test]
+fn pages_to_hand_out_hold_no_hidden_group() {
+    let Some(workspace) = grading::workspace() else { return };
+    let suite = "schema = 1\nname = \"Veils\"\nhints = \"full\"\n\
+        [[group]]\nname = \"Shown\"\npoints = 1\nscenes = [\"asset:ContinuousTimeTests/head-on-equal-masses\"]\n\
+        [[group]]\nname = \"Veiled\"\npoints = 2\nvisibility = \"hidden\"\n\
+        scenes = [\"asset:ContinuousTimeTests/spinning-edge-sweeps-balls\"]\n";
+    workspace.write("veils.toml", suite);
+    let mut words = grading::submit(&workspace, &["pp-contact-reversed", "pe-linear-one-ab"]);
+    words.splice(0..0, ["grade", "--suite", "veils.toml", "--output", "class", "--for", "student"].map(str::to_owned));
+    let run = workspace.run(&words);
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    for (mistake, shown) in [("pp-contact-reversed", "WRONG ANSWER"), ("pe-linear-one-ab", "ACCEPTED")] {
+        let file = format!("fosssim-sample.{mistake}.html");
+        let student = text(&workspace, &format!("class/students/{file}"));
+        let staff = text(&workspace, &format!("class/reports/{file}"));
+        assert!(
+            staff.contains("Veiled") && staff.contains("spinning-edge-sweeps-balls") && staff.contains("index.html")
+        );
+        assert!(
+            !student.contains("Veiled")
+                && !student.contains("spinning-edge-sweeps-balls")
+                && !student.contains("index.html")
+        );
+        assert!(student.contains(shown), "{student}");
+    }
+    let words =
+        ["grade", &words[7], "--suite", "veils.toml", "--for", "student", "--format", "html=one.html", "--quiet"];
+    workspace.run(words);
+    assert!(!text(&workspace, "one.html").contains("Veiled"));
+}

@@ -1,18 +1,21 @@
 //! One step looked at closely: every detection pass, contact and zone, and the calls that findings are about.
+use crate::matching::{differ, matching};
 use fosssim_judge::study::{NoAnswer, Study};
 use fosssim_model::{
     scene::Scene,
     sim::{Decision, Detection, Impulse, Observer, Pair, PairMotion, Pass, Resume, State, Zone},
-    trace::{LenientFrame, LoggedImpulse, PolynomialLog},
+    trace::{LoggedImpulse, PolynomialLog},
 };
 
-/// So many passes of a step are kept.
+/// So many passes of a step are kept, and of a large scene so many that their positions are no more than these numbers.
 const PASSES: usize = 24;
-/// So many pairs of a pass are kept as differing.
-const DIFFERING: usize = 64;
-/// Coefficients may be off by this part of their polynomial's largest one before a call is marked as differing. A mark is no
-/// verdict; raised, faint differences get none.
-const MARKED: f64 = 1e-9;
+const POSITIONS: usize = 12_000;
+/// So many pairs of a pass are kept as differing, as missing, as repeated.
+const PAIRS: usize = 256;
+/// So many calls of a step are kept for the case that the trace has logged another number of polynomials.
+const CALLS: usize = 1 << 14;
+/// So many calls are shown that no finding is about, but that are wrong or missing.
+const SHOWN: usize = 2;
 
 /// A detection pass of the reference.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +30,11 @@ pub struct PassUp {
     pub hits: Vec<Impulse>,
     /// Pairs for which the trace has logged other polynomials, up to a factor; the first ones.
     pub differing: Vec<Pair>,
-    /// Whether the trace has logged polynomials for all its calls.
+    /// Pairs for which it has logged none; the first ones.
+    pub missing: Vec<Pair>,
+    /// Pairs whose polynomials it has logged once more; the first ones.
+    pub repeated: Vec<Pair>,
+    /// Whether it can be told which of the trace's polynomials belong to this pass.
     pub is_logged: bool,
 }
 
@@ -40,7 +47,18 @@ pub struct Zones {
     pub zones: Vec<(Vec<u32>, bool)>,
 }
 
-/// A detection call that a finding is about.
+/// What a trace has logged for a call.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Logged {
+    /// These polynomials in the order of the reference's, highest power first; one that is missing is empty.
+    These(Vec<Vec<f64>>),
+    /// Nothing.
+    Nothing,
+    /// It can't be told.
+    Unknown,
+}
+
+/// A detection call that is looked at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Call {
     /// The pass.
@@ -49,8 +67,10 @@ pub struct Call {
     pub pair: Pair,
     /// What the reference computes of it.
     pub study: Result<Study, NoAnswer>,
-    /// What the trace has logged for it, highest power first; empty where that can't be told.
-    pub logged: Vec<Vec<f64>>,
+    /// How many polynomials the reference logs for it; none without continuous-time detection.
+    pub polynomials: usize,
+    /// What the trace has logged for it.
+    pub logged: Logged,
 }
 
 /// One step looked at closely.
@@ -70,14 +90,38 @@ pub struct CloseUp {
     pub expected_polynomials: usize,
     /// How many the trace has logged.
     pub actual_polynomials: usize,
+    /// How many of them stand for no call of the reference; `None` where that can't be told.
+    pub surplus: Option<usize>,
     /// The responses of the reference.
     pub expected_contacts: Vec<Impulse>,
     /// The impulse list of the trace.
     pub actual_contacts: Vec<LoggedImpulse>,
     /// Impact zones.
     pub zones: Vec<Zones>,
-    /// The calls that findings are about.
+    /// The calls that findings are about, and some that are wrong or missing.
     pub calls: Vec<Call>,
+}
+
+/// Which calls of a pair are wanted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Which {
+    /// Those that end in a collision.
+    Hits,
+    /// That of this pass.
+    In(Pass),
+    /// All.
+    Every,
+}
+
+/// A call of the reference, for the case that the trace's list has to be matched.
+struct Asked {
+    pass: Pass,
+    /// The number of the pass in the step.
+    number: usize,
+    pair: Pair,
+    motion: PairMotion,
+    first: usize,
+    count: usize,
 }
 
 /// Listens to one step of the reference.
@@ -86,19 +130,26 @@ pub(crate) struct Watch<'a> {
     /// The trace's mid record, which the step goes on with, and its polynomials.
     mid: Option<&'a State>,
     log: Option<&'a PolynomialLog>,
-    wanted: &'a [(Option<Pass>, Pair)],
-    polynomials: usize,
+    wanted: &'a [(Which, Pair)],
     pass: Option<Pass>,
+    /// The calls and their polynomials; none beyond [`CALLS`].
+    asked: Vec<Asked>,
+    right: PolynomialLog,
+    /// For each call that is looked at its number in the step and its first polynomial's.
+    places: Vec<(usize, usize)>,
+    /// All calls so far.
+    calls: usize,
     pub(crate) close_up: CloseUp,
 }
 
 impl<'a> Watch<'a> {
+    /// Nothing seen yet. `log` is what the trace has logged in the step, of `logged` polynomials the first ones.
     pub(crate) fn new(
         scene: &'a Scene,
         step: u32,
         mid: Option<&'a State>,
-        end: &'a LenientFrame,
-        wanted: &'a [(Option<Pass>, Pair)],
+        (log, logged): (&'a PolynomialLog, usize),
+        wanted: &'a [(Which, Pair)],
     ) -> Self {
         let close_up = CloseUp {
             step,
@@ -107,20 +158,153 @@ impl<'a> Watch<'a> {
             passes: Vec::new(),
             expected_passes: 0,
             expected_polynomials: 0,
-            actual_polynomials: end.logged,
+            actual_polynomials: logged,
+            surplus: None,
             expected_contacts: Vec::new(),
-            actual_contacts: end.impulses.clone(),
+            actual_contacts: Vec::new(),
             zones: Vec::new(),
             calls: Vec::new(),
         };
-        let log = (!end.polynomials.is_empty()).then_some(&end.polynomials);
-        Self { scene, mid, log, wanted, polynomials: 0, pass: None, close_up }
+        // What is not kept of a list can't be told from what is not there.
+        let log = (log.len() == logged && logged > 0).then_some(log);
+        let (asked, right) = (Vec::new(), PolynomialLog::default());
+        Self { scene, mid, log, wanted, pass: None, asked, right, places: Vec::new(), calls: 0, close_up }
     }
 
-    /// What the trace has logged for a call, if its list reaches that far.
-    fn logged(&self, first: usize, count: usize) -> Option<impl Iterator<Item = &'a [f64]> + use<'a>> {
-        let log = self.log?;
-        (first + count <= log.len()).then(|| (first..first + count).map(move |index| log.get(index)))
+    fn most_passes(&self) -> usize {
+        (POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, PASSES)
+    }
+
+    /// What was seen, with what the trace has logged for it.
+    pub(crate) fn finish(mut self) -> CloseUp {
+        let (expected, actual) = (self.close_up.expected_polynomials, self.close_up.actual_polynomials);
+        if expected == actual {
+            self.close_up.surplus = Some(0);
+            for (call, &(_, first)) in self.close_up.calls.iter_mut().zip(&self.places) {
+                call.logged = by_order(self.log, expected, first, call.polynomials);
+            }
+        } else if self.calls == self.asked.len() {
+            match self.log {
+                Some(log) => self.assign(log),
+                // An empty list leaves nothing to doubt.
+                None if actual == 0 => self.assign(&PolynomialLog::default()),
+                None => {}
+            }
+        }
+        self.show_more();
+        self.close_up
+    }
+
+    /// Tells which polynomials of a list of another length belong to which call.
+    fn assign(&mut self, log: &PolynomialLog) {
+        let Some(found) = matching(&self.right, log) else { return };
+        let mut is_claimed = vec![false; log.len()];
+        found.iter().flatten().for_each(|&place| is_claimed[place] = true);
+        for pass in &mut self.close_up.passes {
+            pass.differing.clear();
+            pass.is_logged = true;
+        }
+        let mut fates: Vec<Logged> = Vec::with_capacity(self.asked.len());
+        for asked in &self.asked {
+            let of_call = &found[asked.first..asked.first + asked.count];
+            let fate = if of_call.iter().all(Option::is_none) {
+                Logged::Nothing
+            } else {
+                Logged::These(
+                    of_call.iter().map(|place| place.map_or_else(Vec::new, |at| log.get(at).to_vec())).collect(),
+                )
+            };
+            if let Some(pass) = self.close_up.passes.get_mut(asked.number) {
+                let is_wrong = |list: &[Vec<f64>]| {
+                    list.iter()
+                        .zip(asked.first..)
+                        .any(|(own, place)| own.is_empty() || differ(own, self.right.get(place)))
+                };
+                match &fate {
+                    _ if asked.count == 0 => {}
+                    Logged::Nothing => keep(&mut pass.missing, asked.pair),
+                    Logged::These(list) if is_wrong(list) => keep(&mut pass.differing, asked.pair),
+                    _ => {}
+                }
+            }
+            fates.push(fate);
+        }
+        for (call, &(number, _)) in self.close_up.calls.iter_mut().zip(&self.places) {
+            call.logged = fates[number].clone();
+        }
+        let mut surplus = is_claimed.iter().filter(|claimed| !**claimed).count();
+        self.close_up.surplus = Some(surplus);
+        // What stands for no call may be one that was made twice: then it follows or precedes the polynomials of its pass.
+        let mut place = 0;
+        while place < log.len() && surplus > 0 {
+            if is_claimed[place] {
+                place += 1;
+                continue;
+            }
+            let again = |asked: &&Asked| {
+                asked.count > 0
+                    && place + asked.count <= log.len()
+                    && (0..asked.count)
+                        .all(|k| !is_claimed[place + k] && !differ(log.get(place + k), self.right.get(asked.first + k)))
+            };
+            let before =
+                found.iter().enumerate().filter(|(_, at)| at.is_some_and(|at| at < place)).map(|(own, _)| own).max();
+            let number = before.and_then(|own| self.asked.iter().find(|asked| asked.first + asked.count > own));
+            let number = number.map_or(0, |asked| asked.number);
+            match self.asked.iter().filter(|asked| asked.number == number).find(again) {
+                Some(asked) => {
+                    if let Some(pass) = self.close_up.passes.get_mut(number) {
+                        keep(&mut pass.repeated, asked.pair);
+                    }
+                    place += asked.count;
+                    surplus -= asked.count;
+                }
+                None => (place, surplus) = (place + 1, surplus - 1),
+            }
+        }
+    }
+
+    /// Looks at calls that are wrong or missing although no finding names them.
+    fn show_more(&mut self) {
+        let Some(pass) =
+            self.close_up.passes.iter().position(|pass| !(pass.differing.is_empty() && pass.missing.is_empty()))
+        else {
+            return;
+        };
+        let up = &self.close_up.passes[pass];
+        let wrong: Vec<Pair> = [up.missing.first(), up.differing.first()].into_iter().flatten().copied().collect();
+        for pair in wrong.into_iter().take(SHOWN) {
+            let is_shown = |call: &Call| call.pair == pair && call.pass == self.close_up.passes[pass].pass;
+            if self.close_up.calls.len() >= SHOWN || self.close_up.calls.iter().any(is_shown) {
+                continue;
+            }
+            let Some(asked) = self.asked.iter().find(|asked| asked.number == pass && asked.pair == pair) else {
+                continue;
+            };
+            let logged = if self.close_up.passes[pass].missing.contains(&pair) {
+                Logged::Nothing
+            } else {
+                by_order(self.log, self.close_up.expected_polynomials, asked.first, asked.count)
+            };
+            let (pass, polynomials) = (asked.pass, asked.count);
+            self.close_up.calls.push(Call { pass, pair, study: Study::of(&asked.motion), polynomials, logged });
+        }
+    }
+}
+
+/// What a list has for a call by its place; unknown where it has another length than the reference's.
+fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> Logged {
+    match log {
+        Some(log) if log.len() == expected => {
+            Logged::These((first..first + count).map(|place| log.get(place).to_vec()).collect())
+        }
+        _ => Logged::Unknown,
+    }
+}
+
+fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
+    if pairs.len() < PAIRS {
+        pairs.push(pair);
     }
 }
 
@@ -128,43 +312,56 @@ impl Observer for Watch<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.pass = Some(pass);
         self.close_up.expected_passes += 1;
-        if self.close_up.passes.len() < PASSES {
+        if self.close_up.passes.len() < self.most_passes() {
             let is_logged = self.log.is_some();
-            let (q_end, hits, differing) = (Vec::new(), Vec::new(), Vec::new());
-            self.close_up.passes.push(PassUp { pass, q_end, calls: 0, hits, differing, is_logged });
+            let q_end = Vec::new();
+            let (hits, differing, missing, repeated) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            self.close_up.passes.push(PassUp { pass, q_end, calls: 0, hits, differing, missing, repeated, is_logged });
         }
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
         let Some(pass) = self.pass else { return };
-        let first = self.polynomials;
-        self.polynomials += detection.polynomials.len();
-        self.close_up.expected_polynomials = self.polynomials;
-        let logged = self.logged(first, detection.polynomials.len());
-        let wanted = self.wanted.iter().any(|(in_pass, pair)| {
-            *pair == detection.pair && in_pass.map_or(matches!(detection.decision, Decision::Hit { .. }), |p| p == pass)
+        let (first, count) = (self.close_up.expected_polynomials, detection.polynomials.len());
+        self.close_up.expected_polynomials += count;
+        self.calls += 1;
+        let Detection { pair, q_start, q_end, decision, .. } = *detection;
+        let motion = || PairMotion::between(self.scene, pair, q_start, q_end);
+        let is_hit = matches!(decision, Decision::Hit { .. });
+        let wanted = self.wanted.iter().any(|(which, one)| {
+            *one == pair
+                && match which {
+                    Which::Hits => is_hit,
+                    Which::In(one) => *one == pass,
+                    Which::Every => true,
+                }
         });
         if wanted {
-            let motion = PairMotion::between(self.scene, detection.pair, detection.q_start, detection.q_end);
-            let logged = logged.map_or_else(Vec::new, |logged| logged.map(<[f64]>::to_vec).collect());
-            self.close_up.calls.push(Call { pass, pair: detection.pair, study: Study::of(&motion), logged });
+            let study = Study::of(&motion());
+            // Only the whole step tells whether the list is as long as the reference's.
+            self.close_up.calls.push(Call { pass, pair, study, polynomials: count, logged: Logged::Unknown });
+            self.places.push((self.calls - 1, first));
         }
-        let differs = match self.logged(first, detection.polynomials.len()) {
-            Some(logged) => logged.zip(detection.polynomials).any(|(own, right)| differ(own, right.coefficients())),
-            None => false,
-        };
-        let reaches = self.logged(first, detection.polynomials.len()).is_some();
+        if self.asked.len() < CALLS {
+            let number = self.close_up.expected_passes - 1;
+            self.asked.push(Asked { pass, number, pair, motion: motion(), first, count });
+            detection.polynomials.iter().for_each(|polynomial| self.right.push(polynomial.coefficients()));
+        }
+        let logged = self.log.filter(|log| first + count <= log.len());
+        let differs = logged.is_some_and(|log| {
+            (first..).zip(detection.polynomials).any(|(at, right)| differ(log.get(at), right.coefficients()))
+        });
         if let Some(up) = self.close_up.passes.last_mut().filter(|up| up.pass == pass) {
             if up.calls == 0 {
-                up.q_end = detection.q_end.to_vec();
+                up.q_end = q_end.to_vec();
             }
             up.calls += 1;
-            up.is_logged &= reaches;
-            if let Decision::Hit { time, normal } = detection.decision {
-                up.hits.push(Impulse { pair: detection.pair, normal, time });
+            up.is_logged &= logged.is_some();
+            if let Decision::Hit { time, normal } = decision {
+                up.hits.push(Impulse { pair, normal, time });
             }
-            if differs && up.differing.len() < DIFFERING {
-                up.differing.push(detection.pair);
+            if differs {
+                keep(&mut up.differing, pair);
             }
         }
     }
@@ -192,20 +389,4 @@ impl Observer for Watch<'_> {
     fn end_step(&mut self, _step: u32, state: &State) {
         self.close_up.expected_end = Some(state.clone());
     }
-}
-
-/// Whether one polynomial is visibly no positive multiple of the other.
-fn differ(own: &[f64], right: &[f64]) -> bool {
-    let largest = |list: &[f64]| list.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-    let (most, scale) = (largest(own), largest(right));
-    if scale == 0.0 || most == 0.0 || !most.is_finite() {
-        return own.len() != right.len() && (most != 0.0 || scale != 0.0);
-    }
-    if own.len() != right.len() {
-        return true;
-    }
-    let place = right.iter().position(|c| c.abs() == scale).unwrap_or(0);
-    let factor = own[place] / right[place];
-    let near = |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED * (factor * scale).abs();
-    !(factor > 0.0 && own.iter().zip(right).all(near))
 }

@@ -1,6 +1,6 @@
 //! Goes through a trace once more, beside the reference.
 use crate::{
-    close_up::{CloseUp, Watch},
+    close_up::{CloseUp, Watch, Which},
     rulings::Ruling,
     track::{Track, Window},
 };
@@ -12,8 +12,9 @@ use fosssim_model::{
 };
 use std::io::Read;
 
-/// So many steps are looked at closely.
+/// So many steps are looked at closely, fewer of a large scene: their expected states are no more than these numbers.
 const CLOSE_UPS: usize = 12;
+const NUMBERS: usize = 40_000;
 
 /// A motion counts as another one than the reference's where a coordinate is further off than this, in scene units.
 const APART: f64 = 1e-10;
@@ -130,7 +131,7 @@ pub fn gather<R: Read>(
     let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
     let centre = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
     let window = Window::around(centre, layout, budget);
-    let close = close_steps(focus, first_wrong, layout.steps);
+    let close = close_steps(focus, first_wrong, layout);
     let mut reader = Lenient::new(trace, layout).with_limit(record_memory(scene));
     let mut free = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut own = Simulation::new(scene, RootSearch::WhereNeeded);
@@ -177,26 +178,25 @@ pub fn gather<R: Read>(
         }
         own.state_mut().clone_from(&before);
         own.set_steps_done(step - 1);
-        let wanted: Vec<(Option<Pass>, Pair)> = focus
+        let wanted: Vec<(Which, Pair)> = focus
             .iter()
             .filter(|focus| focus.step == step)
-            .filter_map(|focus| Some((focus.pass, focus.pair?)))
+            .filter_map(|focus| Some((focus.pass.map_or(Which::Hits, Which::In), focus.pair?)))
             .collect();
         // Of `continuous-time` the mid record holds what the end record does: the step's own end is what it is held to.
         let mid_state = matches!(scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
         let is_close = close.contains(&step);
         let mut count = Count::new(mid_state);
         let done = if is_close {
-            let mut watch = Watch::new(scene, step, mid_state, &end, &wanted);
+            let mut watch = Watch::new(scene, step, mid_state, (&end.polynomials, end.logged), &wanted);
             let done = work.step(&mut own, &mut (&mut watch, &mut count)).is_ok();
-            if watch.close_up.actual_contacts.is_empty() {
-                watch.close_up.actual_contacts.clone_from(&mid.impulses);
-            }
+            let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
+            watch.close_up.actual_contacts.clone_from(impulses);
             // Who watches comes first, and has the step go on with the trace's mid record: what it should hold is kept there.
             if let (Some(expected), Some(mid)) = (&watch.close_up.expected_mid, mid_state) {
                 count.apart = apart(expected, mid);
             }
-            evidence.close_ups.push(watch.close_up);
+            evidence.close_ups.push(watch.finish());
             done
         } else {
             work.step(&mut own, &mut count).is_ok()
@@ -230,11 +230,12 @@ pub fn gather<R: Read>(
 }
 
 /// The steps to look at: those of findings, and those around the first wrong one, the most important ones if they are many.
-fn close_steps(focus: &[Focus], first_wrong: Option<u32>, steps: u32) -> Vec<u32> {
+fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
+    let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, CLOSE_UPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
     let mut chosen: Vec<u32> = Vec::new();
     for step in near.chain(focus.iter().map(|focus| focus.step)) {
-        if (1..=steps).contains(&step) && !chosen.contains(&step) && chosen.len() < CLOSE_UPS {
+        if (1..=steps).contains(&step) && !chosen.contains(&step) && chosen.len() < most {
             chosen.push(step);
         }
     }

@@ -9,12 +9,15 @@
 
 mod close_up;
 mod gather;
+mod look;
+mod matching;
 mod rulings;
 #[cfg(test)]
 mod tests;
 mod track;
 
-pub use close_up::{Call, CloseUp, PassUp, Zones};
+pub use close_up::{Call, CloseUp, Logged, PassUp, Zones};
 pub use gather::{Class, Evidence, Focus, Step, gather};
+pub use look::{Look, Records, look};
 pub use rulings::{Ruling, Rulings};
 pub use track::{BUDGET, Track, Window};

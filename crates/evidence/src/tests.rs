@@ -3,7 +3,8 @@ use fosssim_judge::{Book, Outcome, parity};
 use fosssim_mistakes::student::{self, Student};
 use fosssim_model::{
     scene::{Scene, original},
-    trace::Layout,
+    sim::{Pair, PairKind, State},
+    trace::{Layout, PolynomialLog},
 };
 
 #[expect(clippy::disallowed_methods, reason = "the scenes that come with the program")]
@@ -73,7 +74,8 @@ fn a_finding_about_a_polynomial_has_its_call() {
     let call = close.calls.iter().find(|call| call.pair == place.pair && call.pass == place.pass).expect("the call");
     let study = call.study.as_ref().expect("an answer");
     let number = study.curves.iter().position(|curve| curve.role == place.role).expect("the role");
-    assert_ne!(study.curves[number].logged.coefficients(), &call.logged[number][..]);
+    let Logged::These(logged) = &call.logged else { panic!("{call:?}") };
+    assert_ne!(study.curves[number].logged.coefficients(), &logged[number][..]);
     assert!(close.passes[0].differing.contains(&place.pair));
 }
 
@@ -111,4 +113,50 @@ fn a_hybrid_step_whose_impulses_are_wrong_has_a_residual() {
     let step = &evidence.steps[first.step as usize - 1];
     assert!(step.class == Class::Wrong && step.position > 0.1 && step.velocity > 0.1, "{step:?}");
     assert!(evidence.steps.iter().filter(|other| other.class != Class::Wrong).all(|other| other.position < 1e-10));
+}
+
+/// Where polynomials are missing or too many, the pairs that they belong to are told.
+#[test]
+fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
+    let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
+    let close = |id: &str| judged(&scene, &of_mistake(&scene, id)).1.close_ups.remove(0);
+    let right = close("pe-linear-one-ab").passes.remove(0);
+    assert!(right.missing.is_empty() && right.repeated.is_empty() && !right.differing.is_empty());
+    let pruned = close("pairs-pruned");
+    let pass = &pruned.passes[0];
+    assert!(pass.is_logged && pruned.surplus == Some(0));
+    assert!(pass.differing.is_empty() && pass.repeated.is_empty(), "{pass:?}");
+    let polynomials = |pair: &Pair| if pair.kind == PairKind::ParticleEdge { 4 } else { 2 };
+    let missing: usize = pass.missing.iter().map(polynomials).sum();
+    assert_eq!(missing, pruned.expected_polynomials - pruned.actual_polynomials);
+    // One of them is looked at, although no finding names it.
+    assert!(pruned.calls.iter().any(|call| call.logged == Logged::Nothing && pass.missing.contains(&call.pair)));
+    let twice = close("pairs-both-orders");
+    let pass = &twice.passes[0];
+    assert!(pass.differing.is_empty() && pass.missing.is_empty(), "{pass:?}");
+    let particles = scene.particles.len();
+    assert_eq!(pass.repeated.len(), particles * (particles - 1) / 2, "{pass:?}");
+    assert_eq!(twice.surplus, Some(twice.actual_polynomials - twice.expected_polynomials));
+}
+
+/// A pair is looked at from the trace's own mid record, too.
+#[test]
+fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
+    let scene = asset("GeometricTests/pair-becomes-rigid.xml");
+    let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "failsafe-angular-overwritten"));
+    let step = outcome.account(Book::Fair).first_divergence.expect("wrong").step;
+    let close = evidence.close_ups.iter().find(|up| up.step == step).expect("looked at");
+    let state = |record: u64| {
+        let size = 4 * scene.particles.len();
+        let values = &evidence.submission.values[record as usize * size..][..size];
+        let (positions, velocities) = values.split_at(size / 2);
+        State { positions: positions.to_vec(), velocities: velocities.to_vec() }
+    };
+    let (before, mid) = (state(evidence.layout.end_record(step - 1)), state(evidence.layout.end_record(step) - 1));
+    let pair = close.passes[0].hits[0].pair;
+    let records = Records { mid: Some(&mid), polynomials: &PolynomialLog::default() };
+    let seen = look(&scene, step, &before, Some(records), pair);
+    assert_eq!(seen.close_up.calls.len(), close.expected_passes);
+    assert!(seen.close_up.calls.iter().all(|call| call.pair == pair && call.logged == Logged::Nothing));
+    assert_eq!((Some(&seen.end), seen.failed), (close.expected_end.as_ref(), None));
 }

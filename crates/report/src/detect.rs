@@ -6,8 +6,9 @@ use super::{
     table::{Align, Cell, Table},
     view::{Number, PairView, PassView, numbers, pair_kind},
 };
+use fosssim_evidence::Logged;
 use fosssim_judge::{
-    PairWords, PassWords,
+    PairWords, PassWords, differing, factor,
     study::{Answer, Curve, Study},
 };
 use fosssim_model::sim::{Decision, Pair, PairMotion, Pass, PointMotion};
@@ -32,8 +33,8 @@ pub struct Place<'a> {
     pub pass: Option<Pass>,
     /// How many passes the reference makes in this step.
     pub passes: usize,
-    /// What the trace logged for this call, where it logged as many polynomials as the reference.
-    pub logged: Option<&'a [Vec<f64>]>,
+    /// What the trace logged for this call.
+    pub logged: &'a Logged,
 }
 
 /// A detection call to be shown.
@@ -111,14 +112,20 @@ impl Detect<'_> {
         if let Some(right) = &study.right_approach {
             text += &polynomial_lines("approach without the slip in t^3 of the course's formula", &right.curve, style);
         }
-        if let Some(logged) = self.place.and_then(|place| place.logged) {
+        if let Some(place) = self.place.filter(|place| place.trace.is_some() && place.pass.is_some()) {
             text += &format!("\n{}\n", style.paint(Look::Strong, "What the trace logged"));
-            for (curve, coefficients) in study.curves.iter().zip(logged) {
-                let same = curve.logged.coefficients() == coefficients;
-                let look = if same { Look::Good } else { Look::Bad };
-                let mark = if same { "the same" } else { "differs" };
-                text += &format!("  {}: {}\n", curve.role, style.paint(look, mark));
-                text += &format!("    {}\n", polynomial(coefficients));
+            match place.logged {
+                Logged::These(logged) => {
+                    for (curve, own) in study.curves.iter().zip(logged) {
+                        text += &beside(&curve.role.to_string(), curve.logged.coefficients(), own, style);
+                    }
+                }
+                Logged::Nothing => {
+                    text += &format!("  {}\n", style.paint(Look::Bad, "nothing for this pair in this pass"))
+                }
+                Logged::Unknown => {
+                    text += "  it can't be told which of its polynomials are this pair's: it logged another number of them\n";
+                }
             }
         }
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
@@ -149,7 +156,11 @@ impl Detect<'_> {
                 "pair": PairView::from(place.pair),
                 "pass": place.pass.map(PassView::from),
                 "passes": place.passes,
-                "logged": place.logged.map(|logged| logged.iter().map(|list| numbers(list)).collect::<Vec<_>>()),
+                "logged": match place.logged {
+                    Logged::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect::<Vec<_>>()),
+                    Logged::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
+                    Logged::Nothing | Logged::Unknown => None,
+                },
             })),
             "kind": pair_kind(study.motion.kind()),
             "motion": motion_view(&study.motion),
@@ -163,6 +174,40 @@ impl Detect<'_> {
         });
         format!("{value:#}\n")
     }
+}
+
+/// A polynomial of the trace, and beside the right one, power by power, where they differ by more than a factor.
+fn beside(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
+    if own.is_empty() && !expected.is_empty() {
+        return format!("  {role}: {}\n", style.paint(Look::Bad, "missing"));
+    }
+    let factor = factor(expected, own);
+    let wrong = differing(expected, own, factor);
+    let same = expected == own;
+    let (look, mark) = match wrong.is_empty() {
+        true if same => (Look::Good, "the same".to_owned()),
+        true if factor == 1.0 => (Look::Good, "the same but for rounding".to_owned()),
+        true => (Look::Good, format!("the same but for the factor {}, which is right", exact(factor))),
+        false => (Look::Bad, "differs".to_owned()),
+    };
+    let mut text = format!("  {role}: {}\n    {}\n", style.paint(look, &mark), polynomial(own));
+    if wrong.is_empty() {
+        return text;
+    }
+    let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Left]);
+    table.heading(["", "expected", "logged", ""]);
+    for power in (0..expected.len().max(own.len())).rev() {
+        let at = |list: &[f64], factor: f64| {
+            list.len().checked_sub(power + 1).map_or_else(|| "none".to_owned(), |place| exact(list[place] * factor))
+        };
+        let mark = if wrong.contains(&power) { Cell::looking(Look::Bad, "<- differs") } else { "".into() };
+        table.row([format!("t^{power}").into(), at(expected, factor).into(), at(own, 1.0).into(), mark]);
+    }
+    text.extend(table.render(style).lines().map(|line| format!("  {line}\n")));
+    if factor != 1.0 {
+        text += &format!("    expected values carry the trace's factor {}; any positive one is right\n", exact(factor));
+    }
+    text
 }
 
 /// What the right approach polynomial changes.

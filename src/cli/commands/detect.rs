@@ -6,6 +6,7 @@ use crate::{
         output::Output,
         pictures::{Detect, DetectFormat, Points},
     },
+    evidence::{self, Logged, Look, Records},
     judge::study::Study,
     render::{detection, plot::Embedding},
     report::{
@@ -14,11 +15,13 @@ use crate::{
         number::counted,
         style::Style,
     },
-    sim::{Detection, Observer, Pair, PairMotion, Pass, RootSearch, Simulation, Stage, State},
+    sim::{PairMotion, RootSearch, Simulation, State},
     trace::{Frame, Layout, Reader},
 };
 use anyhow::{Context, Result, bail};
 use std::path::Path;
+
+const NO_ANSWER: &str = "there is no answer: the numbers are too large or too small, and the original hangs here";
 
 pub(super) fn run(arguments: &Detect) -> Result<u8> {
     match &arguments.scene {
@@ -32,7 +35,7 @@ pub(super) fn run(arguments: &Detect) -> Result<u8> {
 }
 
 fn study(motion: &PairMotion) -> Result<Study> {
-    Study::of(motion).context("there is no answer: the numbers are too large or too small, and the original hangs here")
+    Study::of(motion).context(NO_ANSWER)
 }
 
 fn show(arguments: &Detect, study: &Study, place: Option<Place<'_>>, inputs: &[input::Identity]) -> Result<()> {
@@ -88,42 +91,42 @@ fn of_scene(arguments: &Detect, name: &Path) -> Result<()> {
     }
     let pair = pair::of_scene(word, &scene.scene).with_context(|| format!("the pair {word}"))?;
     let mut inputs: Vec<_> = scene.identity.into_iter().collect();
-    let (before, end, trace) = match &arguments.trace {
+    let (before, traced) = match &arguments.trace {
         Some(trace) => {
-            let (before, end, trace, identity) = traced(&scene, trace, step)?;
-            inputs.extend(identity);
-            (before, Some(end), Some(trace))
+            let traced = traced(&scene, trace, step)?;
+            inputs.extend(traced.identity);
+            (traced.before.clone(), Some(traced))
         }
-        None => (simulated(&scene, step)?, None, None),
+        None => (simulated(&scene, step)?, None),
     };
-    let mut watch = Watch::new(&scene.scene, pair);
-    let mut simulation = Simulation::new(&scene.scene, RootSearch::WhereNeeded);
-    simulation.state_mut().clone_from(&before);
-    simulation.set_steps_done(step - 1);
-    let failed = simulation.step(&mut watch).err();
-    let passes = watch.calls.len();
-    let (motion, pass, logged) = match watch.calls.get(arguments.pass as usize - 1) {
-        Some(call) => {
-            (call.motion, (call.polynomials > 0).then_some(call.pass), call.logged(end.as_ref(), watch.polynomials))
-        }
-        None => match failed {
+    let records =
+        traced.as_ref().map(|traced| Records { mid: Some(&traced.mid), polynomials: &traced.end.polynomials });
+    let Look { close_up, end, failed } = evidence::look(&scene.scene, step, &before, records, pair);
+    let passes = close_up.calls.len();
+    let call = close_up.calls.get(arguments.pass as usize - 1);
+    if call.is_none() {
+        match failed {
             Some(error) => {
                 let (step, words) = step_error(&error);
                 bail!("step {step} has no result, because {words}");
             }
-            None if passes == 0 => {
-                let end = &simulation.state().positions;
-                (PairMotion::between(&scene.scene, pair, &before.positions, end), None, None)
-            }
+            None if passes == 0 => {}
             None => {
                 let plural = if passes == 1 { "pass" } else { "passes" };
                 bail!("step {step} has {passes} detection {plural}; there is no pass {}", arguments.pass)
             }
-        },
+        }
+    }
+    let study = match call.map(|call| &call.study) {
+        Some(Ok(seen)) => seen.clone(),
+        Some(Err(error)) => return Err(*error).context(NO_ANSWER),
+        None => study(&PairMotion::between(&scene.scene, pair, &before.positions, &end.positions))?,
     };
-    let (scene, trace, logged) = (scene.name.as_str(), trace.as_deref(), logged.as_deref());
+    let pass = call.filter(|call| call.polynomials > 0).map(|call| call.pass);
+    let logged = call.map_or(&Logged::Unknown, |call| &call.logged);
+    let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));
     let place = Place { scene, trace, step, pair, pass, passes, logged };
-    show(arguments, &study(&motion)?, Some(place), &inputs)
+    show(arguments, &study, Some(place), &inputs)
 }
 
 /// The state before a step of the reference's run.
@@ -138,22 +141,37 @@ fn simulated(scene: &SceneInput, step: u32) -> Result<State> {
     Ok(simulation.state().clone())
 }
 
-/// The state of a trace before a step, the step's end record, the trace's name, and which file it is.
-fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<(State, Frame, String, Option<input::Identity>)> {
+/// What a trace says of a step.
+struct Traced {
+    before: State,
+    /// The mid record's state; that of the record before the step's end where the scene has none.
+    mid: State,
+    end: Frame,
+    name: String,
+    identity: Option<input::Identity>,
+}
+
+fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<Traced> {
     let mut trace = input::trace(name)?;
     let layout = Layout::of(&scene.scene);
     let mut reader = Reader::new(&mut trace.reader, layout).with_scene(&scene.scene);
     if let Some(length) = trace.length {
         reader = reader.with_length(length);
     }
-    let (mut frame, mut before) = (Frame::default(), State::default());
+    let (mut frame, mut before, mut mid) = (Frame::default(), State::default(), State::default());
     loop {
         let read = reader.next(&mut frame);
         let record = reader.records();
         match read {
-            Ok(true) if record - 1 == layout.end_record(step - 1) => before.clone_from(&frame.state),
             Ok(true) if record - 1 == layout.end_record(step) => break,
-            Ok(true) => {}
+            Ok(true) => {
+                if record - 1 == layout.end_record(step - 1) {
+                    before.clone_from(&frame.state);
+                }
+                if record == layout.end_record(step) {
+                    mid.clone_from(&frame.state);
+                }
+            }
             Ok(false) => bail!("the trace {} has no step {step}", trace.name),
             Err(error) => {
                 if let Some(message) = trace.failure() {
@@ -163,57 +181,5 @@ fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<(State, Frame, S
             }
         }
     }
-    Ok((before, frame, trace.name, trace.identity))
-}
-
-/// Listens for one pair.
-struct Watch<'a> {
-    scene: &'a crate::scene::Scene,
-    pair: Pair,
-    pass: Pass,
-    /// The pair's calls, one per pass.
-    calls: Vec<Call>,
-    /// Polynomials logged so far in the step.
-    polynomials: usize,
-}
-
-/// One detection call of the pair.
-struct Call {
-    pass: Pass,
-    motion: PairMotion,
-    /// Number of its first polynomial in the step's list.
-    first: usize,
-    /// How many it logs; none without continuous-time detection.
-    polynomials: usize,
-}
-
-impl Call {
-    /// What a trace has logged for this call, if it logged as many polynomials in the step as the reference.
-    fn logged(&self, end: Option<&Frame>, polynomials: usize) -> Option<Vec<Vec<f64>>> {
-        let log = &end?.polynomials;
-        (log.len() == polynomials && self.polynomials > 0)
-            .then(|| (self.first..self.first + self.polynomials).map(|index| log.get(index).to_vec()).collect())
-    }
-}
-
-impl<'a> Watch<'a> {
-    fn new(scene: &'a crate::scene::Scene, pair: Pair) -> Self {
-        let pass = Pass { stage: Stage::Simple, index: 0 };
-        Self { scene, pair, pass, calls: Vec::new(), polynomials: 0 }
-    }
-}
-
-impl Observer for Watch<'_> {
-    fn begin_pass(&mut self, pass: Pass) {
-        self.pass = pass;
-    }
-
-    fn detection(&mut self, detection: &Detection<'_>) {
-        let (first, polynomials) = (self.polynomials, detection.polynomials.len());
-        self.polynomials += polynomials;
-        if detection.pair == self.pair {
-            let motion = PairMotion::between(self.scene, self.pair, detection.q_start, detection.q_end);
-            self.calls.push(Call { pass: self.pass, motion, first, polynomials });
-        }
-    }
+    Ok(Traced { before, mid, end: frame, name: trace.name, identity: trace.identity })
 }

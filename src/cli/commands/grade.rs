@@ -104,8 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let is_part = plan.scenes().count() < whole || arguments.failed;
     let pictures = submissions.len() == 1 && console::pictures().is_some();
     let draws = pictures || folder.is_some() || reports.iter().any(|report| report.format == Format::Html);
-    // Against recordings nothing is known of single steps.
-    let pages = if draws && !arguments.recorded { Some(Pages::new(folder.as_deref())?) } else { None };
+    let pages = if draws { Some(Pages::new(folder.as_deref())?) } else { None };
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
     let session = Session { arguments, plan, backend, cancellation, folder, pages, is_part, sharding };
     if arguments.watch {
@@ -236,7 +235,7 @@ impl Session<'_> {
 
     /// Draws what a page shows of a trace.
     fn draw(&self, judged: &Judged<'_>) -> Option<String> {
-        pages::draw(judged, (&judged.task.name, None))
+        pages::draw(judged, (&judged.task.name, None), self.arguments.recorded)
     }
 
     /// The grades, and what kept the rest from being graded or kept.
@@ -298,8 +297,8 @@ impl Session<'_> {
 
     /// Writes the reports and, into the folder, the files that a batch ends with.
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
-        let results =
-            Results { folder: self.folder.as_deref(), pages: self.pages.as_ref(), is_part: self.is_part, grades };
+        let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader.into());
+        let results = Results { folder, pages, reader, is_part: self.is_part, grades };
         results.write(reports, || self.text(grades, submissions))
     }
 

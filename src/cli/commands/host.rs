@@ -13,6 +13,7 @@ use crate::{
     report::{
         grade::{Format, rehearse},
         number::counted,
+        page::Reader,
     },
     sandbox::{self, selftest},
     student,
@@ -83,7 +84,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let pages = Pages::new(None)?;
-    let draw = |judged: &Judged<'_>| pages::draw(judged, (&format!("asset:{}", judged.task.name), None));
+    let draw = |judged: &Judged<'_>| pages::draw(judged, (&format!("asset:{}", judged.task.name), None), false);
     let (mut verdicts, mut last) = (Vec::new(), None);
     for (name, run) in [
         ("right sample".to_owned(), plan.run.clone()),
@@ -116,7 +117,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
         console::print(b"The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
         if let Some(grade) = &last {
-            output::write(&arguments.output, &[], pages.of_one(grade, None).as_bytes())?;
+            output::write(&arguments.output, &[], pages.of_one(grade, None, Reader::Staff).as_bytes())?;
             let words = format!("What is wrong with it, to look at in a browser: {}\n", arguments.output.display());
             console::print(words.as_bytes())?;
         }

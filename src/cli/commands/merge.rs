@@ -55,7 +55,8 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     grades.sort_by_key(place);
     let pages = Pages::new(Some(&output))?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);
-    let results = Results { folder: Some(&output), pages: Some(&pages), is_part: false, grades: &grades };
+    let reader = arguments.reader.into();
+    let results = Results { folder: Some(&output), pages: Some(&pages), reader, is_part: false, grades: &grades };
     results.write(&reports, || text(&grades, arguments.quiet))?;
     Ok(exit_code(&grades))
 }

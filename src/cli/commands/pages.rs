@@ -3,11 +3,11 @@ use super::grade::file_name;
 use crate::{
     cli::output,
     diagnose::Explanation,
-    evidence::{self, Evidence, Focus, Track},
-    judge::{Outcome, Rules},
+    evidence::{self, Evidence, Focus, Rulings, Track},
+    judge::{Outcome, Rules, parity},
     report::{
         check::{Check, Shown, WrongSteps},
-        page::{Card, Case, Class, Graded, WhatIf},
+        page::{Card, Case, Class, Graded, Reader, WhatIf},
     },
     scene::Scene,
     student,
@@ -24,8 +24,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// So many numbers of one motion are kept of a graded scene. The largest course scene has 70,444.
-const BUDGET: usize = 1 << 17;
+/// So many numbers of one motion are kept of a graded scene, because several are graded at a time. The largest course scene
+/// has 70,444.
+const BUDGET: usize = 1 << 19;
 
 /// The cards of a grading, and where the pages go.
 pub(super) struct Pages {
@@ -72,23 +73,32 @@ impl Pages {
     }
 
     /// The page of one submission.
-    pub(super) fn of_one(&self, grade: &Grade, class: Option<&str>) -> String {
-        Graded { grade, card: &|scene| self.card(scene), class }.html()
+    pub(super) fn of_one(&self, grade: &Grade, class: Option<&str>, reader: Reader) -> String {
+        Graded { grade, card: &|scene| self.card(scene), class, reader }.html()
     }
 
-    /// Writes the pages into the folder for results; the one to begin with.
-    pub(super) fn write(&self, grades: &[Grade]) -> Result<Option<PathBuf>> {
+    /// Writes the pages for staff into the folder for results, and those to hand out beside them where they are asked for; the
+    /// one to begin with.
+    pub(super) fn write(&self, grades: &[Grade], reader: Reader) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
+        if reader == Reader::Student {
+            let students = folder.join("students");
+            fs::create_dir_all(&students).with_context(|| format!("cannot make {}", students.display()))?;
+            for grade in grades {
+                let path = students.join(format!("{}.html", file_name(&grade.submission)));
+                output::write(&path, &[], self.of_one(grade, None, Reader::Student).as_bytes())?;
+            }
+        }
         if let [grade] = grades {
             let path = folder.join("report.html");
-            output::write(&path, &[], self.of_one(grade, None).as_bytes())?;
+            output::write(&path, &[], self.of_one(grade, None, Reader::Staff).as_bytes())?;
             return Ok(Some(path));
         }
         let reports = folder.join("reports");
         fs::create_dir_all(&reports).with_context(|| format!("cannot make {}", reports.display()))?;
         for grade in grades {
             let path = reports.join(format!("{}.html", file_name(&grade.submission)));
-            output::write(&path, &[], self.of_one(grade, Some("../index.html")).as_bytes())?;
+            output::write(&path, &[], self.of_one(grade, Some("../index.html"), Reader::Staff).as_bytes())?;
         }
         // Names of files hold nothing that an address would have to write otherwise, but blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
@@ -98,10 +108,30 @@ impl Pages {
     }
 }
 
-/// Draws the card of a graded scene. `names` are those under which whoever reads the page finds scene and trace.
-pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>)) -> Option<String> {
+/// What stands above the card of a trace that was judged against a recording.
+const RECORDED: &str = "The verdict compares with the recording, where nearly everything after the first divergence differs. What \
+                        follows judges each step from the trace's own state before it: what is wrong by itself, and what only \
+                        follows from that.";
+
+/// Draws the card of a graded scene. `names` are those under which whoever reads the page finds scene and trace. Of a trace
+/// that was judged against a recording each step is judged once more, from the trace's own state.
+pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;
+    }
+    if recorded {
+        let again = guarded(|| {
+            let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
+            let mut nobody = ();
+            let mut rulings = Rulings::new(&mut nobody);
+            let outcome = parity::judge(&judged.task.scene, judged.trace, &options, &mut rulings);
+            (rulings.into_steps(&outcome), outcome)
+        });
+        // What failed while drawing costs nobody's points.
+        let Ok((rulings, outcome)) = again else { return None };
+        let own = Judged { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
+        return draw(&own, names, false)
+            .map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
     }
     // A picture that can't be made costs nobody's points.
     let card = guarded(|| {

@@ -4,6 +4,7 @@ use crate::{
     cli::{console, output},
     report::{
         grade::{self, Format},
+        page::Reader,
         style::Style,
     },
     suite::{Grade, guarded},
@@ -59,6 +60,8 @@ pub(super) struct Results<'a> {
     /// The folder for results, when there is one.
     pub(super) folder: Option<&'a Path>,
     pub(super) pages: Option<&'a Pages>,
+    /// Whom the pages are for.
+    pub(super) reader: Reader,
     /// Whether scenes of the suite were left out on purpose.
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],
@@ -88,7 +91,7 @@ impl Results<'_> {
                 keep(write(&folder.join("class.txt"), || grade::class(grades, usize::MAX, Style::Plain)));
             }
             if let Some(pages) = self.pages {
-                keep(made("the pages", || pages.write(grades)).and_then(|written| written).map(|first| {
+                keep(made("the pages", || pages.write(grades, self.reader)).and_then(|written| written).map(|first| {
                     if let Some(first) = first {
                         console::remark(format!("to look at: {}\n", first.display()).as_bytes());
                     }
@@ -97,7 +100,7 @@ impl Results<'_> {
         }
         for report in reports {
             let render = || match (report.format, self.pages, grades) {
-                (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None),
+                (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None, self.reader),
                 _ => report.format.render(grades),
             };
             match (&report.file, report.format) {

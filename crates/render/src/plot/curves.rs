@@ -40,6 +40,8 @@ const MIDDLE: f64 = 134.0;
 const BOTTOM: f64 = 234.0;
 const ROW: f64 = 22.0;
 const SAMPLES: u32 = 128;
+/// So many samples are between the ends of a piece of a curve.
+const PIECE: usize = 8;
 
 impl Curves<'_> {
     /// The plot.
@@ -51,8 +53,9 @@ impl Curves<'_> {
         let height = row_top(rows) + 12.0;
         let mut sheet = Sheet::new(height, self.title, &self.description(), embedding);
         sheet.text([16.0, 18.0], Anchor::Start, Tone::Plain, self.title);
-        for tick in [0.0, 0.25, 0.5, 0.75, 1.0] {
-            sheet.rule(Ink::Grid, [x(tick), TOP], [x(tick), row_top(rows)]);
+        let ticks = [0.0, 0.25, 0.5, 0.75, 1.0];
+        sheet.rules(Ink::Grid, &ticks.map(|tick| ([x(tick), TOP], [x(tick), row_top(rows)])));
+        for tick in ticks {
             sheet.text([x(tick), BOTTOM + 16.0], Anchor::Middle, Tone::Faint, &short(tick));
         }
         sheet.text([RIGHT, BOTTOM + 16.0 - 18.0], Anchor::End, Tone::Faint, "t");
@@ -106,17 +109,28 @@ fn x(time: f64) -> f64 {
 fn draw(curve: &Curve<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
     let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
     let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();
+    let slopes = derivative(curve.coefficients);
     let most = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |most, value| most.max(value.abs()));
     let y = |value: f64| if most > 0.0 { MIDDLE - value / most * (MIDDLE - TOP - 8.0) } else { MIDDLE };
-    let mut piece: Vec<[f64; 2]> = Vec::new();
-    for (&time, &value) in times.iter().zip(&values) {
-        if value.is_finite() {
-            piece.push([x(time), y(value)]);
-        } else {
-            sheet.line(ink, 2.0, &std::mem::take(&mut piece));
+    // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and for a quintic off by less than
+    // a thousandth of a pixel.
+    let mut path: Vec<[f64; 2]> = Vec::new();
+    for k in (0..SAMPLES as usize).step_by(PIECE) {
+        let (start, end) = (times[k], times[k + PIECE]);
+        let third = (end - start) / 3.0;
+        let rise = |time: f64| third * evaluate(&slopes, time);
+        let (low, high) = (values[k], values[k + PIECE]);
+        let heights = [low, low + rise(start), high - rise(end), high];
+        if heights.iter().any(|height| !height.is_finite()) {
+            sheet.curve(ink, 2.0, &std::mem::take(&mut path));
+            continue;
         }
+        if path.is_empty() {
+            path.push([x(start), y(low)]);
+        }
+        path.extend([[x(start + third), y(heights[1])], [x(end - third), y(heights[2])], [x(end), y(high)]]);
     }
-    sheet.line(ink, 2.0, &piece);
+    sheet.curve(ink, 2.0, &path);
     // Markers of different curves stand at different times, so that none hides another.
     for k in (8 + 8 * (number % 4)..=SAMPLES as usize).step_by(32) {
         if values[k].is_finite() {
@@ -126,6 +140,15 @@ fn draw(curve: &Curve<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
     for &zero in curve.zeros.iter().filter(|zero| (0.0..=1.0).contains(*zero)) {
         sheet.rule(ink, [x(zero), MIDDLE - 6.0], [x(zero), MIDDLE + 6.0]);
     }
+}
+
+/// The coefficients of the derivative, highest power first.
+fn derivative(coefficients: &[f64]) -> Vec<f64> {
+    let powers = (1_u32..).take(coefficients.len().saturating_sub(1)).map(f64::from);
+    let mut slopes: Vec<f64> =
+        coefficients.iter().rev().skip(1).zip(powers).map(|(coefficient, power)| coefficient * power).collect();
+    slopes.reverse();
+    slopes
 }
 
 /// A row of bars: sets of time as far as they lie in `[0, 1]`; a single time is a diamond.

@@ -80,37 +80,72 @@ pub enum Tone {
 
 /// A sheet.
 #[derive(Debug)]
-pub struct Sheet(String);
+pub struct Sheet {
+    svg: String,
+    /// Whether the page's style sheet says everything about looks, so that the markup need not.
+    is_styled: bool,
+}
 
 impl Sheet {
     /// A sheet of this height.
     pub fn new(height: f64, title: &str, description: &str, embedding: Embedding) -> Self {
         let (title, description) = (escaped(title), escaped(description));
         let (width, height) = (pixel(WIDTH), pixel(height));
+        let is_styled = embedding == Embedding::Inline;
+        let (space, font) = match is_styled {
+            true => ("", ""),
+            false => (" xmlns=\"http://www.w3.org/2000/svg\"", " font-family=\"sans-serif\" font-size=\"12\""),
+        };
+        let label = if is_styled { String::new() } else { format!(" aria-label=\"{title}\"") };
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"fp\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-             height=\"{height}\" role=\"img\" aria-label=\"{title}\" font-family=\"sans-serif\" font-size=\"12\">\
-             <title>{title}</title><desc>{description}</desc>\n"
+            "<svg{space} class=\"fp\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\"{label}\
+             {font}><title>{title}</title><desc>{description}</desc>\n"
         );
         if embedding == Embedding::Alone {
             let _ = writeln!(svg, "<style>{STYLE}</style>");
             let _ = writeln!(svg, "<rect class=\"pp\" width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>");
         }
-        Self(svg)
+        Self { svg, is_styled }
     }
 
     /// The finished SVG.
     pub fn finish(mut self) -> String {
-        self.0 += "</svg>\n";
-        self.0
+        self.svg += "</svg>\n";
+        self.svg
+    }
+
+    /// An attribute about looks, where no style sheet says it.
+    fn look(&self, attribute: &str, value: &str) -> String {
+        if self.is_styled { String::new() } else { format!(" {attribute}=\"{value}\"") }
+    }
+
+    /// The attributes of a path that is drawn along.
+    fn along(&self, ink: Ink) -> String {
+        let (class, colour) = ink.stroke();
+        format!(" class=\"{class}\"{}{}", self.look("stroke", colour), self.look("fill", "none"))
+    }
+
+    /// The attributes of a shape that is filled.
+    fn filled(&self, ink: Ink) -> String {
+        let (class, colour) = ink.fill();
+        format!(" class=\"{class}\"{}", self.look("fill", colour))
     }
 
     /// A thin straight line without dashes.
-    pub fn rule(&mut self, ink: Ink, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2]) {
-        let (class, colour) = ink.stroke();
-        let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(pixel);
-        let _ =
-            writeln!(self.0, "<path class=\"{class}\" stroke=\"{colour}\" fill=\"none\" d=\"M{x1} {y1}L{x2} {y2}\"/>");
+    pub fn rule(&mut self, ink: Ink, from: [f64; 2], to: [f64; 2]) {
+        self.rules(ink, &[(from, to)]);
+    }
+
+    /// Thin straight lines without dashes.
+    pub fn rules(&mut self, ink: Ink, lines: &[([f64; 2], [f64; 2])]) {
+        let ink = self.along(ink);
+        let piece = |&([x1, y1], [x2, y2]): &([f64; 2], [f64; 2])| {
+            let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(pixel);
+            format!("M{x1} {y1}L{x2} {y2}")
+        };
+        let list: String = lines.iter().map(piece).collect();
+        let width = if self.is_styled { " stroke-width=\"1\"" } else { "" };
+        let _ = writeln!(self.svg, "<path{ink}{width} d=\"{list}\"/>");
     }
 
     /// A line with the ink's dashes.
@@ -118,24 +153,36 @@ impl Sheet {
         if points.len() < 2 {
             return;
         }
-        let (class, colour) = ink.stroke();
         let list = points.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join("L");
+        self.path(ink, width, &list);
+    }
+
+    /// A line of cubic curves: where it starts, and for each piece two control points and its end.
+    pub fn curve(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
+        let Some((&[x, y], rest)) = points.split_first().filter(|(_, rest)| !rest.is_empty()) else { return };
+        let list = rest.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join(" ");
+        self.path(ink, width, &format!("{} {}C{list}", pixel(x), pixel(y)));
+    }
+
+    fn path(&mut self, ink: Ink, width: f64, list: &str) {
         let _ = writeln!(
-            self.0,
-            "<path class=\"{class}\" stroke=\"{colour}\" stroke-width=\"{}\" stroke-linejoin=\"round\" fill=\"none\"{} \
-             d=\"M{list}\"/>",
-            pixel(width),
+            self.svg,
+            "<path{}{}{}{} d=\"M{list}\"/>",
+            self.along(ink),
+            // The style sheet's lines are this wide.
+            if self.is_styled && width == 2.0 { String::new() } else { format!(" stroke-width=\"{}\"", pixel(width)) },
+            self.look("stroke-linejoin", "round"),
             ink.dash()
         );
     }
 
     /// A filled rectangle.
     pub fn bar(&mut self, ink: Ink, [left, top]: [f64; 2], [width, height]: [f64; 2], opacity: f64) {
-        let (class, colour) = ink.fill();
+        let ink = self.filled(ink);
         let [left, top, width, height] = [left, top, width.max(0.5), height].map(pixel);
         let _ = writeln!(
-            self.0,
-            "<rect class=\"{class}\" fill=\"{colour}\" fill-opacity=\"{}\" x=\"{left}\" y=\"{top}\" width=\"{width}\" \
+            self.svg,
+            "<rect{ink} fill-opacity=\"{}\" x=\"{left}\" y=\"{top}\" width=\"{width}\" \
              height=\"{height}\"/>",
             pixel(opacity)
         );
@@ -151,25 +198,24 @@ impl Sheet {
                 _ => format!("M{} {}l4 4l-4 4l-4 -4z", pixel(x), pixel(y - 4.0)),
             },
             Ink::Axis | Ink::Grid | Ink::Bad => {
-                let (class, colour) = ink.stroke();
+                let ink = self.along(ink);
                 let (x, y) = (pixel(x - 3.5), pixel(y - 3.5));
-                let _ = writeln!(
-                    self.0,
-                    "<path class=\"{class}\" stroke=\"{colour}\" stroke-width=\"2\" d=\"M{x} {y}l7 7m0 -7l-7 7\"/>"
-                );
+                let _ = writeln!(self.svg, "<path{ink} stroke-width=\"2\" d=\"M{x} {y}l7 7m0 -7l-7 7\"/>");
                 return;
             }
         };
-        let (class, colour) = ink.fill();
-        let _ = writeln!(self.0, "<path class=\"{class}\" fill=\"{colour}\" d=\"{path}\"/>");
+        let ink = self.filled(ink);
+        let _ = writeln!(self.svg, "<path{ink} d=\"{path}\"/>");
     }
 
     /// A line of text; `[x, y]` is on its base line.
     pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, tone: Tone, text: &str) {
+        // A text starts at its place unless something else is said.
         let anchor = match anchor {
-            Anchor::Start => "start",
-            Anchor::Middle => "middle",
-            Anchor::End => "end",
+            Anchor::Start if self.is_styled => "",
+            Anchor::Start => " text-anchor=\"start\"",
+            Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::End => " text-anchor=\"end\"",
         };
         let (class, colour) = match tone {
             Tone::Plain => ("", "#1b1f24"),
@@ -178,8 +224,9 @@ impl Sheet {
         };
         let (x, y) = (pixel(x), pixel(y));
         let _ = writeln!(
-            self.0,
-            "<text{class} x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" fill=\"{colour}\">{}</text>",
+            self.svg,
+            "<text{class} x=\"{x}\" y=\"{y}\"{anchor}{}>{}</text>",
+            self.look("fill", colour),
             escaped(text)
         );
     }

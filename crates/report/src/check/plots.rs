@@ -1,8 +1,8 @@
 //! Small plots for a terminal: residuals over the steps, and the polynomial that is wrong first.
 //!
 //! They accompany the text and say nothing that it does not say.
-use fosssim_evidence::Evidence;
-use fosssim_judge::PairWords;
+use fosssim_evidence::{Evidence, Logged};
+use fosssim_judge::{PairWords, study::Curve};
 use fosssim_num::tolerances::PARITY_MAXIMUM;
 use fosssim_render::terminal;
 
@@ -22,9 +22,9 @@ pub fn plots(evidence: &Evidence, columns: usize) -> String {
     }
     let calls = evidence.close_ups.iter().flat_map(|up| up.calls.iter().map(move |call| (up.step, call)));
     let wrong = calls.filter_map(|(step, call)| {
-        let study = call.study.as_ref().ok()?;
-        let curve =
-            study.curves.iter().zip(&call.logged).find(|(curve, own)| differ(curve.logged.coefficients(), own))?;
+        let (study, Logged::These(logged)) = (call.study.as_ref().ok()?, &call.logged) else { return None };
+        let is_wrong = |(curve, own): &(&Curve, &Vec<f64>)| !own.is_empty() && differ(curve.logged.coefficients(), own);
+        let curve = study.curves.iter().zip(logged).find(is_wrong)?;
         Some((step, call.pair, curve))
     });
     if let Some((step, pair, (curve, own))) = wrong.min_by_key(|(step, ..)| *step)

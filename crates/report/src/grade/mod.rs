@@ -12,7 +12,11 @@ mod junit;
 mod prairielearn;
 mod text;
 
-use crate::{number::counted, page::Graded, words};
+use crate::{
+    number::counted,
+    page::{Graded, Reader},
+    words,
+};
 use fosssim_grading::{
     Grade, GroupGrade, SceneGrade, SceneResult, Verdict,
     config::{Credit, Visibility},
@@ -83,7 +87,7 @@ impl Format {
             Self::Markdown => github::summary(grades),
             Self::Csv => csv_table::scenes(grades),
             Self::Html => {
-                let page = |grade| Graded { grade, card: &|_| None, class: None }.html();
+                let page = |grade| Graded { grade, card: &|_| None, class: None, reader: Reader::Staff }.html();
                 grades.first().map(page).unwrap_or_default()
             }
         }

@@ -1,8 +1,11 @@
 //! A detection call on a page: curves, intervals, coefficients.
 use super::{case::number, data::key, markup::text};
 use crate::detect::Detect;
-use fosssim_evidence::Call;
-use fosssim_judge::{PairWords, PassWords, study::Study};
+use fosssim_evidence::{Call, Logged};
+use fosssim_judge::{
+    PairWords, PassWords,
+    study::{self, Study},
+};
 use fosssim_num::{first_time::positive_set, interval::Interval};
 use fosssim_render::{
     detection,
@@ -15,7 +18,8 @@ const SAME: f64 = 1e-9;
 
 pub(super) fn html(step: u32, call: &Call, depth: usize) -> String {
     let mut out = format!(
-        "<section>\n<h{depth}>Step {step}: {} <span class=\"hint\">({}, {})</span></h{depth}>\n",
+        "<section data-step=\"{step}\" data-pair=\"{2}\">\n<h{depth}>Step {step}: {0} <span class=\"hint\">({1}, {2})</span>\
+         </h{depth}>\n",
         text(&PairWords(call.pair).to_string()),
         text(&PassWords(call.pass).to_string()),
         key(call.pair)
@@ -30,27 +34,94 @@ pub(super) fn html(step: u32, call: &Call, depth: usize) -> String {
     let _ = writeln!(out, "<p>{}</p>", text(&Detect { study, place: None }.decision()));
     let title = format!("Expected in step {step}: {}", PairWords(call.pair));
     let _ = writeln!(out, "<figure>{}</figure>", detection::picture(study, &title, Embedding::Inline));
-    out += &coefficients(study, &call.logged);
-    for (curve, logged) in study.curves.iter().zip(&call.logged) {
-        if marks(curve.logged.coefficients(), logged).iter().any(|&differs| differs) {
-            out += &both(step, &curve.role.to_string(), curve.logged.coefficients(), &curve.positive, logged);
+    let logged: &[Vec<f64>] = match &call.logged {
+        Logged::These(logged) => logged,
+        Logged::Nothing => {
+            out += "<p class=\"bad\">Your trace has logged nothing for this pair in this pass: it is not tested.</p>\n";
+            &[]
         }
+        Logged::Unknown => &[],
+    };
+    out += &coefficients(study, logged, call.logged == Logged::Nothing);
+    let differs: Vec<bool> = study.curves.iter().zip(logged).map(|(curve, own)| is_wrong(curve, own)).collect();
+    if !differs.contains(&true) {
+        return out + "</section>\n";
+    }
+    out += &own_decision(logged);
+    let mut wrong =
+        study.curves.iter().zip(logged).zip(&differs).filter(|(_, differs)| **differs).map(|(both, _)| both);
+    match (wrong.next(), wrong.next()) {
+        (Some((curve, own)), None) => {
+            out += &both(step, &curve.role.to_string(), curve.logged.coefficients(), &curve.positive, own);
+        }
+        _ => out += &yours(step, call, study, logged),
     }
     out + "</section>\n"
 }
 
+/// The curves of the trace, as the expected ones are drawn.
+fn yours(step: u32, call: &Call, study: &Study, logged: &[Vec<f64>]) -> String {
+    let names: Vec<String> = study.curves.iter().map(|curve| curve.role.to_string()).collect();
+    let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive(own)).collect();
+    let zeros: Vec<Vec<f64>> = sets.iter().map(|set| ends(set)).collect();
+    let parts = names.iter().zip(logged).zip(zeros.iter().zip(&sets));
+    let curves: Vec<Curve<'_>> =
+        parts.map(|((name, coefficients), (zeros, positive))| Curve { name, coefficients, zeros, positive }).collect();
+    let common = common(logged);
+    let impact = common.iter().map(|set| set.lo).reduce(f64::min);
+    let title = format!("Yours in step {step}: {}", PairWords(call.pair));
+    let svg = Curves { title: &title, curves: &curves, common: Some(&common), impact }.svg(Embedding::Inline);
+    format!("<figure>{svg}</figure>\n")
+}
+
+/// Where a set ends within the step the polynomial is zero.
+fn ends(set: &[Interval]) -> Vec<f64> {
+    set.iter().flat_map(|one| [one.lo, one.hi]).collect()
+}
+
+fn is_wrong(curve: &study::Curve, own: &[f64]) -> bool {
+    !own.is_empty() && marks(curve.logged.coefficients(), own).contains(&true)
+}
+
+/// Where a polynomial of a trace is positive; nothing where its zeros can't be found.
+fn positive(own: &[f64]) -> Vec<Interval> {
+    match own.len() <= 6 && own.iter().all(|c| c.is_finite()) {
+        true => positive_set(own).map(|set| set.as_slice().to_vec()).unwrap_or_default(),
+        false => Vec::new(),
+    }
+}
+
+/// Where within the step all polynomials of a trace are positive.
+fn common(logged: &[Vec<f64>]) -> Vec<Interval> {
+    let mut common = vec![Interval { lo: 0.0, hi: 1.0 }];
+    for own in logged.iter().map(|own| positive(own)) {
+        let both = |one: &Interval, other: &Interval| Interval { lo: one.lo.max(other.lo), hi: one.hi.min(other.hi) };
+        common = common.iter().flat_map(|one| own.iter().map(move |other| both(one, other))).collect();
+        common.retain(|set| set.lo <= set.hi);
+    }
+    common
+}
+
+/// What the trace's own polynomials decide.
+fn own_decision(logged: &[Vec<f64>]) -> String {
+    let first = common(logged).iter().map(|set| set.lo).reduce(f64::min);
+    match first {
+        Some(time) => {
+            format!("<p>By your polynomials all are positive from time {} on: a collision.</p>\n", number(time))
+        }
+        None => "<p>By your polynomials there is no time in the step at which all are positive: no collision.</p>\n"
+            .to_owned(),
+    }
+}
+
 /// Expected and actual curve of one polynomial.
-fn both(step: u32, role: &str, expected: &[f64], positive: &[Interval], logged: &[f64]) -> String {
-    // A polynomial whose zeros can't be found has no intervals to show.
-    let own = if logged.len() <= 6 && logged.iter().all(|c| c.is_finite()) {
-        positive_set(logged).map(|set| set.as_slice().to_vec()).unwrap_or_default()
-    } else {
-        Vec::new()
-    };
+fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64]) -> String {
+    let own = positive(logged);
     let (yours, right) = (format!("{role}, yours"), format!("{role}, expected"));
+    let (zeros_of_right, zeros_of_own) = (ends(set), ends(&own));
     let curves = [
-        Curve { name: &right, coefficients: expected, zeros: &[], positive },
-        Curve { name: &yours, coefficients: logged, zeros: &[], positive: &own },
+        Curve { name: &right, coefficients: expected, zeros: &zeros_of_right, positive: set },
+        Curve { name: &yours, coefficients: logged, zeros: &zeros_of_own, positive: &own },
     ];
     let title = format!("Step {step}: {role}, expected and yours");
     let svg = Curves { title: &title, curves: &curves, common: None, impact: None }.svg(Embedding::Inline);
@@ -58,7 +129,7 @@ fn both(step: u32, role: &str, expected: &[f64], positive: &[Interval], logged: 
 }
 
 /// All coefficients side by side; those that differ after the factor that fits most are marked.
-fn coefficients(study: &Study, logged: &[Vec<f64>]) -> String {
+fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
     let mut out = String::from(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Coefficients\"><table>\
          <caption>Coefficients; what differs by more than a common factor is marked</caption><thead><tr>\
@@ -73,15 +144,20 @@ fn coefficients(study: &Study, logged: &[Vec<f64>]) -> String {
         for power in (0..powers).rev() {
             let at = |list: &[f64]| (power < list.len()).then(|| list[list.len() - 1 - power]);
             let cell = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), number);
-            let differs = !own.is_empty() && marks.get(power).copied().unwrap_or(true);
-            let (class, word) = if differs { (" class=\"off\"", "differs") } else { ("", "") };
+            let missing = nothing || own.is_empty() && !logged.is_empty();
+            let differs = missing || !own.is_empty() && marks.get(power).copied().unwrap_or(true);
+            let (class, word) = match differs {
+                true if missing => (" class=\"off\"", "missing"),
+                true => (" class=\"off\"", "differs"),
+                false => ("", ""),
+            };
             let _ = writeln!(
                 out,
                 "<tr{class}><th scope=\"row\">{}</th><td>t^{power}</td><td class=\"num\">{}</td><td class=\"num\">{}</td>\
                  <td>{word}</td></tr>",
                 text(&curve.role.to_string()),
                 cell(at(expected)),
-                if logged.is_empty() { "not known".to_owned() } else { cell(at(own)) },
+                if logged.is_empty() && !nothing { "not known".to_owned() } else { cell(at(own)) },
             );
         }
     }

@@ -1,5 +1,5 @@
 //! The card of a scene: what is drawn of a wrong trace while it is at hand, for pages that are put together later.
-use super::{Case, data};
+use super::{Case, data, packed::Precision};
 use crate::check::plots;
 use fosssim_grading::config::Hints;
 use serde::{Deserialize, Serialize};
@@ -17,22 +17,35 @@ pub struct Card {
     html: String,
     /// The motions and what the viewer tells of them; empty where there is no motion.
     data: String,
+    /// The same with rounded motions, for a page that has no room for exact ones; empty where that saves nothing.
+    #[serde(default)]
+    rounded: String,
     /// The same for a terminal: a small plot.
     plot: String,
 }
+
+/// Motions smaller than this are not worth rounding, in bytes.
+const SMALL: usize = 60_000;
 
 impl Card {
     /// The card of a case below a heading of this depth; nothing where hints are to say nothing.
     #[must_use]
     pub fn of(case: &Case<'_>, depth: usize) -> Option<Self> {
-        let data = || case.evidence.map(|evidence| data::blocks(case, evidence, KEY)).unwrap_or_default();
-        (case.hints > Hints::None).then(|| Self { html: case.trace_part(KEY, depth), data: data(), plot: plot(case) })
+        if case.hints == Hints::None {
+            return None;
+        }
+        let blocks =
+            |precision| case.evidence.map(|evidence| data::blocks(case, evidence, KEY, precision)).unwrap_or_default();
+        let data = blocks(Precision::AsRoomAllows);
+        let rounded = if data.len() > SMALL { blocks(Precision::Rounded) } else { String::new() };
+        let rounded = if rounded.len() < data.len() { rounded } else { String::new() };
+        Some(Self { html: case.trace_part(KEY, depth), data, rounded, plot: plot(case) })
     }
 
     /// A card that only says something.
     #[must_use]
     pub fn saying(words: &str) -> Self {
-        Self { html: format!("<p>{}</p>\n", super::markup::text(words)), data: String::new(), plot: String::new() }
+        Self { html: format!("<p>{}</p>\n", super::markup::text(words)), ..Self::default() }
     }
 
     /// The card with a remark above it.
@@ -72,6 +85,16 @@ impl Card {
     /// The motions.
     pub(super) fn data(&self, key: &str) -> String {
         self.data.replace(KEY, key)
+    }
+
+    /// The bytes of rounded motions; `None` where they are no smaller than the others.
+    pub(super) fn rounded_size(&self) -> Option<usize> {
+        (!self.rounded.is_empty()).then_some(self.rounded.len())
+    }
+
+    /// The motions, rounded.
+    pub(super) fn rounded(&self, key: &str) -> String {
+        self.rounded.replace(KEY, key)
     }
 }
 

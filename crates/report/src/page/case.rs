@@ -1,11 +1,11 @@
 //! One judged trace on a page.
-use super::{Case, call, data, markup::text, strip};
+use super::{Case, call, data, markup::text, packed::Precision, strip};
 use crate::{
     check::{divergence_text, headline},
     explain,
     number::{count, general},
 };
-use fosssim_evidence::Evidence;
+use fosssim_evidence::{Evidence, Focus};
 use fosssim_grading::config::Hints;
 use fosssim_judge::{Account, Book, Outcome, Ruling};
 use fosssim_mistakes::diagnose::Explanation;
@@ -37,7 +37,7 @@ impl Case<'_> {
         }
         out += &self.trace_part(key, 1);
         if let Some(evidence) = self.evidence {
-            out += &data::blocks(self, evidence, key);
+            out += &data::blocks(self, evidence, key, Precision::AsRoomAllows);
         }
         out + "</article>\n"
     }
@@ -83,7 +83,7 @@ impl Case<'_> {
             if !evidence.window.is_whole(evidence.layout.steps) {
                 let _ = writeln!(
                     out,
-                    "<p class=\"hint\">The motion is long: steps {} to {} of {} are here, exact to the last bit.</p>",
+                    "<p class=\"hint\">The motion is long: steps {} to {} of {} are here.</p>",
                     evidence.window.first,
                     evidence.window.last,
                     count(u64::from(evidence.layout.steps))
@@ -186,7 +186,9 @@ fn findings(account: &Account<'_>) -> String {
         let kind = example.kind();
         let _ = writeln!(
             out,
-            "<tr><th scope=\"row\">{}</th><td class=\"num\">{}</td><td>{}</td></tr>",
+            "<tr data-step=\"{}\" data-pair=\"{}\"><th scope=\"row\">{}</th><td class=\"num\">{}</td><td>{}</td></tr>",
+            example.step,
+            Focus::from(example).pair.map(data::key).unwrap_or_default(),
             text(&kind.to_string()),
             count(account.counts.get(kind)),
             text(&example.to_string())

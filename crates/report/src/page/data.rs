@@ -1,5 +1,8 @@
 //! What the motion viewer reads: one JSON block per case, and the motions as packed doubles.
-use super::{Case, markup};
+use super::{
+    Case, markup,
+    packed::{Packed, Precision, Rounded},
+};
 use fosssim_evidence::{CloseUp, Evidence, PassUp, Track};
 use fosssim_grading::config::Hints;
 use fosssim_judge::PassWords;
@@ -12,36 +15,28 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// All data blocks of a case.
-pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str) -> String {
-    let mut out = String::new();
-    let _ = writeln!(
-        out,
-        r#"<script type="application/json" id="case-{key}">{}</script>"#,
-        markup::data(&of_case(case, evidence))
-    );
+pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision: Precision) -> String {
     // Below full hints a page holds nothing but what the program wrote itself.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
     let what = case.what_if.filter(|_| is_full).map(|what| ("what", &what.track));
-    for (name, track) in [("submission", &evidence.submission)].into_iter().chain(reference).chain(what) {
-        let _ =
-            writeln!(out, r#"<script type="application/octet-stream" id="{name}-{key}">{}</script>"#, packed(track));
+    let tracks: Vec<(&str, &Track)> =
+        [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();
+    let Packed { blocks, rounded } = Packed::of(evidence, &tracks, precision);
+    let mut out = String::new();
+    let data = markup::data(&of_case(case, evidence, rounded.as_ref()));
+    let _ = writeln!(out, r#"<script type="application/json" id="case-{key}">{data}</script>"#);
+    for ((name, _), block) in tracks.iter().zip(blocks) {
+        let _ = writeln!(out, r#"<script type="application/octet-stream" id="{name}-{key}">{block}</script>"#);
     }
     out
 }
 
-/// Little-endian doubles, deflated without a header, in base64.
-fn packed(track: &Track) -> String {
-    use base64::Engine;
-    let bytes: Vec<u8> = track.values.iter().flat_map(|value| value.to_le_bytes()).collect();
-    base64::engine::general_purpose::STANDARD.encode(miniz_oxide::deflate::compress_to_vec(&bytes, 8))
-}
-
-fn of_case(case: &Case<'_>, evidence: &Evidence) -> Value {
+fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> Value {
     let is_full = case.hints == Hints::Full;
     let close_ups: &[CloseUp] = if is_full { &evidence.close_ups } else { &[] };
     let Scene { particles, edges, half_planes, .. } = case.scene;
-    let (integrator, collision) = tags(case.scene);
+    let Tags { integrator, collision, forces } = Tags::of(case.scene);
     let strip: String = evidence.steps.iter().map(|step| step.class.letter()).collect();
     let calls = close_ups.iter().flat_map(|up| {
         up.calls.iter().map(|call| {
@@ -60,6 +55,8 @@ fn of_case(case: &Case<'_>, evidence: &Evidence) -> Value {
         "collision": kind(case.scene.collision),
         "collisionTag": collision,
         "integrator": integrator,
+        "forces": forces,
+        "rounded": rounded.map(|rounded| json!({"unit": rounded.unit, "exact": rounded.exact})),
         "dt": case.scene.time_step,
         "steps": evidence.layout.steps,
         "per": evidence.layout.records_per_step(),
@@ -80,20 +77,29 @@ fn of_case(case: &Case<'_>, evidence: &Evidence) -> Value {
     })
 }
 
-/// The elements of integrator and collision handling, as a scene has them.
-fn tags(scene: &Scene) -> (String, String) {
-    let bare = Scene {
-        particles: Vec::new(),
-        edges: Vec::new(),
-        half_planes: Vec::new(),
-        forces: Vec::new(),
-        description: None,
-        display: Default::default(),
-        ..scene.clone()
-    };
-    let text = scene::write(&bare);
-    let line = |name: &str| text.lines().map(str::trim).find(|line| line.starts_with(name)).unwrap_or("").to_owned();
-    (line("<integrator"), line("<collision"))
+/// Some elements of a scene, as a file has them.
+struct Tags {
+    integrator: String,
+    collision: String,
+    forces: Vec<String>,
+}
+
+impl Tags {
+    fn of(scene: &Scene) -> Self {
+        let bare = Scene { description: None, display: Default::default(), ..scene.clone() };
+        let text = scene::write(&bare);
+        let lines = || text.lines().map(str::trim);
+        let line = |name: &str| lines().find(|line| line.starts_with(name)).unwrap_or("").to_owned();
+        let is_force = |line: &&str| {
+            let name = line.trim_start_matches('<').split([' ', '/']).next().unwrap_or("");
+            name.ends_with("force") || name == "simplegravity" || name == "dragdamping"
+        };
+        Self {
+            integrator: line("<integrator"),
+            collision: line("<collision"),
+            forces: lines().filter(is_force).map(str::to_owned).collect(),
+        }
+    }
 }
 
 const fn kind(collision: Collision) -> &'static str {
@@ -121,6 +127,7 @@ fn close_up(up: &CloseUp, evidence: &Evidence) -> Value {
                 .map(|(particles, plane)| json!({"particles": particles, "halfPlane": plane})).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "polynomials": [up.expected_polynomials, up.actual_polynomials],
+        "surplus": up.surplus,
         "expectedPasses": up.expected_passes,
         "actualPasses": step.and_then(|step| step.actual_passes),
     })
@@ -136,9 +143,15 @@ fn pass(up: &PassUp) -> Value {
         "q": up.q_end,
         "calls": up.calls,
         "hits": up.hits.iter().map(contact).collect::<Vec<_>>(),
-        "differing": up.differing.iter().map(|pair| key(*pair)).collect::<Vec<_>>(),
+        "differing": keys(&up.differing),
+        "missing": keys(&up.missing),
+        "repeated": keys(&up.repeated),
         "logged": up.is_logged,
     })
+}
+
+fn keys(pairs: &[Pair]) -> Vec<String> {
+    pairs.iter().map(|pair| key(*pair)).collect()
 }
 
 fn contact(impulse: &Impulse) -> Value {

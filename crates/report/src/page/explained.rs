@@ -1,9 +1,10 @@
 //! The page of `explain`: what is likely wrong with a program, trace by trace and all together.
-use super::{Card, SCRIPT, case::mistakes, document, graded::key, markup::text};
+use super::{Card, case::mistakes, document, graded::key, markup::text, script};
 use crate::{
     diagnosis::{Case, Diagnosis},
     words::first_divergence,
 };
+use fosssim_mistakes::diagnose::Explanation;
 use std::fmt::Write;
 
 /// One trace with what was drawn of it.
@@ -13,6 +14,17 @@ pub struct ExplainedCase<'a> {
     pub case: &'a Case,
     /// What was drawn.
     pub card: Option<&'a Card>,
+}
+
+impl ExplainedCase<'_> {
+    /// How much it takes to see what is wrong: without pictures, by another mistake than the common ones, by several that
+    /// can't be told apart, and how large the motion is. The least is the most telling.
+    fn telling(&self, common: &[Explanation]) -> (bool, usize, usize, usize) {
+        let own = &self.case.explanations;
+        let rank = common.iter().position(|one| one.is_named_in(own));
+        let rank = rank.unwrap_or(common.len() + usize::from(own.is_empty()));
+        (self.card.is_none(), rank, own.len(), self.card.map_or(0, |card| card.sizes().1))
+    }
 }
 
 /// A page about some traces of one program.
@@ -42,12 +54,14 @@ impl Explained<'_> {
             let _ = writeln!(body, "<h2>What explains {explained} of {wrong} wrong traces</h2>");
             body += &mistakes(std::slice::from_ref(one));
         }
-        let mut open = true;
-        for (number, (case, card)) in cases.iter().zip(self.cards.iter().map(Option::as_ref)).enumerate() {
-            body += &article(&ExplainedCase { case, card }, number, open && !case.accepted);
-            open &= case.accepted;
+        let all: Vec<ExplainedCase<'_>> =
+            cases.iter().zip(self.cards).map(|(case, card)| ExplainedCase { case, card: card.as_ref() }).collect();
+        let first =
+            (0..all.len()).filter(|&number| !cases[number].accepted).min_by_key(|&number| all[number].telling(common));
+        for (number, one) in all.iter().enumerate() {
+            body += &article(one, number, first == Some(number));
         }
-        document(&title, &body, SCRIPT)
+        document(&title, &body, script())
     }
 }
 

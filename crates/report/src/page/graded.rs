@@ -1,5 +1,12 @@
 //! The page of one submission: what it got, its likely mistakes, and a card per scene.
-use super::{Card, SCRIPT, case::mistakes, document, markup::text};
+use super::{
+    Card,
+    case::mistakes,
+    document,
+    markup::text,
+    room::{self, Motion, Room},
+    script,
+};
 use crate::{
     grade::{difference, likely_mistakes, no_points, one_line, points, reached, score},
     number::counted,
@@ -10,15 +17,19 @@ use fosssim_mistakes::diagnose::Explanation;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// A page is to stay below so many bytes: it is mailed, and opened on old machines.
-pub const BUDGET: usize = 2_950_000;
-
-/// So much of it may go to pictures and tables before the first motion has room.
-const STILL: usize = BUDGET / 3 * 2;
-
 /// So many characters of what a program printed are shown of a scene, and so many bytes of the page go to all scenes'.
 const OUTPUT: usize = 2_000;
-const OUTPUTS: usize = 200_000;
+pub(super) const OUTPUTS: usize = 200_000;
+
+/// Whom a page is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Reader {
+    /// Staff: every group is on it, with the word who sees it.
+    #[default]
+    Staff,
+    /// The student: nothing is on it but groups that students see at once, and what follows from these.
+    Student,
+}
 
 /// One submission's grade with what was drawn of its traces.
 #[derive(Clone, Copy)]
@@ -29,30 +40,55 @@ pub struct Graded<'a> {
     pub card: &'a dyn Fn(&SceneGrade) -> Option<Card>,
     /// The address of the class's page, seen from this one.
     pub class: Option<&'a str>,
+    /// Whom it is for.
+    pub reader: Reader,
 }
 
-/// What of a scene has room on the page.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Room {
-    Words,
-    Pictures,
-    All,
+/// A grade with nothing in it but what students see at once: points and verdict are those of the groups that are left.
+fn for_student(grade: &Grade) -> Grade {
+    let is_visible = |group: &&GroupGrade| group.visibility == Visibility::Visible;
+    let groups: Vec<GroupGrade> = grade.groups.iter().filter(is_visible).cloned().collect();
+    Grade {
+        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
+        points: groups.iter().map(|group| group.points).sum(),
+        max_points: groups.iter().map(|group| group.max_points).sum(),
+        groups,
+        ..grade.clone()
+    }
 }
 
 impl Graded<'_> {
     /// The file.
     #[must_use]
     pub fn html(&self) -> String {
-        let grade = self.grade;
-        let mut body = self.head();
+        let shown = match self.reader {
+            Reader::Student if self.grade.groups.iter().any(|group| group.visibility != Visibility::Visible) => {
+                Some(for_student(self.grade))
+            }
+            _ => None,
+        };
+        let grade = shown.as_ref().unwrap_or(self.grade);
+        let told = self.told(grade);
+        let mut body = self.head(grade, &told);
         if grade.unfit().is_none() {
-            body += &self.scenes();
+            body += &scenes(grade, &told);
         }
-        document(&format!("{}: {}", grade.submission, grade.verdict.words()), &body, SCRIPT)
+        document(&format!("{}: {}", grade.submission, grade.verdict.words()), &body, script())
     }
 
-    fn head(&self) -> String {
-        let grade = self.grade;
+    /// The scenes that have something to tell, the most telling one first and the others in their order.
+    fn told<'g>(&self, grade: &'g Grade) -> Vec<(&'g SceneGrade, Option<Card>)> {
+        let scenes = grade.scenes().filter(|scene| is_told(scene));
+        let mut told: Vec<_> = scenes.map(|scene| (scene, (self.card)(scene))).collect();
+        let likely = likely(grade);
+        let first = (0..told.len()).min_by_key(|&place| telling(told[place].0, told[place].1.as_ref(), &likely));
+        if let Some(first) = first {
+            told[..=first].rotate_right(1);
+        }
+        told
+    }
+
+    fn head(&self, grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
         let look = if grade.verdict.is_accepted() { "good" } else { "bad" };
         let reached = match grade.points {
             Some(reached) => score(reached, grade.max_points),
@@ -80,6 +116,10 @@ impl Graded<'_> {
         } else if let Some(unfit) = words::unfit(grade) {
             let _ = writeln!(out, "<p>{}</p>", text(&unfit));
         }
+        if self.reader == Reader::Student && grade.groups.len() < self.grade.groups.len() {
+            out += "<p class=\"hint\">Points, verdict and likely mistakes are those of the groups on this page. The grade has \
+                    others, too.</p>\n";
+        }
         let likely = likely_mistakes(grade);
         if !likely.is_empty() {
             let wrong = |scene: &&SceneGrade| matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
@@ -87,58 +127,81 @@ impl Graded<'_> {
             let plural = if likely.len() == 1 { "" } else { "s" };
             let _ = writeln!(out, "<h2>Likely mistake{plural}</h2>");
             for (mistake, explained) in likely {
+                let named: Vec<_> = told.iter().filter(|(scene, _)| mistake.is_named_in(&scene.explanations)).collect();
+                let shows = named
+                    .iter()
+                    .min_by_key(|(scene, card)| telling(scene, card.as_ref(), std::slice::from_ref(&mistake)));
                 let _ = writeln!(
                     out,
-                    "<div class=\"mistake\"><p>{} <span class=\"hint\">(explains {explained} of {wrong})</span></p></div>",
-                    text(&mistake.what)
+                    "<div class=\"mistake\"><p>{} <span class=\"hint\">(explains {explained} of {wrong})</span>{}</p></div>",
+                    text(&mistake.what),
+                    shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene)))
                 );
             }
         }
-        out + &groups(&grade.groups)
+        out + &groups(&grade.groups, told, self.reader)
     }
+}
 
-    fn scenes(&self) -> String {
-        let told: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| is_told(scene)).collect();
-        let cards: Vec<Option<Card>> = told.iter().map(|scene| (self.card)(scene)).collect();
-        let rooms = share_out(&cards);
-        let mut out = String::new();
-        if !told.is_empty() {
-            out += "<h2>Scenes to look at</h2>\n";
-        }
-        out += &left_out(&cards, &rooms);
-        let likely: Vec<Explanation> = likely_mistakes(self.grade).into_iter().map(|(mistake, _)| mistake).collect();
-        let mut outputs = if self.grade.shows_output { OUTPUTS } else { 0 };
-        for (number, ((scene, card), room)) in told.iter().zip(&cards).zip(&rooms).enumerate() {
-            out += &article(scene, &likely, (card.as_ref(), *room), number == 0, &mut outputs);
-        }
-        let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_told(scene)).collect();
-        if !rest.is_empty() {
-            let accepted = rest.iter().filter(|scene| scene.verdict.is_accepted()).count() as u64;
-            let missing = rest.len() as u64 - accepted;
-            let mut words = format!("{} accepted", counted(accepted, "scene"));
-            if missing > 0 {
-                let _ = write!(words, ", {missing} not run");
-            }
-            let _ = write!(
-                out,
-                "<h2>The other scenes</h2>\n<details class=\"table\"><summary>{words}</summary>\n\
-                 <table><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">verdict</th><th scope=\"col\">points</th>\
-                 </tr></thead><tbody>\n"
-            );
-            for scene in rest {
-                let _ = writeln!(
-                    out,
-                    "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"num\">{} of {}</td></tr>",
-                    text(&one_line(&scene.scene)),
-                    scene.verdict.words(),
-                    reached(scene.points),
-                    points(scene.max_points)
-                );
-            }
-            out += "</tbody></table></details>\n";
-        }
-        out
+/// The likely mistakes of all scenes together.
+fn likely(grade: &Grade) -> Vec<Explanation> {
+    likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect()
+}
+
+/// How much it takes to see a mistake in a scene: nothing was drawn; the rule books differ, so that it may be a consequence
+/// or round-off; it is none of the likely mistakes, the likeliest first, or is not explained at all; several mistakes would
+/// do the same there; how large the motion is. The least is the most telling.
+fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (bool, bool, usize, usize, usize) {
+    let own = &scene.explanations;
+    let rank = likely.iter().position(|one| one.is_named_in(own));
+    let rank = rank.unwrap_or(likely.len() + usize::from(own.is_empty()));
+    (card.is_none(), scene.differs.is_some(), rank, own.len(), card.map_or(0, |card| card.sizes().1))
+}
+
+/// A link to a scene's card.
+fn link(scene: &SceneGrade) -> String {
+    format!("<a href=\"#scene-{}\">{}</a>", key(&scene.scene), text(&one_line(&scene.scene)))
+}
+
+fn scenes(grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
+    let rooms = room::share_out(told.iter().map(|(_, card)| card.as_ref()));
+    let mut out = String::new();
+    if !told.is_empty() {
+        out += "<h2>Scenes to look at</h2>\n";
     }
+    out += &room::left_out(told.iter().map(|(_, card)| card.as_ref()), &rooms);
+    let likely = likely(grade);
+    let mut outputs = if grade.shows_output { OUTPUTS } else { 0 };
+    for (number, ((scene, card), room)) in told.iter().zip(&rooms).enumerate() {
+        out += &article(scene, &likely, (card.as_ref(), *room), number == 0, &mut outputs);
+    }
+    let rest: Vec<&SceneGrade> = grade.scenes().filter(|scene| !is_told(scene)).collect();
+    if rest.is_empty() {
+        return out;
+    }
+    let accepted = rest.iter().filter(|scene| scene.verdict.is_accepted()).count() as u64;
+    let missing = rest.len() as u64 - accepted;
+    let mut words = format!("{} accepted", counted(accepted, "scene"));
+    if missing > 0 {
+        let _ = write!(words, ", {missing} not run");
+    }
+    let _ = write!(
+        out,
+        "<h2>The other scenes</h2>\n<details class=\"table\"><summary>{words}</summary>\n\
+         <table><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">verdict</th><th scope=\"col\">points</th>\
+         </tr></thead><tbody>\n"
+    );
+    for scene in rest {
+        let _ = writeln!(
+            out,
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"num\">{} of {}</td></tr>",
+            text(&one_line(&scene.scene)),
+            scene.verdict.words(),
+            reached(scene.points),
+            points(scene.max_points)
+        );
+    }
+    out + "</tbody></table></details>\n"
 }
 
 /// The book that counts.
@@ -158,66 +221,37 @@ fn is_told(scene: &SceneGrade) -> bool {
     scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
 
-fn groups(groups: &[GroupGrade]) -> String {
-    let mut out = String::from(
+fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: Reader) -> String {
+    let who = if reader == Reader::Staff { "<th scope=\"col\">who sees it</th>" } else { "" };
+    let mut out = format!(
         "<h2>Groups</h2>\n<table><thead><tr><th scope=\"col\">group</th><th scope=\"col\">verdict</th>\
-         <th scope=\"col\">points</th><th scope=\"col\">scenes accepted</th><th scope=\"col\">who sees it</th></tr></thead><tbody>\n",
+         <th scope=\"col\">points</th><th scope=\"col\">scenes accepted</th><th scope=\"col\">to look at</th>{who}</tr></thead>\
+         <tbody>\n",
     );
     for group in groups {
+        let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
+        let first = told.iter().find(|(scene, _)| is_here(scene)).map_or_else(String::new, |(scene, _)| link(scene));
+        let who = match group.visibility {
+            _ if reader == Reader::Student => String::new(),
+            Visibility::Visible => "<td>everybody</td>".to_owned(),
+            Visibility::Hidden => "<td>staff</td>".to_owned(),
+            Visibility::AfterDueDate => "<td>students after the due date</td>".to_owned(),
+            Visibility::AfterPublished => "<td>students once grades are out</td>".to_owned(),
+        };
         let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
         let _ = writeln!(
             out,
             "<tr><th scope=\"row\">{}</th><td class=\"{}\">{}</td><td class=\"num\">{} of {}</td><td class=\"num\">{accepted} \
-             of {}</td><td>{}</td></tr>",
+             of {}</td><td>{first}</td>{who}</tr>",
             text(&one_line(&group.name)),
             if group.verdict.is_accepted() { "good" } else { "bad" },
             group.verdict.words(),
             reached(group.points),
             points(group.max_points),
             group.scenes.len(),
-            match group.visibility {
-                Visibility::Visible => "everybody",
-                Visibility::Hidden => "staff",
-                Visibility::AfterDueDate => "students after the due date",
-                Visibility::AfterPublished => "students once grades are out",
-            }
         );
     }
     out + "</tbody></table>\n"
-}
-
-/// What of each card has room: words always, then pictures in the order of the scenes, then motions.
-fn share_out(cards: &[Option<Card>]) -> Vec<Room> {
-    let mut rooms = vec![Room::Words; cards.len()];
-    let mut left = BUDGET - 2 * super::SCRIPT.len() - OUTPUTS - 1_000 * cards.len().min(1_000);
-    let mut still = STILL.min(left);
-    for (card, room) in cards.iter().zip(&mut rooms) {
-        let Some((html, _)) = card.as_ref().map(Card::sizes) else { continue };
-        if html <= still {
-            (still, left, *room) = (still - html, left - html, Room::Pictures);
-        }
-    }
-    for (card, room) in cards.iter().zip(&mut rooms).filter(|(_, room)| **room == Room::Pictures) {
-        let Some((_, data)) = card.as_ref().map(Card::sizes) else { continue };
-        if data <= left {
-            (left, *room) = (left - data, Room::All);
-        }
-    }
-    rooms
-}
-
-/// What the page says of what has no room on it.
-fn left_out(cards: &[Option<Card>], rooms: &[Room]) -> String {
-    let has = |card: &Option<Card>| card.as_ref().is_some_and(|card| card.sizes().1 > 0);
-    let short = cards.iter().zip(rooms).filter(|(card, room)| has(card) && **room < Room::All).count() as u64;
-    if short == 0 {
-        return String::new();
-    }
-    format!(
-        "<p class=\"hint\">The page would grow beyond 3 MB: {} without the motion here, which each of them says. \
-         <code>grade --scene NAME --format html=FILE</code> makes a page of one scene.</p>\n",
-        if short == 1 { "one scene is".to_owned() } else { format!("{short} scenes are") }
-    )
 }
 
 fn article(
@@ -257,19 +291,20 @@ fn article(
             out += "<p class=\"hint\">The pictures and the motion have no room on this page.</p>\n";
         }
         (Some(card), _) => {
-            let html = card.html(&key);
-            if room == Room::Pictures && card.sizes().1 > 0 {
+            if room == Room::Pictures(Motion::None) && card.sizes().1 > 0 {
                 out += "<p class=\"hint\">The motion has no room on this page.</p>\n";
             }
-            out += &html;
+            out += &card.html(&key);
         }
     }
     out += &printed("Standard output", &scene.stdout, outputs);
     out += &printed("Standard error", &scene.stderr, outputs);
     out += "</details>\n";
-    if let (Some(card), Room::All) = (card, room) {
-        out += &card.data(&key);
-    }
+    out += &match (card, room) {
+        (Some(card), Room::Pictures(Motion::Exact)) => card.data(&key),
+        (Some(card), Room::Pictures(Motion::Rounded)) => card.rounded(&key),
+        _ => String::new(),
+    };
     out + "</article>\n"
 }
 

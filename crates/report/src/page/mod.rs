@@ -12,6 +12,8 @@ mod data;
 mod explained;
 mod graded;
 mod markup;
+mod packed;
+mod room;
 mod strip;
 #[cfg(test)]
 mod tests;
@@ -19,15 +21,23 @@ mod tests;
 pub use card::Card;
 pub use class::Class;
 pub use explained::{Explained, ExplainedCase};
-pub use graded::Graded;
+pub use graded::{Graded, Reader};
 
 use super::check::Check;
 use fosssim_evidence::{Evidence, Track};
 use fosssim_grading::config::Hints;
 use fosssim_model::scene::Scene;
 use sha2::{Digest, Sha256};
+use std::sync::LazyLock;
 
-const SCRIPT: &str = include_str!("viewer.js");
+/// The viewer's script, in the order in which its parts need each other.
+const PARTS: [&str; 5] = [
+    include_str!("viewer/tools.js"),
+    include_str!("viewer/motion.js"),
+    include_str!("viewer/drawing.js"),
+    include_str!("viewer/words.js"),
+    include_str!("viewer/viewer.js"),
+];
 const STYLE: &str = include_str!("style.css");
 
 /// The reference's run with a named mistake switched on.
@@ -74,8 +84,19 @@ impl Page<'_> {
     #[must_use]
     pub fn html(&self) -> String {
         let body: String = self.cases.iter().enumerate().map(|(number, case)| case.html(&number.to_string())).collect();
-        document(self.title, &body, SCRIPT)
+        document(self.title, &body, script())
     }
+}
+
+/// The viewer's script without what only its authors need: indentation and lines that are comments. No text in it goes over
+/// several lines.
+fn script() -> &'static str {
+    static SCRIPT: LazyLock<String> = LazyLock::new(|| {
+        let lines = PARTS.iter().flat_map(|part| part.lines()).map(str::trim);
+        let lines: Vec<&str> = lines.filter(|line| !line.is_empty() && !line.starts_with("//")).collect();
+        format!("\"use strict\";\n(() => {{\n{}\n}})();\n", lines.join("\n"))
+    });
+    &SCRIPT
 }
 
 /// A file around a body: one style sheet, at most one script, and a policy that allows these and nothing else.

@@ -91,7 +91,7 @@ fn the_policy_fits_the_page() {
         let allowed = if word == "http:" { html.matches("http://www.w3.org/2000/svg").count() } else { 0 };
         assert_eq!(html.matches(word).count(), allowed, "{word}");
     }
-    assert!(SCRIPT.len() + STYLE.len() < 60_000);
+    assert!(script().len() + STYLE.len() < 60_000, "{}", script().len() + STYLE.len());
 }
 
 /// A failing scene of a course's size stays small enough to be mailed.
@@ -163,7 +163,7 @@ fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
         shows_output: true,
         ..crate::grade::samples::good()
     };
-    Graded { grade: &grade, card: &|_| card.cloned(), class: None }.html()
+    Graded { grade: &grade, card: &|_| card.cloned(), class: None, reader: Reader::Staff }.html()
 }
 
 fn graded(scene: &Scene, id: &str, hints: Hints) -> String {
@@ -236,5 +236,82 @@ fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
         assert_eq!(html.contains("The page would grow beyond 3 MB"), count > 1);
         assert_eq!(html.contains("What programs printed in this scene and in the next ones"), count > 1);
         assert!(with > 0 && html.contains("Coefficients"), "{with}");
+    }
+}
+
+/// A named mistake before what is not explained, what is meant before what might be, and of these the smallest motion.
+#[test]
+fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
+    let named = |scene: &str, id: &str| {
+        let (card, result) = drawn(&asset(scene), id, Hints::Full);
+        (SceneResult { scene: scene.to_owned(), ..result }, card)
+    };
+    let unexplained = SceneResult {
+        scene: "Group/crash".to_owned(),
+        ..SceneResult::without_run("", 10, Verdict::RuntimeError, "it crashed")
+    };
+    let id = "failsafe-angular-overwritten";
+    let (large, small) = ("HolisticTests/crowd-of-twenty-balls.xml", "GeometricTests/pair-becomes-rigid.xml");
+    let scenes = [(unexplained, None), named(large, id), named(small, id)];
+    let results = scenes.iter().map(|(result, _)| result.clone()).collect();
+    let card = |scene: &fosssim_grading::SceneGrade| {
+        scenes.iter().find(|(result, _)| result.scene == scene.scene).and_then(|(_, card)| card.clone())
+    };
+    let stakes = Stakes { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+    let grade = Grade {
+        groups: vec![with_results(stakes, results)],
+        verdict: Verdict::RuntimeError,
+        ..crate::grade::samples::good()
+    };
+    let html = Graded { grade: &grade, card: &card, class: None, reader: Reader::Staff }.html();
+    let articles: Vec<&str> = html.split("<article ").skip(1).collect();
+    let order = [small, "Group/crash", large];
+    for (number, (article, scene)) in articles.iter().zip(order).enumerate() {
+        assert!(article.contains(&format!("data-scene=\"{scene}\"")), "{scene}");
+        assert_eq!(article.contains("<details class=\"card\" open>"), number == 0, "{scene}");
+    }
+    // Both the mistake and its group lead there.
+    let place = format!("<a href=\"#scene-{}\">{small}</a>", graded::key(small));
+    assert!(html.matches(&place).count() == 2 && html.contains(&format!("id=\"scene-{}\"", graded::key(small))));
+}
+
+fn with_results(stakes: Stakes, results: Vec<SceneResult>) -> fosssim_grading::GroupGrade {
+    score::group("Group", stakes, results.into_iter().map(|result| (result, false)).collect())
+}
+
+/// Nothing on a page to hand out tells of groups that students do not see: no name, no points, no mistake, no output.
+#[test]
+fn a_student_s_page_has_no_hidden_group() {
+    let scene = asset("GeometricTests/pair-becomes-rigid.xml");
+    let (card, seen) = drawn(&scene, "failsafe-angular-overwritten", Hints::Full);
+    let (_, secret) =
+        drawn(&asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml"), "pe-linear-one-ab", Hints::Full);
+    let crash = SceneResult {
+        stdout: "secret output".to_owned(),
+        ..SceneResult::without_run("Secret/crash", 1, Verdict::RuntimeError, "it fell over in secret")
+    };
+    let stakes = |points, visibility| Stakes { points, credit: Credit::Scenes, visibility };
+    let named = |name: &str, group| fosssim_grading::GroupGrade { name: name.to_owned(), ..group };
+    let grade = Grade {
+        groups: vec![
+            named("Shown", with_results(stakes(7.0, Visibility::Visible), vec![seen])),
+            named("Veiled", with_results(stakes(13.0, Visibility::Hidden), vec![secret.clone(), crash])),
+            named("Later", with_results(stakes(17.0, Visibility::AfterDueDate), vec![secret])),
+        ],
+        verdict: Verdict::RuntimeError,
+        points: Some(0.0),
+        max_points: 37.0,
+        shows_output: true,
+        ..crate::grade::samples::good()
+    };
+    let page = |reader| Graded { grade: &grade, card: &|_| card.clone(), class: None, reader }.html();
+    let (staff, student) = (page(Reader::Staff), page(Reader::Student));
+    let mistake = student::find("pe-linear-one-ab").expect("a mistake").what;
+    for hidden in ["Veiled", "Later", "secret", "Secret/", mistake, "of 37", "of 13", "RUN-TIME", "who sees it"] {
+        assert!(staff.contains(hidden), "{hidden} is not even on the page for staff");
+        assert!(!student.contains(hidden), "{hidden}");
+    }
+    for shown in ["Shown", "of 7", "WRONG ANSWER", "The grade has others, too", "id=\"submission-"] {
+        assert!(student.contains(shown), "{shown}");
     }
 }

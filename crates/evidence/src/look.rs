@@ -1,0 +1,45 @@
+//! One pair in one step, from a given state: what the reference asks of it, and what a trace has logged for that.
+use crate::close_up::{CloseUp, Watch, Which};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{Pair, RootSearch, Simulation, State, StepError},
+    trace::PolynomialLog,
+};
+
+/// What a trace says of a step beyond the state that it starts from.
+#[derive(Debug, Clone, Copy)]
+pub struct Records<'a> {
+    /// Its mid record's state, from which a `hybrid` step goes on.
+    pub mid: Option<&'a State>,
+    /// The polynomials of its end record.
+    pub polynomials: &'a PolynomialLog,
+}
+
+/// A pair in a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Look {
+    /// The step; its calls are those of the pair, pass by pass.
+    pub close_up: CloseUp,
+    /// Where the step ended.
+    pub end: State,
+    /// Why it has no result.
+    pub failed: Option<StepError>,
+}
+
+/// Looks at all detection calls of a pair in a step that starts from `before`; without `records` as the reference goes on.
+#[must_use]
+pub fn look(scene: &Scene, step: u32, before: &State, records: Option<Records<'_>>, pair: Pair) -> Look {
+    let none = PolynomialLog::default();
+    let mid = records.and_then(|records| records.mid).filter(|_| matches!(scene.collision, Collision::Hybrid { .. }));
+    let log = records.map_or(&none, |records| records.polynomials);
+    let wanted = [(Which::Every, pair)];
+    let mut watch = Watch::new(scene, step, mid, (log, log.len()), &wanted);
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    simulation.state_mut().clone_from(before);
+    simulation.set_steps_done(step - 1);
+    let failed = simulation.step(&mut watch).err();
+    let mut close_up = watch.finish();
+    // What else is wrong in the step is not asked for.
+    close_up.calls.retain(|call| call.pair == pair);
+    Look { close_up, end: simulation.state().clone(), failed }
+}

@@ -1,0 +1,121 @@
+//! Which of the reference's polynomials a trace's list answers where it has another number of them.
+//!
+//! The shortest edit script between the two lists (R. A. Wagner and M. J. Fischer, "The string-to-string correction
+//! problem", J. ACM 21, 1974): what is left out or put in costs more than half of what a wrong polynomial costs, so that a
+//! wrong one in the right place is no missing one. A mark is no verdict: where wrong and missing ones come together, other
+//! scripts may be as short.
+use fosssim_model::trace::PolynomialLog;
+
+/// So many pairs of polynomials are compared at most.
+const CELLS: usize = 4 << 20;
+
+/// Costs of a polynomial that is left out or put in, and of one that is wrong.
+const GAP: u32 = 2;
+const WRONG: u32 = 3;
+
+/// Coefficients may be off by this part of their polynomial's largest one before a call is marked as differing. A mark is no
+/// verdict; raised, faint differences get none.
+const MARKED: f64 = 1e-9;
+
+/// For each expected polynomial the place of the one in the trace's list that stands for it, right or wrong; `None` where the
+/// lists are too long to be compared.
+pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
+    let same = |one: usize, other: usize| !differ(actual.get(other), expected.get(one));
+    let (rows, columns) = (expected.len(), actual.len());
+    let shorter = rows.min(columns);
+    let head = (0..shorter).take_while(|&place| same(place, place)).count();
+    let tail = (0..shorter - head).take_while(|&back| same(rows - 1 - back, columns - 1 - back)).count();
+    let mut found: Vec<Option<usize>> = (0..rows).map(|place| (place < head).then_some(place)).collect();
+    for back in 0..tail {
+        found[rows - 1 - back] = Some(columns - 1 - back);
+    }
+    let (tall, wide) = (rows - head - tail, columns - head - tail);
+    if tall.checked_mul(wide)? > CELLS {
+        return None;
+    }
+    let mut cells = vec![0_u8; tall * wide];
+    let mut above: Vec<u32> = (0..=wide).map(|column| GAP * count(column)).collect();
+    for row in 0..tall {
+        let mut corner = above[0];
+        above[0] += GAP;
+        for column in 0..wide {
+            let across = corner + if same(head + row, head + column) { 0 } else { WRONG };
+            let (out, put) = (above[column + 1] + GAP, above[column] + GAP);
+            corner = above[column + 1];
+            (above[column + 1], cells[row * wide + column]) =
+                [(across, ACROSS), (out, OUT), (put, PUT)].into_iter().min_by_key(|(cost, _)| *cost)?;
+        }
+    }
+    let (mut row, mut column) = (tall, wide);
+    while row > 0 && column > 0 {
+        match cells[(row - 1) * wide + column - 1] {
+            ACROSS => {
+                (row, column) = (row - 1, column - 1);
+                found[head + row] = Some(head + column);
+            }
+            OUT => row -= 1,
+            _ => column -= 1,
+        }
+    }
+    Some(found)
+}
+
+const ACROSS: u8 = 0;
+const OUT: u8 = 1;
+const PUT: u8 = 2;
+
+fn count(places: usize) -> u32 {
+    u32::try_from(places).unwrap_or(u32::MAX / GAP)
+}
+
+/// Whether one polynomial is visibly no positive multiple of the other.
+pub(crate) fn differ(own: &[f64], right: &[f64]) -> bool {
+    let largest = |list: &[f64]| list.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+    let (most, scale) = (largest(own), largest(right));
+    if scale == 0.0 || most == 0.0 || !most.is_finite() {
+        return own.len() != right.len() && (most != 0.0 || scale != 0.0);
+    }
+    if own.len() != right.len() {
+        return true;
+    }
+    let place = right.iter().position(|c| c.abs() == scale).unwrap_or(0);
+    let factor = own[place] / right[place];
+    let near = |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED * (factor * scale).abs();
+    !(factor > 0.0 && own.iter().zip(right).all(near))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn list(polynomials: &[&[f64]]) -> PolynomialLog {
+        let mut log = PolynomialLog::default();
+        polynomials.iter().for_each(|polynomial| log.push(polynomial));
+        log
+    }
+
+    #[test]
+    fn what_is_left_out_put_in_or_wrong_is_told_apart() {
+        let [a, b, c, d]: [&[f64]; 4] = [&[1.0, 2.0], &[3.0, -1.0, 0.5], &[-4.0, 1.0], &[7.0]];
+        let matched = |expected: &[&[f64]], actual: &[&[f64]]| matching(&list(expected), &list(actual)).expect("short");
+        assert_eq!(matched(&[a, b, c, d], &[a, b, c, d]), [Some(0), Some(1), Some(2), Some(3)]);
+        assert_eq!(matched(&[a, b, c, d], &[a, d]), [Some(0), None, None, Some(1)]);
+        assert_eq!(matched(&[a, b, d], &[a, c, b, c, d]), [Some(0), Some(2), Some(4)]);
+        // A wrong one stays in its place, and a factor makes none wrong.
+        assert_eq!(matched(&[a, b, c, d], &[&[9.0, 9.0], &[30.0, -10.0, 5.0], c]), [Some(0), Some(1), Some(2), None]);
+        assert_eq!(matched(&[a], &[]), [None]);
+        assert!(matched(&[], &[a]).is_empty());
+    }
+
+    #[test]
+    fn what_is_too_long_is_left_alone() {
+        let many = |value: f64, count| {
+            let mut log = PolynomialLog::default();
+            (0..count).for_each(|_| log.push(&[value, 1.0]));
+            log
+        };
+        assert_eq!(matching(&many(1.0, 4000), &many(-1.0, 4001)), None);
+        // Where all but a few agree, length is no matter.
+        assert_eq!(matching(&many(1.0, 4000), &many(1.0, 4001)).map(|found| found.len()), Some(4000));
+    }
+}

@@ -1,0 +1,190 @@
+//! Motions as the viewer reads them: doubles, exact to the last bit, deflated and in base64; motions that would take too much
+//! room as rounded positions.
+//!
+//! A rounded motion is a block of bytes: a count of exact records as an 8-byte integer, these records as doubles, then for
+//! each record and coordinate the difference from the record before, in units, zigzag-coded, seven bits a byte, the lowest
+//! first (as Protocol Buffers code integers). Little-endian throughout.
+use base64::Engine;
+use fosssim_evidence::{Evidence, Track};
+
+/// So many bytes the motions of one case may take on a page while they are exact. The largest course scene takes 576 KB
+/// with all three of them.
+pub const EXACT: usize = 600_000;
+
+/// More raw bytes than this are not even tried.
+const TRIED: usize = 12 * EXACT;
+
+/// Of a rounded motion so many numbers are exact all the same: those around steps that are looked at closely.
+const KEPT: usize = 16_000;
+
+/// A unit is this part of what the bodies cross.
+const PARTS: f64 = 65536.0;
+
+/// What can't be told in units, or is no number.
+const BEYOND: i64 = 1 << 40;
+
+/// How motions are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Precision {
+    /// Exactly where there is room.
+    AsRoomAllows,
+    /// Rounded.
+    Rounded,
+}
+
+/// How motions were rounded.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Rounded {
+    /// What positions are multiples of.
+    pub(super) unit: f64,
+    /// The records that are exact, counted from the first that is kept.
+    pub(super) exact: Vec<usize>,
+}
+
+/// Motions of one case in base64.
+#[derive(Debug)]
+pub(super) struct Packed {
+    pub(super) blocks: Vec<String>,
+    pub(super) rounded: Option<Rounded>,
+}
+
+impl Packed {
+    pub(super) fn of(evidence: &Evidence, tracks: &[(&str, &Track)], precision: Precision) -> Self {
+        let raw: usize = tracks.iter().map(|(_, track)| 8 * track.values.len()).sum();
+        if precision == Precision::AsRoomAllows && raw <= TRIED {
+            let blocks: Vec<String> = tracks.iter().map(|(_, track)| base64(&bytes(&track.values))).collect();
+            if blocks.iter().map(String::len).sum::<usize>() <= EXACT {
+                return Self { blocks, rounded: None };
+            }
+        }
+        let rounded = Rounded { unit: unit(tracks, evidence.layout.particles), exact: exact(evidence) };
+        let blocks =
+            tracks.iter().map(|(_, track)| base64(&round(track, evidence.layout.particles, &rounded))).collect();
+        Self { blocks, rounded: Some(rounded) }
+    }
+}
+
+fn bytes(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_le_bytes()).collect()
+}
+
+/// Deflated without a header, in base64.
+fn base64(bytes: &[u8]) -> String {
+    base64::engine::general_purpose::STANDARD.encode(miniz_oxide::deflate::compress_to_vec(bytes, 8))
+}
+
+/// A power of two, so that multiples are exact.
+fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (_, track) in tracks {
+        for record in track.values.chunks_exact((4 * particles).max(1)) {
+            for &value in record[..2 * particles].iter().filter(|value| value.abs() < 1e12) {
+                (low, high) = (low.min(value), high.max(value));
+            }
+        }
+    }
+    let extent = if high > low { high - low } else { 1.0 };
+    (extent / PARTS).log2().floor().exp2()
+}
+
+/// The records around the steps that are looked at closely, those of the first wrong ones before others.
+fn exact(evidence: &Evidence) -> Vec<usize> {
+    let (layout, window) = (evidence.layout, evidence.window);
+    let room = KEPT / (4 * layout.particles).max(1);
+    let per_step = layout.records_per_step() as usize;
+    let mut records = Vec::new();
+    for up in evidence.close_ups.iter().filter(|up| up.step > window.first && up.step <= window.last) {
+        let end = (up.step - window.first) as usize * per_step;
+        records.extend((end - per_step..=end).filter(|record| !records.contains(record)).collect::<Vec<_>>());
+    }
+    records.truncate(room);
+    records
+}
+
+fn round(track: &Track, particles: usize, rounded: &Rounded) -> Vec<u8> {
+    let size = 4 * particles;
+    let kept: Vec<usize> = rounded.exact.iter().copied().take_while(|&record| record < track.records).collect();
+    let mut out = (kept.len() as u64).to_le_bytes().to_vec();
+    for record in kept {
+        out.extend(bytes(&track.values[record * size..][..size]));
+    }
+    let mut last = vec![0_i64; 2 * particles];
+    for record in track.values.chunks_exact(size.max(1)) {
+        for (last, &value) in last.iter_mut().zip(&record[..2 * particles]) {
+            let units = (value / rounded.unit).round();
+            #[expect(clippy::cast_possible_truncation, reason = "it is below 2^40")]
+            #[expect(clippy::cast_precision_loss, reason = "a power of two")]
+            let now = if units.abs() < BEYOND as f64 { units as i64 } else { BEYOND };
+            let difference = now - *last;
+            *last = now;
+            let mut code = ((difference << 1) ^ (difference >> 63)).cast_unsigned();
+            while code > 127 {
+                out.push((code & 127) as u8 | 128);
+                code >>= 7;
+            }
+            out.push(code as u8);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_evidence::Window;
+    use fosssim_model::trace::Layout;
+
+    fn evidence(particles: usize, steps: u32, value: impl Fn(usize) -> f64) -> Evidence {
+        let layout = Layout { particles, impulses: false, polynomials: false, steps };
+        let records = steps as usize + 1;
+        let track = Track { values: (0..4 * particles * records).map(value).collect(), records };
+        let (window, close_ups) = (Window { first: 0, last: steps }, Vec::new());
+        Evidence { layout, window, reference: track.clone(), submission: track, steps: Vec::new(), close_ups }
+    }
+
+    fn packed(evidence: &Evidence, precision: Precision) -> Packed {
+        Packed::of(evidence, &[("submission", &evidence.submission), ("reference", &evidence.reference)], precision)
+    }
+
+    /// A course's scenes are exact; what would take more room than the budget is rounded.
+    #[test]
+    fn motions_are_exact_within_the_budget() {
+        let small = evidence(11, 400, |k| (k as f64).sin());
+        assert!(packed(&small, Precision::AsRoomAllows).rounded.is_none());
+        // Noise can't be packed.
+        let large = evidence(200, 400, |k| (k as f64 * 12.9898).sin() * 43758.5453 % 1.0);
+        let rounded = packed(&large, Precision::AsRoomAllows);
+        assert!(rounded.rounded.is_some());
+        assert!(packed(&small, Precision::Rounded).rounded.is_some());
+    }
+
+    /// Read back as the viewer reads it, a rounded motion is off by no more than half a unit.
+    #[test]
+    fn rounded_motions_are_near() {
+        let value = |k: usize| if k == 12 { f64::NAN } else { (k as f64 * 0.37).sin() * (1.0 + k as f64) };
+        let all = evidence(3, 20, value);
+        let Rounded { unit, .. } = packed(&all, Precision::Rounded).rounded.expect("rounded");
+        let bytes = round(&all.submission, 3, &Rounded { unit, exact: vec![2, 5] });
+        assert_eq!(u64::from_le_bytes(bytes[..8].try_into().expect("eight")), 2);
+        assert_eq!(bytes[8..8 + 96], super::bytes(&all.submission.values[24..36])[..]);
+        let (mut at, mut last) = (8 + 2 * 96, [0_i64; 6]);
+        for record in all.submission.values.chunks_exact(12) {
+            for (last, value) in last.iter_mut().zip(&record[..6]) {
+                let (mut code, mut shift) = (0_u64, 0);
+                loop {
+                    code |= u64::from(bytes[at] & 127) << shift;
+                    (at, shift) = (at + 1, shift + 7);
+                    if bytes[at - 1] < 128 {
+                        break;
+                    }
+                }
+                *last += (code >> 1).cast_signed() ^ -(code & 1).cast_signed();
+                match value.is_nan() {
+                    true => assert_eq!(*last, BEYOND),
+                    false => assert!((*last as f64 * unit - value).abs() <= 0.5 * unit, "{value}"),
+                }
+            }
+        }
+        assert_eq!(at, bytes.len());
+    }
+}

@@ -1,0 +1,122 @@
+//! What of each scene's card has room on a page.
+use super::{Card, graded::OUTPUTS, script};
+
+/// A page is to stay below so many bytes: it is mailed, and opened on old machines.
+pub const BUDGET: usize = 2_950_000;
+
+/// So much of it may go to pictures and tables before the first motion has room.
+const STILL: usize = BUDGET / 3 * 2;
+
+/// What of a scene has room on the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Room {
+    Words,
+    Pictures(Motion),
+}
+
+/// How a motion has room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Motion {
+    None,
+    Rounded,
+    Exact,
+}
+
+/// Words always; then pictures in the order of the cards; then their motions as small as they get; then, again in the order
+/// of the cards, exact motions.
+pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
+    let count = cards.clone().count();
+    let mut rooms = vec![Room::Words; count];
+    let mut left = BUDGET - 2 * script().len() - OUTPUTS - 1_000 * count.min(1_000);
+    let mut still = STILL.min(left);
+    for (card, room) in cards.clone().zip(&mut rooms) {
+        let Some((html, _)) = card.map(Card::sizes) else { continue };
+        if html <= still {
+            (still, left, *room) = (still - html, left - html, Room::Pictures(Motion::None));
+        }
+    }
+    for (card, room) in cards.clone().zip(&mut rooms).filter(|(_, room)| **room != Room::Words) {
+        let Some(card) = card else { continue };
+        let (size, how) = match card.rounded_size() {
+            Some(size) => (size, Motion::Rounded),
+            None => (card.sizes().1, Motion::Exact),
+        };
+        if size <= left {
+            (left, *room) = (left - size, Room::Pictures(how));
+        }
+    }
+    for (card, room) in cards.zip(&mut rooms).filter(|(_, room)| **room == Room::Pictures(Motion::Rounded)) {
+        let Some((size, rounded)) = card.and_then(|card| Some((card.sizes().1, card.rounded_size()?))) else {
+            continue;
+        };
+        if size <= left + rounded {
+            (left, *room) = (left + rounded - size, Room::Pictures(Motion::Exact));
+        }
+    }
+    rooms
+}
+
+/// What the page says of what has no room on it.
+pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
+    let of: Vec<Room> = cards
+        .zip(rooms)
+        .filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0))
+        .map(|(_, room)| *room)
+        .collect();
+    let without = of.iter().filter(|room| matches!(room, Room::Words | Room::Pictures(Motion::None))).count();
+    let rounded = of.iter().filter(|room| **room == Room::Pictures(Motion::Rounded)).count();
+    let scenes = |count: usize| if count == 1 { "one scene is".to_owned() } else { format!("{count} scenes are") };
+    let mut says = Vec::new();
+    if without > 0 {
+        says.push(format!("{} without the motion here, which each of them says", scenes(without)));
+    }
+    if rounded > 0 {
+        says.push(format!("{} here with a motion that is rounded, which its viewer says", scenes(rounded)));
+    }
+    if says.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<p class=\"hint\">The page would grow beyond 3 MB: {}. <code>grade --scene NAME --format html=FILE</code> makes a page \
+         of one scene.</p>\n",
+        says.join("; ")
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn card(html: usize, data: usize, rounded: usize) -> Card {
+        let text = |length| "x".repeat(length);
+        let kept = serde_json::json!({"html": text(html), "data": text(data), "rounded": text(rounded), "plot": ""});
+        Card::from_kept(&kept.to_string()).expect("a card")
+    }
+
+    fn rooms(cards: &[Card]) -> (Vec<Room>, String) {
+        let all = || cards.iter().map(Some);
+        let rooms = share_out(all());
+        let says = left_out(all(), &rooms);
+        (rooms, says)
+    }
+
+    /// Where exact motions have no room together, the last ones are rounded; where not even these have, the page says so.
+    #[test]
+    fn motions_are_rounded_before_they_are_left_out() {
+        let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 3]);
+        assert_eq!((&all[..], says.as_str()), (&[Room::Pictures(Motion::Exact); 3][..], ""));
+        let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 10]);
+        let count = |room| all.iter().filter(|one| **one == Room::Pictures(room)).count();
+        assert!(count(Motion::Exact) > 0 && count(Motion::Rounded) > 0 && count(Motion::None) == 0, "{all:?}");
+        assert_eq!(all[0], Room::Pictures(Motion::Exact));
+        assert!(says.contains("scenes are here with a motion that is rounded") && !says.contains("without"), "{says}");
+        let (all, says) = rooms(&vec![card(50_000, 500_000, 200_000); 30]);
+        assert!(
+            all.contains(&Room::Pictures(Motion::Rounded)) && all.contains(&Room::Pictures(Motion::None)),
+            "{all:?}"
+        );
+        assert!(says.contains("scenes are without the motion here") && says.contains("rounded"), "{says}");
+        let (all, _) = rooms(&vec![card(500_000, 10, 0); 30]);
+        assert_eq!(all.iter().filter(|room| **room == Room::Words).count(), 27);
+    }
+}

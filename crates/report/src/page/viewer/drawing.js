@@ -1,0 +1,263 @@
+// What the canvases show.
+class Drawing extends Motion {
+  look() {
+    const { data } = this;
+    const close = this.close();
+    if (close ? this.pass >= close.passes.length : this.pass >= 0) this.pass = -1;
+    this.slider.value = this.step;
+    this.midBox.checked = this.mid;
+    this.slider.setAttribute("aria-valuetext", `step ${this.step}, ${this.classWords()}`);
+    this.stepBox.value = this.step;
+    this.inside.value = this.t;
+    this.insideText.textContent = this.t.toFixed(3);
+    this.passes.replaceChildren(el("option", { value: -1 }, "as recorded"),
+      ...(close ? close.passes.map((pass, k) => el("option", { value: k }, `as detection sees it: ${pass.name}`)) : []));
+    this.passes.value = this.pass;
+    this.inside.disabled = this.step <= data.first;
+    if (!this.playing) this.choose();
+    this.draw();
+    this.drawStrip();
+    this.drawTicks();
+    this.tell();
+    if (!this.playing) { this.tellMatrix(); this.tellNumbers(); this.tellTable(); }
+    document.dispatchEvent(new CustomEvent("moment", { detail: { key: this.key, step: this.step } }));
+  }
+  classWords(step = this.step) {
+    return { r: "right", w: "wrong by itself", i: "right by itself, but it starts from where a wrong step has led" }[this.data.strip[step - 1]] ||
+      (step === 0 ? "the start" : "not judged");
+  }
+  difference() {
+    const own = this.positions("submission");
+    const base = this.baseline();
+    if (!own || !base) return null;
+    const list = [];
+    let most = 0;
+    for (let k = 0; k < this.data.n; k++) {
+      const d = [own[2 * k] - base[2 * k], own[2 * k + 1] - base[2 * k + 1]];
+      list.push(d);
+      const size = Math.hypot(...d);
+      if (Number.isFinite(size)) most = Math.max(most, size);
+    }
+    // What rounding alone can make is no difference.
+    const least = this.isExact() ? 0 : 2 * this.data.rounded.unit;
+    return { list, most: most > least ? most : 0, base };
+  }
+  draw(context = this.canvas.getContext("2d")) {
+    const { width, height } = this.canvas;
+    context.fillStyle = colour("--paper");
+    context.fillRect(0, 0, width, height);
+    this.planes(context);
+    this.zones(context);
+    if (this.show.reference) this.bodies(context, this.positions("reference"), { stroke: colour("--ref"), dash: [7, 5] });
+    const expected = this.show.expected && this.expected();
+    if (expected) this.bodies(context, expected, { stroke: colour("--exp"), dash: [2, 3] });
+    if (this.show.what && this.data.whatIf) this.bodies(context, this.positions("what"), { stroke: colour("--what"), dash: [12, 4, 2, 4] });
+    this.bodies(context, this.positions("submission"), { stroke: colour("--own"), fill: colour("--ownfill"), dash: [], label: true });
+    this.arrows(context);
+    this.contacts(context);
+    context.fillStyle = colour("--ink");
+    context.font = "14px system-ui, sans-serif";
+    context.fillText(`step ${this.step}${this.t < 1 ? `, t = ${this.t.toFixed(3)}` : ""}`, 10, 20);
+  }
+  bodies(context, positions, { stroke, fill, dash, label }) {
+    if (!positions) return;
+    const { radii, edges, n } = this.data;
+    const scale = this.scale();
+    context.setLineDash(dash);
+    context.lineWidth = 2;
+    context.strokeStyle = stroke;
+    edges.forEach(([i, j, r], index) => {
+      const [a, b] = [this.to(positions[2 * i], positions[2 * i + 1]), this.to(positions[2 * j], positions[2 * j + 1])];
+      if (!finite(...a, ...b)) return;
+      const chosen = label && this.isSelected("edge", index);
+      if (fill && r * scale > 0.5) {
+        context.setLineDash([]);
+        context.lineCap = "round";
+        context.lineWidth = 2 * r * scale;
+        context.strokeStyle = fill;
+        context.beginPath(); context.moveTo(...a); context.lineTo(...b); context.stroke();
+        context.lineCap = "butt";
+        context.setLineDash(dash);
+      }
+      context.lineWidth = chosen ? 4 : 2;
+      context.strokeStyle = chosen ? colour("--bad") : stroke;
+      const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+      const side = [(-(b[1] - a[1]) / length) * r * scale, ((b[0] - a[0]) / length) * r * scale];
+      for (const sign of [1, -1]) {
+        context.beginPath();
+        context.moveTo(a[0] + sign * side[0], a[1] + sign * side[1]);
+        context.lineTo(b[0] + sign * side[0], b[1] + sign * side[1]);
+        context.stroke();
+      }
+    });
+    for (let k = 0; k < n; k++) {
+      const [x, y] = this.to(positions[2 * k], positions[2 * k + 1]);
+      if (!finite(x, y)) continue;
+      const chosen = label && this.isSelected("particle", k);
+      const size = Math.max(1.5, radii[k] * scale);
+      if (x + size < 0 || y + size < 0 || x - size > this.canvas.width || y - size > this.canvas.height || size > 1e5) continue;
+      context.beginPath();
+      context.arc(x, y, size, 0, 7);
+      if (fill) { context.fillStyle = fill; context.fill(); }
+      context.lineWidth = chosen ? 4 : 2;
+      context.strokeStyle = chosen ? colour("--bad") : stroke;
+      context.stroke();
+      if (label && n <= 60) {
+        context.fillStyle = colour("--ink");
+        context.font = "12px system-ui, sans-serif";
+        context.textAlign = "center";
+        context.fillText(this.data.fixed[k] ? `${k} fixed` : `${k}`, x, y + 4);
+        context.textAlign = "start";
+      }
+    }
+    context.setLineDash([]);
+  }
+  planes(context) {
+    const far = 4 * this.extent / Math.min(1, this.zoom) + 1;
+    this.data.planes.forEach(([px, py, nx, ny], index) => {
+      const length = Math.hypot(nx, ny);
+      if (!(length > 0)) return;
+      const [ux, uy] = [nx / length, ny / length];
+      const chosen = this.isSelected("half-plane", index);
+      context.strokeStyle = chosen ? colour("--bad") : colour("--ink");
+      context.fillStyle = colour("--ground");
+      context.lineWidth = chosen ? 4 : 2;
+      const a = this.to(px - uy * far, py + ux * far);
+      const b = this.to(px + uy * far, py - ux * far);
+      const deep = [-ux * far * this.scale(), uy * far * this.scale()];
+      context.beginPath();
+      context.moveTo(...a); context.lineTo(...b); context.lineTo(b[0] + deep[0], b[1] + deep[1]); context.lineTo(a[0] + deep[0], a[1] + deep[1]);
+      context.fill();
+      context.beginPath(); context.moveTo(...a); context.lineTo(...b); context.stroke();
+    });
+  }
+  zones(context) {
+    const close = this.close();
+    const state = this.positions("submission");
+    if (!close || !close.zones.length || !state) return;
+    const last = close.zones[close.zones.length - 1];
+    context.strokeStyle = colour("--zone");
+    context.fillStyle = colour("--zonefill");
+    context.lineWidth = 1.5;
+    for (const zone of last.zones) {
+      const points = zone.particles.map((k) => this.to(state[2 * k], state[2 * k + 1])).filter((p) => finite(...p));
+      const around = hull(points);
+      if (around.length < 1) continue;
+      context.lineJoin = "round";
+      context.beginPath();
+      around.forEach((p, k) => (k ? context.lineTo(...p) : context.moveTo(...p)));
+      context.closePath();
+      context.lineWidth = 26;
+      context.strokeStyle = colour("--zonefill");
+      context.stroke();
+      context.fill();
+      context.lineJoin = "miter";
+    }
+  }
+  arrows(context) {
+    const apart = this.difference();
+    if (!apart || !(apart.most > 0)) { this.factorText.textContent = apart ? "(no difference)" : "(nothing to compare)"; return; }
+    const auto = Math.max(1, 10 ** Math.floor(Math.log10((0.12 * this.extent) / this.zoom / apart.most)));
+    const factor = this.magnify === null ? auto : this.magnify;
+    this.factor.value = Math.log10(factor);
+    this.factorText.textContent = `${factor >= 1e4 ? factor.toExponential(1) : short(factor)} times (largest difference ${short(apart.most)})`;
+    if (!this.show.arrows) return;
+    context.strokeStyle = context.fillStyle = colour("--bad");
+    context.lineWidth = 2;
+    for (let k = 0; k < this.data.n; k++) {
+      const [dx, dy] = apart.list[k];
+      if (!(Math.hypot(dx, dy) > apart.most * 1e-3)) continue;
+      const from = this.to(apart.base[2 * k], apart.base[2 * k + 1]);
+      const to = this.to(apart.base[2 * k] + factor * dx, apart.base[2 * k + 1] + factor * dy);
+      arrow(context, from, to);
+      context.beginPath(); context.arc(...from, 18, 0, 7); context.setLineDash([1, 4]); context.stroke(); context.setLineDash([]);
+    }
+  }
+  contacts(context) {
+    const close = this.close();
+    this.spots = [];
+    if (!close) return;
+    const draw = (list, stroke, dash, filled) => {
+      for (const [pair, time, nx, ny] of list) {
+        const place = this.place(pair, time);
+        const length = Math.hypot(nx, ny);
+        if (!place || !(length > 0)) continue;
+        const from = this.to(...place);
+        const to = [from[0] + (nx / length) * 46, from[1] - (ny / length) * 46];
+        if (!finite(...from, ...to)) continue;
+        this.spots.push([pair, ...from]);
+        context.strokeStyle = context.fillStyle = stroke;
+        context.lineWidth = filled ? 2 : 3;
+        context.setLineDash(dash);
+        arrow(context, from, to);
+        context.setLineDash([]);
+        context.beginPath();
+        if (filled) context.arc(...from, 5, 0, 7); else context.rect(from[0] - 6, from[1] - 6, 12, 12);
+        if (filled) context.fill(); else context.stroke();
+      }
+    };
+    const expected = this.pass >= 0 ? close.passes[this.pass].hits : close.expected;
+    draw(expected, colour("--exp"), [2, 3], true);
+    if (this.pass <= 0) draw(close.actual, colour("--own"), [], false);
+  }
+  // Where a particle touches at a time of the step: its centre as detection sees it.
+  place(pair, time) {
+    const { first } = parse(pair);
+    const start = this.state("submission", this.step - 1);
+    const close = this.close();
+    const pass = close && close.passes[Math.max(0, this.pass)];
+    if (!start || !pass || first >= this.data.n || !finite(time)) return null;
+    return [0, 1].map((axis) => start[2 * first + axis] + time * (pass.q[2 * first + axis] - start[2 * first + axis]));
+  }
+  drawStrip() {
+    const context = this.strip.getContext("2d");
+    const { strip, steps, first, last } = this.data;
+    const { width, height } = this.strip;
+    const wide = width / Math.max(1, steps);
+    context.fillStyle = colour("--paper");
+    context.fillRect(0, 0, width, height);
+    const order = { u: 0, r: 1, i: 2, w: 3 };
+    const columns = Math.min(steps, width);
+    for (let column = 0; column < columns; column++) {
+      let worst = "u";
+      for (let step = Math.floor((column * steps) / columns); step < Math.floor(((column + 1) * steps) / columns); step++) {
+        const letter = strip[step] || "u";
+        if (order[letter] > order[worst]) worst = letter;
+      }
+      const x = (column * width) / columns;
+      const w = Math.max(1, width / columns);
+      context.fillStyle = colour({ r: "--good", w: "--bad", i: "--inherit", u: "--faint" }[worst]);
+      // Height tells them apart without colour.
+      const tall = { r: 8, i: 14, w: 22, u: 3 }[worst];
+      context.fillRect(x, height - 4 - tall, w > 3 ? w - 1 : w, tall);
+    }
+    context.fillStyle = colour("--ink");
+    context.fillRect((Math.max(0, this.step - 0.5) * wide) - 1, 0, 2, height);
+    if (first > 0 || last < steps) context.fillRect(first * wide, height - 2, (last - first) * wide, 2);
+  }
+  drawTicks() {
+    const close = this.close();
+    const marks = [];
+    if (close) {
+      const hits = this.pass >= 0 ? close.passes[this.pass].hits : close.expected;
+      for (const [, time] of hits) marks.push([time, "tick-exp"]);
+      for (const [, time] of close.actual) marks.push([time, "tick-own"]);
+      for (const call of this.data.calls) if (call.step === this.step) for (const zero of call.zeros) marks.push([zero, "tick-zero"]);
+    }
+    this.ticks.replaceChildren(...marks.filter(([time]) => time >= 0 && time <= 1).map(([time, name]) => {
+      const line = document.createElementNS(SVG, "line");
+      for (const [key, value] of Object.entries({ x1: 1000 * time, x2: 1000 * time, y1: 0, y2: 12, class: name })) line.setAttribute(key, value);
+      return line;
+    }));
+  }
+  isSelected(kind, index) {
+    const { selected } = this;
+    if (!selected) return false;
+    if (selected.pair) {
+      const { kind: which, first, second } = parse(selected.pair);
+      return (kind === "particle" && (index === first || (which === "pp" && index === second))) || (kind === PAIRS[which] && index === second && which !== "pp");
+    }
+    return selected.kind === kind && selected.index === index;
+  }
+
+}

@@ -1,0 +1,136 @@
+// Where everything is at which moment, and going from one to another.
+class Motion {
+  // Index of a record among those that are kept: mid records come before the end of their step.
+  record(step, mid = false) {
+    const base = (step - this.data.first) * this.data.per;
+    return mid ? base - 1 : base;
+  }
+  // Positions and velocities of a track's record, or null.
+  state(track, step, mid = false) {
+    const values = this.tracks[track];
+    const size = 4 * this.data.n;
+    const at = this.record(step, mid) * size;
+    if (!values || at < 0 || at + size > values.length) return null;
+    return values.subarray(at, at + size);
+  }
+  // Whether a record is exact to the last bit: all are, unless the motions are too large for the page.
+  isExact(step = this.step, mid = this.mid) {
+    const { rounded } = this.data;
+    return !rounded || (rounded.exact.includes(this.record(step, mid)) && this.t >= 1);
+  }
+  close(step = this.step) {
+    return this.data.closeUps.find((one) => one.step === step) || null;
+  }
+  // The submission's positions that are drawn: inside the step on a straight line.
+  positions(track) {
+    const end = this.state(track, this.step, this.mid);
+    if (this.t >= 1 && this.pass < 0) return end;
+    const start = this.state(track, this.step - 1);
+    const close = this.close();
+    const target = track === "submission" && close && this.pass >= 0 ? close.passes[this.pass].q : end;
+    if (!start || !target) return end;
+    const out = new Float64Array(2 * this.data.n);
+    for (let i = 0; i < out.length; i++) out[i] = start[i] + this.t * (target[i] - start[i]);
+    return out;
+  }
+  // Where the step should have ended, from the submission's own state.
+  expected() {
+    const close = this.close();
+    if (!close || (this.t < 1 && this.pass < 0)) return null;
+    if (this.pass >= 0) return null;
+    return this.mid ? close.mid : close.end || close.mid;
+  }
+  // Whether the impulses of a hybrid step already lead elsewhere: its end then starts from there and may be right.
+  midIsWrong() {
+    const close = this.close(), own = this.state("submission", this.step, true);
+    if (this.data.collision !== "hybrid" || !close || !close.mid || !own) return false;
+    return close.mid.some((value, k) => !(Math.abs(value - own[k]) <= 1e-10));
+  }
+  // What differences are measured against.
+  baseline() {
+    const expected = this.show.expected && this.expected();
+    return expected || (this.show.reference ? this.positions("reference") : null);
+  }
+
+  go(step) {
+    if (!Number.isFinite(step)) return;
+    this.step = Math.max(this.data.first, Math.min(this.data.last, Math.round(step)));
+    this.t = 1;
+    this.pass = -1;
+    this.mid = this.midIsWrong();
+    this.magnify = null;
+    this.look();
+  }
+  finding(direction) {
+    const { strip } = this.data;
+    for (let step = this.step + direction; step >= 1 && step <= strip.length; step += direction) {
+      if (strip[step - 1] === "w") return this.go(step);
+    }
+    this.say.textContent = direction > 0 ? "There is no later wrong step." : "There is no earlier wrong step.";
+  }
+  toggle() {
+    if (this.playing) { cancelAnimationFrame(this.playing); this.playing = 0; this.play.textContent = "Play"; return this.look(); }
+    this.play.textContent = "Pause";
+    let last = null;
+    if (this.step >= this.data.last) this.go(this.data.first);
+    const turn = (now) => {
+      // Whoever asks for little motion gets a step a second.
+      const rate = calm.matches ? 1 : this.speed * Math.max(4, Math.min(60, 1 / this.data.dt));
+      const gone = last === null ? 0 : ((now - last) / 1000) * rate;
+      if (last === null || gone >= 1) {
+        last = now;
+        if (this.step >= this.data.last) return this.toggle();
+        this.go(this.step + Math.max(1, Math.floor(gone)));
+      }
+      this.playing = requestAnimationFrame(turn);
+    };
+    this.playing = requestAnimationFrame(turn);
+  }
+  key_down(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const typing = event.target.tagName === "SELECT" || event.target.type === "number";
+    const ranging = event.target.type === "range";
+    const act = {
+      n: () => this.finding(1), p: () => this.finding(-1), 0: () => { this.zoom = 1; this.pan = [0, 0]; this.look(); },
+      " ": () => this.toggle(),
+      ArrowRight: () => this.go(this.step + (event.shiftKey ? 10 : 1)),
+      ArrowLeft: () => this.go(this.step - (event.shiftKey ? 10 : 1)),
+      Home: () => this.go(this.data.first), End: () => this.go(this.data.last),
+      "+": () => { this.zoom *= 1.25; this.look(); }, "-": () => { this.zoom /= 1.25; this.look(); },
+    }[event.key];
+    if (!act || typing || (ranging && event.key.startsWith("Arrow")) || (event.key === " " && /^(BUTTON|SUMMARY|INPUT)$/.test(event.target.tagName))) return;
+    event.preventDefault();
+    act();
+  }
+  fit() {
+    let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
+    const reach = (x, y, r) => {
+      if (!finite(x, y) || Math.abs(x) > 1e12 || Math.abs(y) > 1e12) return;
+      x0 = Math.min(x0, x - r); y0 = Math.min(y0, y - r); x1 = Math.max(x1, x + r); y1 = Math.max(y1, y + r);
+    };
+    const { n, per, first, last, radii } = this.data;
+    const every = Math.max(1, Math.floor((last - first) / 400));
+    for (const track of ["reference", "submission"]) {
+      for (let step = first; step <= last; step += every) {
+        const state = this.state(track, step);
+        if (!state) break;
+        if (track === "submission" && x1 > x0 && Math.max(...[...state.subarray(0, 2 * n)].map(Math.abs)) > 20 * (1 + Math.max(Math.abs(x0), x1, Math.abs(y0), y1))) break;
+        for (let k = 0; k < n; k++) reach(state[2 * k], state[2 * k + 1], radii[k]);
+      }
+    }
+    if (!(x1 > x0)) [x0, y0, x1, y1] = [-1, -1, 1, 1];
+    const margin = 0.05 * Math.max(x1 - x0, y1 - y0);
+    this.box = [x0 - margin, y0 - margin, x1 + margin, y1 + margin];
+    this.extent = Math.max(x1 - x0, y1 - y0);
+  }
+  scale() {
+    const [x0, y0, x1, y1] = this.box;
+    return this.zoom * Math.min(this.canvas.width / (x1 - x0), this.canvas.height / (y1 - y0));
+  }
+  to(x, y) {
+    const [x0, y0, x1, y1] = this.box;
+    const scale = this.scale();
+    return [this.canvas.width / 2 + (x - (x0 + x1) / 2) * scale + this.pan[0], this.canvas.height / 2 - (y - (y0 + y1) / 2) * scale + this.pan[1]];
+  }
+
+}

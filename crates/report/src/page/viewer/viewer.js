@@ -1,0 +1,267 @@
+// The viewer of one case, made when its card is opened, and the page around it.
+class Viewer extends Words {
+  constructor(article, data, tracks) {
+    super();
+    Object.assign(this, { article, data, tracks });
+    this.key = article.dataset.case;
+    this.name = article.dataset.scene;
+    const wrong = data.strip.indexOf("w");
+    this.step = Math.max(data.first, Math.min(data.last, wrong >= 0 ? wrong + 1 : data.focus || data.first));
+    this.t = 1;
+    this.pass = -1;
+    this.zoom = 1;
+    this.pan = [0, 0];
+    this.magnify = null;
+    this.playing = 0;
+    this.speed = 1;
+    this.selected = null;
+    this.show = { reference: data.full, expected: data.full, what: !!data.whatIf, arrows: data.full };
+    this.build();
+    this.fit();
+    this.look();
+  }
+
+
+  build() {
+    const { data } = this;
+    const button = (text, label, act, key) =>
+      el("button", { type: "button", onclick: act, title: key ? `${label} (${key})` : label, "aria-label": /[a-z]/i.test(text) ? `${text}: ${label}` : label }, text);
+    const check = (name, text, mark) => {
+      const box = el("input", { type: "checkbox", onchange: (event) => { this.show[name] = event.target.checked; this.look(); } });
+      box.checked = this.show[name];
+      return el("label", { class: "check" }, box, el("span", { class: `key ${mark}` }, ""), text);
+    };
+    this.canvas = el("canvas", {
+      width: 960, height: 540, tabindex: 0, role: "img", "aria-label": "Both motions, drawn on top of each other",
+      "aria-describedby": `say-${this.key}`,
+    });
+    this.play = button("Play", "Play or pause", () => this.toggle(), "space");
+    this.stepBox = el("input", { type: "number", min: data.first, max: data.last, class: "stepbox", "aria-label": "Step",
+      onchange: (event) => this.go(Number(event.target.value)) });
+    this.slider = el("input", { type: "range", min: data.first, max: data.last, "aria-label": "Step", class: "wide",
+      oninput: (event) => this.go(Number(event.target.value)) });
+    this.inside = el("input", { type: "range", min: 0, max: 1, step: 0.001, "aria-label": "Time within the step", class: "wide",
+      oninput: (event) => { this.t = Number(event.target.value); this.look(); } });
+    this.insideText = el("output", {}, "");
+    this.passes = el("select", { "aria-label": "Which motion within the step",
+      onchange: (event) => { this.pass = Number(event.target.value); this.look(); } });
+    this.midBox = el("input", { type: "checkbox", onchange: (event) => { this.mid = event.target.checked; this.look(); } });
+    this.mid = this.midIsWrong();
+    this.factor = el("input", { type: "range", min: 0, max: 15, step: 0.1, "aria-label": "Magnification of differences, power of ten",
+      oninput: (event) => { this.magnify = 10 ** Number(event.target.value); this.look(); } });
+    this.factorText = el("output", {}, "");
+    this.ticks = document.createElementNS(SVG, "svg");
+    this.ticks.setAttribute("viewBox", "0 0 1000 12");
+    this.ticks.setAttribute("preserveAspectRatio", "none");
+    this.ticks.setAttribute("aria-hidden", "true");
+    this.ticks.classList.add("ticks");
+    this.strip = el("canvas", { width: 960, height: 26, class: "strip", role: "img",
+      "aria-label": this.stripWords(), onclick: (event) => {
+        const box = this.strip.getBoundingClientRect();
+        this.go(1 + Math.floor(((event.clientX - box.left) / box.width) * data.steps));
+      } });
+    this.say = el("p", { class: "say", id: `say-${this.key}`, "aria-live": "polite" });
+    this.facts = el("div", { class: "facts" });
+    this.numbers = el("div", { class: "numbers" });
+    this.matrix = el("div", { class: "matrix" });
+    this.table = el("details", { class: "table", ontoggle: () => this.look() }, el("summary", {}, "The picture as a table"));
+    this.tableBody = el("div");
+    this.table.append(this.tableBody);
+    const hybrid = data.collision === "hybrid";
+    const { rounded } = data;
+    const kept = rounded && [...new Set(rounded.exact.map((record) => data.first + Math.ceil(record / data.per)))];
+    const remark = rounded ? el("p", { class: "hint" }, `This motion is too large to be here to the last bit: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
+      kept.length ? `Exact are the records around these steps: ${kept.join(", ")}.` : "") : "";
+    this.root = el("div", { class: "viewer", onkeydown: (event) => this.key_down(event) },
+      el("div", { class: "bar" },
+        button("|<", "Previous wrong step", () => this.finding(-1), "p"), button("<", "One step back", () => this.go(this.step - 1), "left"),
+        this.play, button(">", "One step on", () => this.go(this.step + 1), "right"),
+        button(">|", "Next wrong step", () => this.finding(1), "n"),
+        el("label", {}, "step ", this.stepBox, ` of ${data.steps}`),
+        el("label", {}, "speed ", this.speeds()),
+        button("Fit", "Show everything", () => { this.zoom = 1; this.pan = [0, 0]; this.look(); }, "0"),
+        button("PNG", "Save this picture", () => this.picture()),
+        button("SVG", "Save this picture as a drawing", () => this.drawing()),
+        button("Clip", "Record a film of the steps", () => this.clip()),
+        button("Link", "Copy a link to this moment", () => this.link())),
+      remark, this.strip, this.slider,
+      this.canvas,
+      el("div", { class: "bar" }, el("label", { class: "grow" }, "inside the step, t = ", this.insideText, this.inside, this.ticks),
+        el("label", {}, "moving ", this.passes), hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : ""),
+      el("div", { class: "bar" },
+        ...(data.full ? [check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
+          data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
+          check("arrows", "differences", "k-arrow"),
+          el("label", { class: "grow" }, "magnified ", this.factorText, this.factor)] : [])),
+      this.say, this.facts, this.matrix, this.numbers, this.table);
+    this.article.querySelector(".stage").append(this.root);
+    this.canvas.addEventListener("wheel", (event) => {
+      if (!event.ctrlKey && !event.shiftKey && document.activeElement !== this.canvas) return;
+      event.preventDefault();
+      this.zoom = Math.max(0.2, Math.min(1e6, this.zoom * Math.exp(-event.deltaY / 400)));
+      this.look();
+    }, { passive: false });
+    let held = null;
+    this.canvas.addEventListener("pointerdown", (event) => { held = [event.clientX, event.clientY, ...this.pan, false]; this.canvas.setPointerCapture(event.pointerId); });
+    this.canvas.addEventListener("pointermove", (event) => {
+      if (!held) return;
+      const ratio = this.canvas.width / this.canvas.getBoundingClientRect().width;
+      const move = [(event.clientX - held[0]) * ratio, (event.clientY - held[1]) * ratio];
+      if (Math.hypot(...move) > 4) held[4] = true;
+      if (held[4]) { this.pan = [held[2] + move[0], held[3] + move[1]]; this.look(); }
+    });
+    this.canvas.addEventListener("pointerup", (event) => { if (held && !held[4]) this.pick(event); held = null; });
+  }
+  speeds() {
+    const select = el("select", { "aria-label": "Speed", onchange: (event) => { this.speed = Number(event.target.value); } });
+    for (const speed of [0.03125, 0.125, 0.25, 0.5, 1, 2, 4, 8]) {
+      const option = el("option", { value: speed }, speed < 1 ? `1/${1 / speed}` : `${speed}`);
+      option.selected = speed === 1;
+      select.append(option);
+    }
+    return select;
+  }
+  stripWords() {
+    const of = (letter) => [...this.data.strip].filter((one) => one === letter).length;
+    return `All steps: ${of("r")} right, ${of("w")} wrong by themselves, ${of("i")} right but following from a wrong one, ` +
+      `${this.data.steps - of("r") - of("w") - of("i")} not judged`;
+  }
+
+
+  file(blob, name) {
+    const link = el("a", { href: URL.createObjectURL(blob), download: name });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+  picture() {
+    this.canvas.toBlob((blob) => blob && this.file(blob, `step-${this.step}.png`));
+  }
+  drawing() {
+    const sketch = new Sketch(this.canvas.width, this.canvas.height);
+    this.draw(sketch);
+    this.file(new Blob([sketch.svg()], { type: "image/svg+xml" }), `step-${this.step}.svg`);
+  }
+  clip() {
+    if (typeof MediaRecorder === "undefined" || !this.canvas.captureStream) { this.say.textContent = "This browser can't record films."; return; }
+    const recorder = new MediaRecorder(this.canvas.captureStream(30));
+    const parts = [];
+    recorder.ondataavailable = (event) => parts.push(event.data);
+    recorder.onstop = () => this.file(new Blob(parts, { type: recorder.mimeType }), "motion.webm");
+    const began = Math.max(this.data.first, this.step - 30), until = Math.min(this.data.last, this.step + 30);
+    let step = began;
+    recorder.start();
+    const turn = () => {
+      this.go(step);
+      if (step++ < until) setTimeout(turn, 1000 / 15); else recorder.stop();
+    };
+    turn();
+  }
+  link() {
+    const hash = new URLSearchParams({ scene: this.name, step: this.step, t: this.t.toFixed(3) });
+    if (this.selected && this.selected.pair) hash.set("pair", this.selected.pair);
+    history.replaceState(null, "", "#" + hash);
+    copy(location.href, null);
+    this.say.textContent = "The address of this page leads to this moment now.";
+  }
+}
+
+const viewers = new Map(), opening = new Map();
+function open(article) {
+  const key = article.dataset.case;
+  if (!opening.has(key)) opening.set(key, make(article, key));
+  return opening.get(key);
+}
+async function make(article, key) {
+  const block = document.getElementById(`case-${key}`);
+  if (!block) return null;
+  const data = JSON.parse(block.textContent);
+  const tracks = {};
+  for (const name of ["reference", "submission", "what"]) {
+    const buffer = await unpack(`${name}-${key}`);
+    tracks[name] = buffer && (data.rounded ? unround(buffer, data.rounded, data.n) : new Float64Array(buffer));
+  }
+  const viewer = new Viewer(article, data, tracks);
+  viewers.set(key, viewer);
+  return viewer;
+}
+// The cursor of the plots over the steps: their horizontal axis is given with them.
+document.addEventListener("moment", ({ detail: { key, step } }) => {
+  for (const row of document.querySelectorAll(`[data-case="${key}"] [data-step]`)) row.classList.toggle("now", Number(row.dataset.step) === step);
+  for (const figure of document.querySelectorAll(`[data-plot="${key}"]`)) {
+    const svg = figure.querySelector("svg");
+    const [left, right, steps] = ["left", "right", "steps"].map((name) => Number(figure.dataset[name]));
+    let line = svg.querySelector(".cursor");
+    if (!line) {
+      line = document.createElementNS(SVG, "line");
+      line.classList.add("cursor");
+      line.setAttribute("y1", 24);
+      line.setAttribute("y2", svg.viewBox.baseVal.height - 20);
+      svg.append(line);
+      svg.addEventListener("click", async (event) => {
+        const box = svg.getBoundingClientRect();
+        const x = ((event.clientX - box.left) / box.width) * svg.viewBox.baseVal.width;
+        const viewer = viewers.get(key);
+        if (viewer) viewer.go(1 + Math.round(((x - left) / (right - left)) * (steps - 1)));
+      });
+    }
+    const x = left + (steps > 1 ? (Math.max(1, step) - 1) / (steps - 1) : 0) * (right - left);
+    line.setAttribute("x1", x);
+    line.setAttribute("x2", x);
+  }
+});
+// Opens a card with its viewer.
+function unfold(article) {
+  const card = article.querySelector("details.card"), motion = article.querySelector("details.motion");
+  if (card) card.open = true;
+  if (!motion) return null;
+  motion.open = true;
+  return open(article);
+}
+// What findings and calls are about is shown at a click.
+function show(article, row) {
+  const act = async () => {
+    const viewer = await unfold(article);
+    if (!viewer) return;
+    viewer.selected = row.dataset.pair ? { pair: row.dataset.pair } : null;
+    viewer.go(Number(row.dataset.step));
+    viewer.root.scrollIntoView({ block: "start" });
+    viewer.canvas.focus({ preventScroll: true });
+  };
+  const button = el("button", { type: "button", onclick: act, "aria-label": `Show step ${row.dataset.step} in the motion` }, `Show step ${row.dataset.step}`);
+  (row.cells ? row.cells[row.cells.length - 1] : row.firstElementChild).append(" ", button);
+}
+// Goes where an address leads: to a card, or to a moment of a scene.
+async function visit(articles) {
+  const wish = new URLSearchParams(location.hash.slice(1));
+  const moment = articles.find((article) => article.dataset.scene === wish.get("scene"));
+  const named = moment || articles.find((article) => article.id && `#${article.id}` === location.hash);
+  const first = named || articles.find((article) => article.querySelector("details.card[open]")) || articles.find((article) => article.querySelector("details.motion"));
+  const viewer = first && await unfold(first);
+  if (viewer && moment) {
+    if (wish.has("step")) viewer.go(Number(wish.get("step")));
+    if (wish.has("t")) viewer.t = Math.max(0, Math.min(1, Number(wish.get("t")) || 0));
+    if (/^p[peh]:\d+,\d+$/.test(wish.get("pair") || "")) viewer.selected = { pair: wish.get("pair") };
+    viewer.look();
+  }
+  if (named) named.scrollIntoView();
+}
+async function start() {
+  const articles = [...document.querySelectorAll("article.case")];
+  for (const article of articles) {
+    const details = article.querySelector("details.motion");
+    if (!details) continue;
+    details.hidden = false;
+    details.addEventListener("toggle", () => { if (details.open) open(article); });
+    const card = article.querySelector("details.card");
+    if (card) card.addEventListener("toggle", () => { if (card.open) details.open = true; }, { once: true });
+    for (const row of article.querySelectorAll("[data-step]")) show(article, row);
+  }
+  await visit(articles);
+  addEventListener("hashchange", () => visit(articles));
+  document.documentElement.dataset.ready = "yes";
+}
+document.addEventListener("keydown", (event) => {
+  if (event.target === document.body) { const viewer = [...viewers.values()].find(Boolean); if (viewer) viewer.key_down(event); }
+});
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => viewers.forEach((viewer) => viewer && viewer.look()));
+start();
