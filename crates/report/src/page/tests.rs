@@ -248,7 +248,7 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     };
     let unexplained = SceneResult {
         scene: "Group/crash".to_owned(),
-        ..SceneResult::without_run("", 10, Verdict::RuntimeError, "it crashed")
+        ..SceneResult::without_run("", 10, Verdict::RuntimeError, crate::grade::samples::saying("it crashed"))
     };
     let id = "failsafe-angular-overwritten";
     let (large, small) = ("HolisticTests/crowd-of-twenty-balls.xml", "GeometricTests/pair-becomes-rigid.xml");
@@ -288,7 +288,12 @@ fn a_student_s_page_has_no_hidden_group() {
         drawn(&asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml"), "pe-linear-one-ab", Hints::Full);
     let crash = SceneResult {
         stdout: "secret output".to_owned(),
-        ..SceneResult::without_run("Secret/crash", 1, Verdict::RuntimeError, "it fell over in secret")
+        ..SceneResult::without_run(
+            "Secret/crash",
+            1,
+            Verdict::RuntimeError,
+            crate::grade::samples::saying("a secret fall"),
+        )
     };
     let stakes = |points, visibility| Stakes { points, credit: Credit::Scenes, visibility };
     let named = |name: &str, group| fosssim_grading::GroupGrade { name: name.to_owned(), ..group };
