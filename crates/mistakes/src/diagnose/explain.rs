@@ -53,6 +53,12 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
         // It reproduces the polynomials, too: what is said about them besides only follows from it.
         polynomials.clear();
     }
+    // Where another mistake keeps it from explaining whole steps, it may still explain all polynomials.
+    known.retain(|one| {
+        let is_told =
+            |other: &Explanation| other.is_complete() && find(&one.key).is_some_and(|row| other.is_in_other_words(row));
+        one.is_complete() || !polynomials.iter().any(is_told)
+    });
     let stage = open.and_then(|scan| stages::explain(scene, scan.wrong.iter().chain(&scan.right)));
     if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
         // Where pairs come in another order, polynomials of one are not those of another.
@@ -146,12 +152,19 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
 /// keys of mistakes that right traces of the same program speak against.
 #[must_use]
 pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted: &[String]) -> Vec<Explanation> {
+    let traces: Vec<&[Explanation]> = traces.into_iter().collect();
+    let named: Vec<&Row> = traces.iter().copied().flatten().filter_map(|one| find(&one.key)).collect();
     let is_refuted = |key: &String| refuted.contains(key);
     let kept = |list: &[Explanation]| -> Vec<Explanation> {
         let settle = |explanation: &Explanation| {
             let mut keys = std::iter::once(&explanation.key).chain(&explanation.same_as).filter(|key| !is_refuted(key));
             let key = keys.next()?.clone();
             let same_as = keys.cloned().collect();
+            if let Some(row) =
+                named.iter().find(|row| explanation.is_in_other_words(row) && !is_refuted(&row.id.to_owned()))
+            {
+                return Some(Explanation { key: row.id.to_owned(), what: row.sentence(), ..explanation.clone() });
+            }
             let what = if key == explanation.key { explanation.what.clone() } else { find(&key)?.sentence() };
             Some(Explanation { key, what, same_as, ..explanation.clone() })
         };

@@ -1,4 +1,5 @@
 //! What an explanation says.
+use crate::student::{Row, find};
 
 /// A likely mistake, with the evidence for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +58,19 @@ impl Explanation {
     pub fn is_named_in(&self, explanations: &[Self]) -> bool {
         let stages = if self.key == Self::UNFINISHED { self.same_as.as_slice() } else { &[] };
         let is_meant = |key: &String| *key == self.key || stages.contains(key);
-        explanations.iter().any(|one| is_meant(&one.key) || one.same_as.iter().any(is_meant))
+        let row = find(&self.key);
+        explanations.iter().any(|one| {
+            is_meant(&one.key)
+                || one.same_as.iter().any(is_meant)
+                || row.is_some_and(|row| one.is_in_other_words(row) && one.is_complete())
+        })
+    }
+
+    /// Whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of particles and
+    /// edges is `pe-radii-squared-apart`.
+    pub(super) fn is_in_other_words(&self, row: &Row) -> bool {
+        let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == self.key);
+        is_called_so && self.what.starts_with(row.place())
     }
 
     /// Whether it says which stage of a step is wrong, which is an observation and no guess.

@@ -2,7 +2,7 @@
 use super::{
     Explanation, explain,
     outside::{Rated, Rating, rated, told_of},
-    probe_scenes,
+    probe_scenes, several,
 };
 use crate::student::{self, Area, CATALOGUE, Kind, Row, Student, mutants::mutants};
 
@@ -97,6 +97,28 @@ fn of_several_mistakes_some_are_named_and_no_other() {
     let lines: Vec<&String> = said.iter().filter(|(said, _)| *said != Said::All).map(|(_, line)| line).collect();
     assert_eq!(wrong, 0, "of {}: {all} all, {some} some, {nothing} nothing, {wrong} wrong\n{lines:#?}", said.len());
     assert!(10 * (all + some) >= 8 * said.len(), "{lines:#?}");
+}
+
+/// What is found in all polynomials and what reproduces the steps that no other mistake touches is one mistake, not two.
+#[test]
+fn a_mistake_beside_another_is_told_once() {
+    let rows = ["pe-radii-squared-apart", "failsafe-empty"].map(|id| student::find(id).expect("it is known"));
+    let author = rows.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/HolisticTests");
+    let explained = ["funnel-of-fractional-masses", "rope-bridge", "pendulum-into-a-wall-of-balls"].map(|name| {
+        let xml = std::fs::read(folder.join(name).with_extension("xml")).expect("a bundled scene");
+        let scene = fosssim_model::scene::original::read(&xml).expect("a scene").scene;
+        explain(&scene, &student::trace(&scene, author).unwrap_or_else(|(bytes, _)| bytes))
+    });
+    for list in &explained {
+        let twice = |one: &&Explanation| rows.iter().any(|row| one.is_in_other_words(row));
+        let named = list.iter().filter(|one| one.key == rows[0].id).chain(list.iter().filter(twice)).count();
+        assert!(named <= 1, "{list:#?}");
+    }
+    let told = several(explained.iter().map(Vec::as_slice), &[]);
+    let mut keys: Vec<&str> = told.iter().map(|one| one.key.as_str()).collect();
+    keys.sort_unstable();
+    assert_eq!(keys, ["failsafe-empty", "pe-radii-squared-apart"], "{told:#?}");
 }
 
 /// Mistakes that the catalogue does not have, one of four: nothing misleads, and in eight of ten something is said that
