@@ -5,8 +5,8 @@
 //! The sample has a place for the mistake's id; the copy has it written there. Nothing has to be read when it runs, which the
 //! sandbox might not allow.
 
-/// How many bytes of the place hold the id; what follows it is zero.
-const ROOM: usize = 64;
+/// How many bytes of the place hold the id, or several with commas between them; what follows is zero.
+const ROOM: usize = 256;
 /// What stands before them, so that the place is found, backwards: forwards it stands in the place alone.
 const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 /// The whole place.

@@ -232,7 +232,7 @@ pub(super) struct Demo {
     /// The sample program; by default fosssim-sample beside this program.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) sample: Option<PathBuf>,
-    /// The mistake of the wrong one; fosssim-sample --list lists them.
+    /// The mistake of the wrong one, or several with commas between them; fosssim-sample --list lists them.
     #[arg(long, value_name = "ID")]
     pub(super) mistake: Option<String>,
     /// Where to write the HTML report on the wrong one.

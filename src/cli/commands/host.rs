@@ -129,8 +129,8 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
 
 /// Writes the sample with a mistake that it always makes.
 fn write_flawed(sample: &Path, mistake: &str, program: &Path) -> Result<u8> {
-    if student::find(mistake).is_none() {
-        bail!("there is no mistake '{mistake}'; fosssim-sample --list lists them");
+    if let Some(unknown) = mistake.split(',').find(|id| student::find(id).is_none()) {
+        bail!("there is no mistake '{unknown}'; fosssim-sample --list lists them");
     }
     let bytes = fs::read(sample).with_context(|| format!("cannot read {}", sample.display()))?;
     let flawed = pin::write(&bytes, mistake).with_context(|| {
@@ -139,7 +139,7 @@ fn write_flawed(sample: &Path, mistake: &str, program: &Path) -> Result<u8> {
     output::write(program, &[], &flawed)?;
     fs::set_permissions(program, Permissions::from_mode(0o755))
         .with_context(|| format!("cannot make {} executable", program.display()))?;
-    let words = format!("A program that makes the mistake {mistake}: {}\n", program.display());
+    let words = format!("A program that makes the mistake {}: {}\n", mistake.replace(',', " and "), program.display());
     console::print(words.as_bytes())?;
     Ok(exit::ACCEPTED)
 }
