@@ -3,18 +3,34 @@
 //! `cargo bench -p fosssim-judge --bench inside -- [rounds] [what] SCENE...` prints a line per scene and the sum. `what` is
 //! `all`, or one of `step` (without an observer), `record` (into nothing), `parity` and `fair` (the scene's own trace), `half`
 //! and `third` (the same trace with every coefficient times 0.5 or divided by 3, by both books), `trace` (each scene is
-//! followed by the file of a trace, judged by both books). One round of one of them under callgrind counts instructions,
-//! which no other load on the machine changes.
+//! followed by the file of a trace, judged by both books).
+//!
+//! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine changes, and
+//! shows them beside those of `instructions.txt`; with `store` behind it they are written there. `... -- growth` shows the cost
+//! of a pair and the memory from 10 to 3,000 particles.
 use fosssim_judge::parity::{self, Options};
 use fosssim_model::{
     scene::{Scene, original},
     sim::{RootSearch, Simulation},
     trace::{Frame, Layout, Reader, Recorder, Writer},
 };
-use std::{hint::black_box, time::Instant};
+use std::{fmt::Write as _, hint::black_box, process::Command, time::Instant};
+
+/// Scenes whose instructions are counted, of those that come with the program.
+const COUNTED: [&str; 3] = [
+    "HolisticTests/crowd-of-twenty-balls",
+    "ContinuousTimeTests/spinning-edge-sweeps-balls",
+    "GeometricTests/rows-collected-over-many-rounds",
+];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["instructions"] => return instructions(false),
+        ["instructions", "store"] => return instructions(true),
+        ["growth"] => return growth(),
+        _ => {}
+    }
     let [rounds, what, files @ ..] = &arguments[..] else { return };
     let rounds: u32 = rounds.parse().expect("a number of rounds");
     let mut sums: Vec<(&str, f64)> = Vec::new();
@@ -109,4 +125,87 @@ fn scaled(scene: &Scene, trace: &[u8], factor: f64) -> Vec<u8> {
         writer.frame(&frame);
     }
     writer.finish().expect("memory").0
+}
+
+/// Instructions of single pieces of work, beside those that were stored.
+fn instructions(store: bool) {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.txt");
+    let stored = std::fs::read_to_string(file).unwrap_or_default();
+    let program = std::env::current_exe().expect("this program");
+    let mut text = String::new();
+    println!("| work | instructions | stored | ratio |\n|---|---:|---:|---:|");
+    for scene in COUNTED {
+        for what in ["step", "record", "parity", "fair", "half"] {
+            let mut command = Command::new("valgrind");
+            command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(&program);
+            let output = command.args(["1", what]).arg(format!("{folder}/{scene}.xml")).output().expect("valgrind");
+            let said = String::from_utf8_lossy(&output.stderr);
+            let (_, count) = said.rsplit_once("Collected :").unwrap_or_else(|| panic!("{said}"));
+            let count: f64 = count.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number");
+            let name = format!("{what} {scene}");
+            _ = writeln!(text, "{name} {count}");
+            let before = stored.lines().find_map(|line| line.strip_prefix(&name)?.trim().parse::<f64>().ok());
+            match before {
+                Some(before) => println!("| {name} | {count} | {before} | {:.3} |", count / before),
+                None => println!("| {name} | {count} | - | - |"),
+            }
+        }
+    }
+    if store {
+        std::fs::write(file, text).expect("written");
+    }
+}
+
+/// What a pair costs, and the most memory that was used so far, in scenes of more and more particles.
+fn growth() {
+    println!(
+        "| particles | pairs in a pass | record, ns a pair | grade, ns a pair | trace, MB | most memory so far, MB |"
+    );
+    println!("|---:|---:|---:|---:|---:|---:|");
+    for particles in [10, 30, 100, 300, 1000, 3000] {
+        let scene = original::read(heap(particles).as_bytes()).expect("a scene").scene;
+        let edges = scene.edges.len();
+        let pairs = particles * (particles - 1) / 2 + (particles - 2) * edges + particles * scene.half_planes.len();
+        // The trace is made as it is read: neither is ever whole in memory.
+        let per_pair = |time: f64| time * 1e6 / pairs as f64 / f64::from(scene.steps());
+        let rounds = if particles < 1000 { 5 } else { 2 };
+        let recorded = least(rounds, || _ = record(&scene, std::io::sink()));
+        let trace = std::env::temp_dir().join(format!("fosssim-growth-{particles}.bin"));
+        drop(record(&scene, std::fs::File::create(&trace).expect("a file")));
+        let options = Options { threads: 1, fair: true, ..Options::default() };
+        let graded = least(rounds, || {
+            let file = std::fs::File::open(&trace).expect("the trace");
+            assert!(parity::judge(&scene, file, &options, &mut ()).fair.is_some());
+        });
+        let size = std::fs::metadata(&trace).expect("the trace").len() as f64 / 1e6;
+        std::fs::remove_file(&trace).expect("removed");
+        let (recorded, graded) = (per_pair(recorded), per_pair(graded));
+        println!("| {particles} | {pairs} | {recorded:.1} | {graded:.1} | {size:.1} | {:.0} |", most_memory());
+    }
+}
+
+/// Balls in rows above a floor and beside a wall, every tenth at the end of an edge, that begin to fall.
+fn heap(particles: usize) -> String {
+    let mut xml = String::from(
+        r#"<scene><duration time="0.03"/><integrator type="symplectic-euler" dt="0.01"/>
+        <collision type="hybrid" COR="0.5" maxiters="2" k="0" thickness="0.01"/><simplegravity fx="0" fy="-10"/>
+        <halfplane px="0" py="-0.5" nx="0" ny="1"/><halfplane px="-0.5" py="0" nx="1" ny="0"/>"#,
+    );
+    for index in 0..particles {
+        let (x, y) = (index % 30, index / 30);
+        let speed = ((index * 7919) % 101) as f64 / 101.0 - 0.5;
+        _ = write!(xml, r#"<particle m="1" px="{x}" py="{y}" vx="{speed}" vy="{speed}" fixed="0" radius="0.2"/>"#);
+    }
+    for first in (0..particles - 1).step_by(10) {
+        _ = write!(xml, r#"<edge i="{first}" j="{}" radius="0.1"/>"#, first + 1);
+    }
+    xml + "</scene>"
+}
+
+/// The most memory that this process has had, in megabytes.
+fn most_memory() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("a peak");
+    line.trim().trim_end_matches(" kB").parse::<f64>().expect("a number") / 1e3
 }

@@ -31,12 +31,14 @@ pub struct Bounded2 {
 
 impl Bounded {
     /// A number without error, such as a factor of a formula.
+    #[inline]
     #[must_use]
     pub const fn exact(value: f64) -> Self {
         Self { value, bound: 0.0 }
     }
 
     /// An input that may be off by one rounding.
+    #[inline]
     #[must_use]
     pub const fn rounded(value: f64) -> Self {
         Self { value, bound: value.abs() }
@@ -45,24 +47,28 @@ impl Bounded {
 
 impl Bounded2 {
     /// A vector without error.
+    #[inline]
     #[must_use]
     pub fn exact(v: Vec2) -> Self {
         Self { x: Bounded::exact(v.x), y: Bounded::exact(v.y) }
     }
 
     /// A vector whose components may each be off by one rounding.
+    #[inline]
     #[must_use]
     pub fn rounded(v: Vec2) -> Self {
         Self { x: Bounded::rounded(v.x), y: Bounded::rounded(v.y) }
     }
 
     /// `x*x' + y*y'`.
+    #[inline]
     #[must_use]
     pub fn dot(self, other: Self) -> Bounded {
         self.x * other.x + self.y * other.y
     }
 
     /// `x*y' - y*x'`.
+    #[inline]
     #[must_use]
     pub fn cross(self, other: Self) -> Bounded {
         self.x * other.y - self.y * other.x
@@ -71,6 +77,7 @@ impl Bounded2 {
 
 impl Add for Bounded {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         let rounding = self.value.abs() + other.value.abs();
         Self { value: self.value + other.value, bound: self.bound + other.bound + rounding }
@@ -79,6 +86,7 @@ impl Add for Bounded {
 
 impl Sub for Bounded {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         let rounding = self.value.abs() + other.value.abs();
         Self { value: self.value - other.value, bound: self.bound + other.bound + rounding }
@@ -87,6 +95,7 @@ impl Sub for Bounded {
 
 impl Mul for Bounded {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         let value = self.value * other.value;
         let bound = self.bound * other.value.abs() + self.value.abs() * other.bound + value.abs();
@@ -97,6 +106,7 @@ impl Mul for Bounded {
 /// A divisor of 0 gives what the division gives, and a bound that is infinite or NaN.
 impl Div for Bounded {
     type Output = Self;
+    #[inline]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
         let bound = (self.bound + value.abs() * other.bound) / other.value.abs() + value.abs();
@@ -106,6 +116,7 @@ impl Div for Bounded {
 
 impl Neg for Bounded {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Self { value: -self.value, bound: self.bound }
     }
@@ -113,6 +124,7 @@ impl Neg for Bounded {
 
 impl Mul<Bounded> for f64 {
     type Output = Bounded;
+    #[inline]
     fn mul(self, other: Bounded) -> Bounded {
         Bounded::exact(self) * other
     }
@@ -120,6 +132,7 @@ impl Mul<Bounded> for f64 {
 
 impl Add for Bounded2 {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self { x: self.x + other.x, y: self.y + other.y }
     }
@@ -127,6 +140,7 @@ impl Add for Bounded2 {
 
 impl Sub for Bounded2 {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         Self { x: self.x - other.x, y: self.y - other.y }
     }
@@ -134,6 +148,7 @@ impl Sub for Bounded2 {
 
 impl Mul<Bounded2> for Bounded {
     type Output = Bounded2;
+    #[inline]
     fn mul(self, other: Bounded2) -> Bounded2 {
         Bounded2 { x: self * other.x, y: self * other.y }
     }

@@ -15,6 +15,7 @@ pub mod decision;
 pub mod elementary;
 pub mod first_time;
 pub mod interval;
+pub mod lanes;
 pub mod linear;
 pub mod polynomial;
 pub mod rpoly;

@@ -67,6 +67,11 @@ pub const SEARCH_SMALLEST_COEFFICIENT: f64 = 1e-150;
 /// Certificate: see [`SEARCH_SMALLEST_COEFFICIENT`].
 pub const SEARCH_LARGEST_COEFFICIENT: f64 = 1e150;
 
+/// Detection in lanes: positions, displacements, radii, half-planes' points and normals up to this modulus (scene length unit)
+/// make no NaN and no infinity among coefficients, which are of degree six; beyond it pairs are computed one by one. Much
+/// larger values would let the sign of a NaN depend on how pairs are put together.
+pub const LANES_LARGEST_INPUT: f64 = 1e48;
+
 /// Fair: a correct program may be off by this many units of the running error bound (numerics.md 2; LAPACK's test ratios
 /// use 30). Smaller values refuse correct programs that evaluate in another way, larger ones hide small mistakes.
 pub const FAIR_UNITS: f64 = 64.0;

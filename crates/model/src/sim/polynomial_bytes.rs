@@ -35,7 +35,7 @@ impl PolynomialBytes {
         &self.bytes[..self.used]
     }
 
-    /// The largest modulus of a coefficient, small leading ones that were dropped included; a NaN does not count.
+    /// No coefficient has a larger modulus than this; a NaN does not count. It may be that of a pair that is not logged.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.largest
@@ -59,7 +59,8 @@ impl PolynomialBytes {
             largest = if coefficient.abs() > largest { coefficient.abs() } else { largest };
         }
         self.room(MOST_BYTES)[..MOST_BYTES].copy_from_slice(&polynomial);
-        self.added(4 + 8 * coefficients.len(), 1, largest);
+        self.largest = largest;
+        self.added(4 + 8 * coefficients.len(), 1);
     }
 
     /// The room behind the list, of `bytes` or more.
@@ -71,12 +72,17 @@ impl PolynomialBytes {
         &mut self.bytes[self.used..]
     }
 
-    /// What was written into the [room](Self::room) belongs to the list now; `largest` is the largest modulus so far.
+    /// What was written into the [room](Self::room) belongs to the list now.
     #[inline]
-    pub(super) fn added(&mut self, bytes: usize, polynomials: usize, largest: f64) {
+    pub(super) fn added(&mut self, bytes: usize, polynomials: usize) {
         self.used += bytes;
         self.count += polynomials;
-        self.largest = largest;
+    }
+
+    /// Notes that a coefficient has this modulus, or that none has a larger one.
+    #[inline]
+    pub(super) fn raise(&mut self, largest: f64) {
+        self.largest = self.largest.max(largest);
     }
 
     #[cold]

@@ -203,6 +203,11 @@ impl Simulation {
         self.handler.counts().work()
     }
 
+    /// Computes pairs one by one from now on, also for observers that only want bytes. The results are the same.
+    pub fn forgo_lanes(&mut self) {
+        self.handler.forgo_lanes();
+    }
+
     /// Lets steps end with [`StepError::Work`] after the detection pass that takes [`Simulation::work`] beyond this.
     pub fn limit_work(&mut self, most: u64) {
         self.handler.limit_work(most);

@@ -23,6 +23,7 @@
 
 mod bernstein;
 mod closed_form;
+pub mod lanes;
 mod separated;
 
 use super::{

@@ -52,7 +52,10 @@ impl Follower<'_> {
 
     /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault.
     fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: Own) {
-        let Some((motion, expected)) = self.expected.as_ref().filter(|_| own.lost) else { return };
+        if !own.lost {
+            return;
+        }
+        let Some((motion, expected)) = &self.expected() else { return };
         let (actual, hits) = (time(by_polynomials), own.time <= 1.0);
         if (actual <= 1.0) != hits {
             if contact::decides(motion, expected) == Some(hits) {
@@ -69,7 +72,7 @@ impl Follower<'_> {
     fn turned_round(&self, decision: Decision) -> Decision {
         match decision {
             Decision::Hit { time, .. } => Decision::Miss { time: Time::Found(time) },
-            Decision::Miss { .. } => self.expected.as_ref().map_or(decision, |(motion, expected)| {
+            Decision::Miss { .. } => self.expected().as_ref().map_or(decision, |(motion, expected)| {
                 let time = contact::possible_time(expected);
                 let normal = motion.normal(time);
                 Decision::Hit { time, normal: Vec2::new(normal.x.value, normal.y.value) }
@@ -79,7 +82,7 @@ impl Follower<'_> {
 
     /// Whether round-off may flip the decision of this call.
     fn is_borderline(&self, call: usize) -> bool {
-        match &self.expected {
+        match &self.expected() {
             Some((motion, expected)) => contact::is_borderline(motion, expected),
             None => self.sensitivity.is_some_and(|known| known.flipped.contains(&call)),
         }
@@ -100,7 +103,8 @@ impl Follower<'_> {
             (Decision::Miss { .. }, None) => own,
             (Decision::Hit { time, normal }, Some(actual)) => {
                 let own = Impulse { pair, normal, time };
-                let known = self.expected.as_ref().map(|(motion, expected)| (motion, expected));
+                let known = self.expected();
+                let known = known.as_ref().map(|(motion, expected)| (motion, expected));
                 let finding = contact::hit(self.context, &self.records, known, own, &actual, &mut self.judged);
                 if let Some(detail) = finding {
                     self.charge(detail);
@@ -116,7 +120,8 @@ impl Follower<'_> {
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
                     // Whether they collide may go either way; where and when, if they do, may not.
-                    let known = self.expected.as_ref().map(|(motion, expected)| (motion, expected));
+                    let known = self.expected();
+                    let known = known.as_ref().map(|(motion, expected)| (motion, expected));
                     let finding =
                         contact::possible_hit(self.context, &self.records, known, pair, &actual, &mut self.judged);
                     if let Some(detail) = finding {

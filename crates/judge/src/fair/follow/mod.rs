@@ -71,8 +71,16 @@ pub(super) struct Follower<'a> {
     used: Vec<bool>,
     /// What the reference's own polynomials say about the call, where the logged ones are right, and others.
     own: Option<Own>,
-    /// What the call's polynomials should be.
-    expected: Option<(Motion, Expected)>,
+    /// How the call's objects move.
+    seen: Option<Seen>,
+}
+
+/// How the objects of a call move. What its polynomials should be follows, and is seldom asked once they are compared.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    motion: Motion,
+    /// Whether the trace has the right approach polynomial, and not the course's.
+    has_right_approach: bool,
 }
 
 impl<'a> Follower<'a> {
@@ -104,10 +112,17 @@ impl<'a> Follower<'a> {
             contacts: Contacts::of(&records.end.impulses),
             used: vec![false; records.end.impulses.len()],
             own: None,
-            expected: None,
+            seen: None,
         };
         follower.count_passes();
         follower
+    }
+
+    /// How the call's objects move, and what its polynomials should be.
+    fn expected(&self) -> Option<(Motion, Expected)> {
+        let Seen { motion, has_right_approach } = self.seen?;
+        let polynomials = motion.polynomials();
+        Some((motion, if has_right_approach { polynomials.with_right_approach() } else { polynomials }))
     }
 
     /// Ends the step, which left the reference in `state`.
@@ -147,7 +162,7 @@ impl Observer for Follower<'_> {
 
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         self.own = None;
-        self.expected = None;
+        self.seen = None;
         let Some(index) = self.next else { return };
         self.next = Some(index + polynomials.len());
         let records = self.records;
@@ -160,7 +175,7 @@ impl Observer for Follower<'_> {
             if self.sensitivity.is_some() || !self.is_hybrid() {
                 // Should the decision be disputed, it must be known how far round-off may reach.
                 let motion = Motion::of(self.context.scene, pair, q_start, q_end);
-                self.expected = Some((motion, motion.polynomials()));
+                self.seen = Some(Seen { motion, has_right_approach: false });
             }
             self.note_course_form(pair, q_start, q_end, index);
             return;

@@ -1,5 +1,5 @@
 //! What a step's polynomials are charged for.
-use super::{Deferred, Follower};
+use super::{Deferred, Follower, Seen};
 use crate::{
     fair::{
         compare::{Match, Mismatch, compare, possible_factors},
@@ -45,17 +45,21 @@ impl Follower<'_> {
                 (seen, expected, results) = (other_motion, other, others);
             }
         }
+        let mut has_right_approach = false;
         for (number, result) in results.into_iter().enumerate().take(count) {
             let place =
                 PolynomialPlace { pass: self.pass, pair, role: Role::of(pair.kind, number), index: index + number };
             let mut result = result;
-            if let Some(right) = expected.other_form(number) {
+            // That another one of the course's form is right tells nothing new, whatever the other form says.
+            let tells_nothing = result.is_ok() && self.judged.course_form.is_some();
+            if let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) {
                 let other = compare(right, log.get(place.index), &hints[number]);
                 match (&result, &other) {
                     (Ok(_), Err(_)) => self.judged.course_form = self.judged.course_form.or(Some(place)),
                     (Err(_), Ok(_)) => {
                         self.judged.right_form = self.judged.right_form.or(Some(place));
                         expected = expected.with_right_approach();
+                        has_right_approach = true;
                     }
                     _ => {}
                 }
@@ -83,7 +87,7 @@ impl Follower<'_> {
                 }
             }
         }
-        self.expected = Some((seen, expected));
+        self.seen = Some(Seen { motion: seen, has_right_approach });
     }
 
     /// The factors that a polynomial may have which does not tell its own: that of the same polynomial of another pair of its

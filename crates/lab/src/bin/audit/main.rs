@@ -11,6 +11,8 @@
 //! the root finder. Here disagreements are facts about the root finder, not mistakes: a decision says what is true. They are
 //! sorted by what the original does on purpose: `c t^m` counts as nowhere positive, small leading coefficients are dropped;
 //! whatever is left is its rounding. These do not change the exit code.
+//!
+//! `audit lanes [pairs] [seed]` compares detection in lanes with detection pair by pair instead, on random scenes.
 use std::{
     fmt::Write as _,
     process::ExitCode,
@@ -26,6 +28,7 @@ use fosssim_oracle::num::{
 };
 
 mod decisions;
+mod lanes;
 
 use decisions::Decisions;
 
@@ -33,12 +36,17 @@ use decisions::Decisions;
 const BLOCK: u64 = 10_000;
 
 fn main() -> ExitCode {
-    let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
+    let mut words = std::env::args().skip(1).peekable();
+    let of_lanes = words.next_if(|word| word == "lanes").is_some();
+    let mut arguments = words.map(|argument| argument.parse::<u64>());
     let (Ok(detections), Ok(seed)) = (arguments.next().unwrap_or(Ok(1_000_000)), arguments.next().unwrap_or(Ok(1)))
     else {
-        eprintln!("usage: audit [detections] [seed]");
+        eprintln!("usage: audit [lanes] [detections] [seed]");
         return ExitCode::from(2);
     };
+    if of_lanes {
+        return lanes::run(detections, seed);
+    }
     let blocks = detections.div_ceil(BLOCK);
     let next = AtomicU64::new(0);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);

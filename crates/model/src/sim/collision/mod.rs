@@ -1,12 +1,12 @@
 //! Collision handling: detection per pair type, responses, impact zones (collisions.md).
 //!
-//! One file per pair type holds its detection and its responses; `pass` runs over all pairs; `simple`,
+//! One file per pair type holds its detection and its responses; `pass` runs over all pairs, `blocks` over many at a time; `simple`,
 //! `continuous_time` and `hybrid` are the three handlers, of which `hybrid` uses `zones` and `failsafe`. Nothing is
 //! pruned: every pair is looked at in every pass, also two fixed particles (collisions.md 1).
+mod blocks;
 mod continuous_time;
 mod failsafe;
 mod hybrid;
-mod lanes;
 mod motion;
 mod particle_edge;
 mod particle_half_plane;
@@ -14,6 +14,7 @@ mod particle_particle;
 mod pass;
 mod response;
 mod simple;
+mod two;
 mod zones;
 
 use super::{
@@ -85,6 +86,11 @@ impl Handler {
     /// Most work, over all steps.
     pub fn limit_work(&mut self, most: u64) {
         self.detector.limit_work(most);
+    }
+
+    /// Computes pairs one by one from now on.
+    pub fn forgo_lanes(&mut self) {
+        self.detector.forgo_lanes();
     }
 
     /// Counts of root searches so far.

@@ -8,6 +8,7 @@ use crate::{
     sim::observer::{Pair, PairKind},
 };
 use fosssim_num::{
+    lanes::Plane,
     polynomial::Polynomial,
     vector::{Vec2, at},
 };
@@ -113,13 +114,11 @@ impl PairMotion {
                 particle_particle::polynomials(one.start, one.shift, two.start, two.shift, radii[0] + radii[1]).to_vec()
             }
             Self::Edge { centre, ends: [first, second], radii } => {
-                let both = |v: Vec2| [v; 2];
-                let edges =
-                    EdgeMotions::new(both(first.start), both(first.shift), both(second.start), both(second.shift));
-                let mut polynomials = Default::default();
-                let sums = [radii[0] + radii[1]; 2];
-                particle_edge::coefficients(centre.start, centre.shift, &edges, sums).write(&mut polynomials);
-                polynomials[0].to_vec()
+                let [x2, d2, x3, d3] = [first.start, first.shift, second.start, second.shift].map(Plane::from);
+                let (x1, d1, edge) = (centre.start.into(), centre.shift.into(), EdgeMotions::new(x2, d2, x3, d3));
+                let pair = particle_edge::coefficients(x1, d1, &edge, radii[0] + radii[1]);
+                let lists: [&[f64]; 4] = [&pair.distance, &pair.beyond_first, &pair.before_second, &pair.approach];
+                lists.map(Polynomial::untrimmed).to_vec()
             }
             Self::HalfPlane { centre, radius, point, normal } => {
                 let squared = normal.dot(&normal);

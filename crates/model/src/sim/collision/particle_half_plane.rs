@@ -4,20 +4,37 @@
 use super::response::{Change, Response, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
+    lanes::{Number, Plane},
     polynomial::Polynomial,
     vector::{Vec2, at, length, unit},
 };
+use std::ops::Mul;
 
 /// The two polynomials, untrimmed, of a disc that starts at `x` and moves by `d` in the step: "closer than `radius`" and
 /// "approaching". `squared` is `dot(normal, normal)`.
 #[inline]
 pub(super) fn polynomials(x: Vec2, d: Vec2, radius: f64, point: Vec2, normal: Vec2, squared: f64) -> [Polynomial; 2] {
-    let s = d.dot(&normal);
-    let w = (point - x).dot(&normal);
-    [
-        Polynomial::untrimmed(&[-s * s, 2.0 * w * s, -w * w + (radius * radius) * squared]),
-        Polynomial::untrimmed(&[-s * s, w * s]),
-    ]
+    let [x, d, point, normal] = [x, d, point, normal].map(Plane::from);
+    let (overlap, approach) = coefficients(x, d, radius, point, normal, squared);
+    [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach)]
+}
+
+/// Their coefficients, highest power first, of one pair or of several.
+#[inline(always)]
+pub(super) fn coefficients<N: Number>(
+    x: Plane<N>,
+    d: Plane<N>,
+    radius: N,
+    point: Plane<N>,
+    normal: Plane<N>,
+    squared: N,
+) -> ([N; 3], [N; 2])
+where
+    f64: Mul<N, Output = N>,
+{
+    let s = d.dot(normal);
+    let w = (point - x).dot(normal);
+    ([-s * s, 2.0 * w * s, -w * w + (radius * radius) * squared], [-s * s, w * s])
 }
 
 /// The contact normal at time `t`: from the centre to its foot on the boundary.

@@ -2,23 +2,39 @@
 use super::response::{Change, Response, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
+    lanes::{Number, Plane},
     polynomial::Polynomial,
     vector::{Vec2, at, length, unit},
 };
+use std::ops::Mul;
 
 /// The two polynomials, untrimmed, of discs that start at `x` and move by `d` in the step: "closer than `radii`" and "approaching".
 /// Time is a fraction of the step.
 #[inline]
 pub(super) fn polynomials(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, radii: f64) -> [Polynomial; 2] {
+    let [x1, d1, x2, d2] = [x1, d1, x2, d2].map(Plane::from);
+    let (overlap, approach) = coefficients(x1, d1, x2, d2, radii);
+    [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach)]
+}
+
+/// Their coefficients, highest power first, of one pair or of several.
+#[inline(always)]
+pub(super) fn coefficients<N: Number>(
+    x1: Plane<N>,
+    d1: Plane<N>,
+    x2: Plane<N>,
+    d2: Plane<N>,
+    radii: N,
+) -> ([N; 3], [N; 2])
+where
+    f64: Mul<N, Output = N>,
+{
     let d = d2 - d1;
     let x = x2 - x1;
     let e = d1 - d2;
     // `e` is `-d`, so `dot(e, e)` is `dot(d, d)` bit for bit; of `dot(e, x)` a zero's sign may differ.
-    let squared = d.dot(&d);
-    [
-        Polynomial::untrimmed(&[-squared, -2.0 * x.dot(&d), radii * radii - x.dot(&x)]),
-        Polynomial::untrimmed(&[-squared, e.dot(&x)]),
-    ]
+    let squared = d.dot(d);
+    ([-squared, -2.0 * x.dot(d), radii * radii - x.dot(x)], [-squared, e.dot(x)])
 }
 
 /// The contact normal at time `t`, from the first to the second centre.

@@ -1,15 +1,18 @@
 //! One detection pass of continuous-time detection over all pairs (collisions.md 1, 2).
 //!
 //! The pass computes the polynomials of every pair, tells them to the observer, and searches their roots where no
-//! certificate excludes an impact within the step.
+//! certificate excludes an impact within the step. Where the observer wants to hear of no single call, [`super::blocks`] does
+//! the same with several pairs at a time.
 use super::{
     super::{
         bodies::Bodies,
         observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Time, Wanted},
         simulation::{RootSearch, SearchCounts, StepError},
     },
+    blocks::{Blocks, Place, Setting},
     particle_edge::{self, EdgeMotions},
     particle_half_plane, particle_particle,
+    two::{Two, two},
 };
 use fosssim_num::{
     certificate::excludes_unit_interval,
@@ -37,8 +40,11 @@ pub(super) struct Detector {
     step: u32,
     passes: u32,
     displacements: Vec<f64>,
-    /// The motions of the edges, block by block.
-    edges: Vec<EdgeMotions>,
+    /// The motions of the edges, two at a time.
+    edges: Vec<EdgeMotions<Two>>,
+    /// Whether pairs may be looked at in blocks.
+    has_lanes: bool,
+    blocks: Blocks,
 }
 
 impl Detector {
@@ -52,7 +58,15 @@ impl Detector {
             passes: 0,
             displacements: Vec::new(),
             edges: Vec::new(),
+            // To search always, or to audit, is a way to check what is done elsewhere.
+            has_lanes: search == RootSearch::WhereNeeded,
+            blocks: Blocks::default(),
         }
+    }
+
+    /// Looks at pairs one by one from now on.
+    pub fn forgo_lanes(&mut self) {
+        self.has_lanes = false;
     }
 
     /// Starts counting passes anew.
@@ -89,35 +103,80 @@ impl Detector {
         q_start: &[f64],
         q_end: &mut [f64],
         observer: &mut O,
-        react: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+        mut react: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     ) -> Result<(), StepError> {
         observer.begin_pass(pass);
         self.passes += 1;
-        self.prepare(bodies, q_start, q_end);
-        let mut way = Way { bodies, q_start, q_end, observer, react, hits: 0 };
-        for i in 0..bodies.particles() {
-            self.particles(i, &mut way)?;
-            self.edges(i, &mut way)?;
-            self.half_planes(i, &mut way)?;
+        self.displacements.clear();
+        self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
+        let (mut place, mut hits) = (Place::BEGIN, 0);
+        if self.has_lanes && !matches!(observer.wanted(), Wanted::Calls) {
+            hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
         }
-        let hits = way.hits;
-        observer.end_pass(pass, hits);
+        if place.first < bodies.particles() {
+            self.prepare(bodies, q_start);
+            let mut way = Way { bodies, q_start, q_end, observer, react, hits };
+            for i in place.first..bodies.particles() {
+                let from = |kind| if i > place.first || kind > place.kind { 0 } else { place.second };
+                if i > place.first || place.kind == PairKind::ParticleParticle {
+                    self.particles(i, from(PairKind::ParticleParticle).max(i + 1), &mut way)?;
+                }
+                if i > place.first || place.kind <= PairKind::ParticleEdge {
+                    self.edges(i, from(PairKind::ParticleEdge), &mut way)?;
+                }
+                self.half_planes(i, from(PairKind::ParticleHalfPlane), &mut way)?;
+            }
+            hits = way.hits;
+            way.observer.end_pass(pass, hits);
+        } else {
+            observer.end_pass(pass, hits);
+        }
         if self.counts.work() > self.most_work {
             return Err(StepError::Work { step: self.step });
         }
         Ok(())
     }
 
-    /// Looks at particle `i` and all later particles.
+    /// Looks at pairs in blocks, as far as that goes. Gives the number of hits.
+    fn run_in_blocks<O: Observer>(
+        &mut self,
+        bodies: &Bodies,
+        q_start: &[f64],
+        q_end: &mut [f64],
+        observer: &mut O,
+        react: &mut impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+        place: &mut Place,
+    ) -> Result<usize, StepError> {
+        let step = self.step;
+        let mut is_on = self.blocks.prepare(Setting { bodies, step, q_start, displacements: &self.displacements });
+        let mut hits = 0;
+        while is_on {
+            let setting = Setting { bodies, step, q_start, displacements: &self.displacements };
+            let bytes = match observer.wanted() {
+                Wanted::Bytes(bytes) => Some(bytes),
+                Wanted::Calls | Wanted::Nothing => None,
+            };
+            let Some(impulse) = self.blocks.next_hit(setting, place, &mut self.counts, bytes)? else { break };
+            hits += 1;
+            if react(observer, &impulse, q_end) == Reaction::Moved {
+                let moved = self.displace(bodies, impulse.pair, q_start, q_end);
+                let setting = Setting { bodies, step, q_start, displacements: &self.displacements };
+                is_on = self.blocks.refresh(setting, moved);
+            }
+        }
+        Ok(hits)
+    }
+
+    /// Looks at particle `i` and all later particles from `from` on.
     #[inline]
-    fn particles<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    fn particles<O: Observer, R>(&mut self, i: usize, from: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
     where
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
         let Way { bodies, q_start, .. } = *way;
         let x1 = at(q_start, i);
         let mut d1 = at(&self.displacements, i);
-        for j in i + 1..bodies.particles() {
+        for j in from..bodies.particles() {
             let (x2, d2) = (at(q_start, j), at(&self.displacements, j));
             let mut polynomials = particle_particle::polynomials(x1, d1, x2, d2, bodies.radii[i] + bodies.radii[j]);
             let normal = |t| Some(particle_particle::normal(x1, d1, x2, d2, t));
@@ -128,9 +187,9 @@ impl Detector {
         Ok(())
     }
 
-    /// Looks at particle `i` and all edges that it is no end of.
+    /// Looks at particle `i` and all edges from `from` on that it is no end of.
     #[inline]
-    fn edges<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    fn edges<O: Observer, R>(&mut self, i: usize, from: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
     where
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
@@ -138,11 +197,14 @@ impl Detector {
         let x1 = at(q_start, i);
         let mut d1 = at(&self.displacements, i);
         let mut polynomials = Default::default();
-        for (block, ends) in bodies.edges.chunks(LANES).enumerate() {
+        for (block, ends) in bodies.edges.chunks(LANES).enumerate().skip(from / LANES) {
             let radii = both(block, |edge| bodies.radii[i] + bodies.edge_radii[edge], bodies.edges.len());
-            particle_edge::coefficients(x1, d1, &self.edges[block], radii).write(&mut polynomials);
+            let coefficients = |d1: Vec2, edges: &EdgeMotions<Two>| {
+                particle_edge::coefficients(two([x1; 2]), two([d1; 2]), edges, Two(radii))
+            };
+            coefficients(d1, &self.edges[block]).write(&mut polynomials);
             for (lane, &ends) in ends.iter().enumerate() {
-                if ends.contains(&i) {
+                if ends.contains(&i) || LANES * block + lane < from {
                     continue;
                 }
                 let pair = pair(PairKind::ParticleEdge, i, LANES * block + lane);
@@ -151,23 +213,23 @@ impl Detector {
                 let normal = |t| particle_edge::normal(particles.map(|particle| at(q_start, particle)), d, t);
                 if self.look(pair, &mut polynomials[lane], normal, way)? == Reaction::Moved {
                     d1 = at(&self.displacements, i);
-                    particle_edge::coefficients(x1, d1, &self.edges[block], radii).write(&mut polynomials);
+                    coefficients(d1, &self.edges[block]).write(&mut polynomials);
                 }
             }
         }
         Ok(())
     }
 
-    /// Looks at particle `i` and all half-planes.
+    /// Looks at particle `i` and all half-planes from `from` on.
     #[inline]
-    fn half_planes<O: Observer, R>(&mut self, i: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    fn half_planes<O: Observer, R>(&mut self, i: usize, from: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
     where
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
         let Way { bodies, q_start, .. } = *way;
         let x = at(q_start, i);
         let mut d = at(&self.displacements, i);
-        for (h, (&point, &q)) in bodies.points.iter().zip(&bodies.normals).enumerate() {
+        for (h, (&point, &q)) in bodies.points.iter().zip(&bodies.normals).enumerate().skip(from) {
             let squared = q.dot(&q);
             let mut polynomials = particle_half_plane::polynomials(x, d, bodies.radii[i], point, q, squared);
             let normal = |t| Some(particle_half_plane::normal(x, d, point, q, squared, t));
@@ -193,7 +255,7 @@ impl Detector {
     {
         polynomials.iter_mut().for_each(Polynomial::trim);
         way.observer.solve(pair, way.q_start, way.q_end, polynomials);
-        let decision = match self.time(pair, polynomials)? {
+        let decision = match time_of_impact(self.search, &mut self.counts, self.step, pair, polynomials)? {
             Time::Found(time) if time <= 1.0 => match normal(time) {
                 Some(normal) => Decision::Hit { time, normal },
                 None => Decision::Miss { time: Time::Found(time) },
@@ -222,30 +284,8 @@ impl Detector {
         Ok(reaction)
     }
 
-    /// The time of impact as far as it has to be known.
-    #[inline]
-    fn time(&mut self, pair: Pair, polynomials: &[Polynomial]) -> Result<Time, StepError> {
-        self.counts.calls += 1;
-        let excluded = self.search != RootSearch::Always && excludes_unit_interval(polynomials);
-        if excluded {
-            self.counts.excluded += 1;
-            if self.search == RootSearch::WhereNeeded {
-                return Ok(Time::Excluded);
-            }
-        }
-        self.counts.searched += 1;
-        let time = first_time_counted(polynomials, &mut self.counts.fruitless)
-            .map_err(|_| StepError::RootSearch { step: self.step, pair })?;
-        if excluded && time <= 1.0 {
-            self.counts.disagreements += 1;
-        }
-        Ok(Time::Found(time))
-    }
-
-    /// Fills the shared values.
-    fn prepare(&mut self, bodies: &Bodies, q_start: &[f64], q_end: &[f64]) {
-        self.displacements.clear();
-        self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
+    /// Fills what pairs with edges share.
+    fn prepare(&mut self, bodies: &Bodies, q_start: &[f64]) {
         self.edges.clear();
         let blocks = 0..bodies.edges.len().div_ceil(LANES);
         let displacements = &self.displacements;
@@ -255,6 +295,16 @@ impl Detector {
     /// Fills the shared values of a pair's particles again, and those of all edges at them.
     #[cold]
     fn refresh(&mut self, bodies: &Bodies, pair: Pair, q_start: &[f64], q_end: &[f64]) {
+        let moved = self.displace(bodies, pair, q_start, q_end);
+        for (block, ends) in bodies.edges.chunks(LANES).enumerate() {
+            if ends.as_flattened().iter().any(|end| moved.contains(end)) {
+                self.edges[block] = motions(bodies, block, q_start, &self.displacements);
+            }
+        }
+    }
+
+    /// Takes over where a pair's particles end now. Gives these, some of them more than once.
+    fn displace(&mut self, bodies: &Bodies, pair: Pair, q_start: &[f64], q_end: &[f64]) -> [usize; 3] {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let moved = match pair.kind {
             PairKind::ParticleParticle => [first, second, second],
@@ -264,12 +314,37 @@ impl Detector {
         for particle in moved {
             put(&mut self.displacements, particle, at(q_end, particle) - at(q_start, particle));
         }
-        for (block, ends) in bodies.edges.chunks(LANES).enumerate() {
-            if ends.as_flattened().iter().any(|end| moved.contains(end)) {
-                self.edges[block] = motions(bodies, block, q_start, &self.displacements);
-            }
+        moved
+    }
+}
+
+/// The time of impact as far as it has to be known.
+///
+/// # Errors
+/// [`StepError::RootSearch`]
+#[inline]
+pub(super) fn time_of_impact(
+    search: RootSearch,
+    counts: &mut SearchCounts,
+    step: u32,
+    pair: Pair,
+    polynomials: &[Polynomial],
+) -> Result<Time, StepError> {
+    counts.calls += 1;
+    let excluded = search != RootSearch::Always && excludes_unit_interval(polynomials);
+    if excluded {
+        counts.excluded += 1;
+        if search == RootSearch::WhereNeeded {
+            return Ok(Time::Excluded);
         }
     }
+    counts.searched += 1;
+    let time =
+        first_time_counted(polynomials, &mut counts.fruitless).map_err(|_| StepError::RootSearch { step, pair })?;
+    if excluded && time <= 1.0 {
+        counts.disagreements += 1;
+    }
+    Ok(Time::Found(time))
 }
 
 /// What a pass is about: the scene, the way of the step, who listens and who answers hits.
@@ -293,8 +368,9 @@ fn both<T>(block: usize, value: impl Fn(usize) -> T, edges: usize) -> [T; LANES]
 
 /// The motions of the edges in a block.
 #[inline]
-fn motions(bodies: &Bodies, block: usize, q_start: &[f64], displacements: &[f64]) -> EdgeMotions {
-    let of = |array: &[f64], end: usize| both(block, |edge| at(array, bodies.edges[edge][end]), bodies.edges.len());
+fn motions(bodies: &Bodies, block: usize, q_start: &[f64], displacements: &[f64]) -> EdgeMotions<Two> {
+    let of =
+        |array: &[f64], end: usize| two(both(block, |edge| at(array, bodies.edges[edge][end]), bodies.edges.len()));
     EdgeMotions::new(of(q_start, 0), of(displacements, 0), of(q_start, 1), of(displacements, 1))
 }
 

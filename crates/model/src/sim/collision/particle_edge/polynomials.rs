@@ -1,52 +1,88 @@
-//! The detection polynomials of particle-edge pairs, two edges at a time (collisions.md 2).
-use super::super::lanes::{Lanes, Lanes2};
-use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+//! The detection polynomials of particle-edge pairs, several edges at a time (collisions.md 2).
+use super::super::two::Two;
+use fosssim_num::{
+    lanes::{Number, Plane},
+    polynomial::Polynomial,
+};
+use std::ops::Mul;
 
-/// What the polynomials of two edges with every particle share: their motion, and the products that hold no particle.
+/// What the polynomials of edges with every particle share: their motion, and the products that hold no particle.
 ///
 /// Every value is computed by the operations that the formulas prescribe, so it does not matter how often it is used.
 /// `x23` is computed and not taken as `-x32`: where they vanish their zeros have the same sign.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct EdgeMotions {
-    x2: Lanes2,
-    d2: Lanes2,
-    x3: Lanes2,
-    d3: Lanes2,
-    x32: Lanes2,
-    d32: Lanes2,
-    x23: Lanes2,
-    d23: Lanes2,
+pub(in super::super) struct EdgeMotions<N> {
+    x2: Plane<N>,
+    d2: Plane<N>,
+    x3: Plane<N>,
+    d3: Plane<N>,
+    x32: Plane<N>,
+    d32: Plane<N>,
+    x23: Plane<N>,
+    d23: Plane<N>,
     /// `dot(x32, x32)`
-    g: Lanes,
+    g: N,
     /// `dot(d32, x32)`
-    h: Lanes,
+    h: N,
     /// `dot(d32, d32)`
-    i: Lanes,
+    i: N,
 }
 
-impl EdgeMotions {
-    /// The motions of two edges whose endpoints start at `x2`, `x3` and move by `d2`, `d3` in the step.
-    #[inline]
-    pub fn new(x2: [Vec2; 2], d2: [Vec2; 2], x3: [Vec2; 2], d3: [Vec2; 2]) -> Self {
-        let [x2, d2, x3, d3] = [x2, d2, x3, d3].map(Lanes2::new);
+impl<N: Number> EdgeMotions<N> {
+    /// The motions of edges whose endpoints start at `x2`, `x3` and move by `d2`, `d3` in the step.
+    #[inline(always)]
+    pub fn new(x2: Plane<N>, d2: Plane<N>, x3: Plane<N>, d3: Plane<N>) -> Self {
         let (x32, d32) = (x3 - x2, d3 - d2);
         let (g, h, i) = (x32.dot(x32), d32.dot(x32), d32.dot(d32));
         Self { x2, d2, x3, d3, x32, d32, x23: x2 - x3, d23: d2 - d3, g, h, i }
     }
+
+    /// All values, always in the same order.
+    #[inline(always)]
+    pub fn values(&self) -> [N; 19] {
+        let Self { x2, d2, x3, d3, x32, d32, x23, d23, g, h, i } = *self;
+        [
+            x2.x, x2.y, d2.x, d2.y, x3.x, x3.y, d3.x, d3.y, x32.x, x32.y, d32.x, d32.y, x23.x, x23.y, d23.x, d23.y, g,
+            h, i,
+        ]
+    }
+
+    /// The motions of which these are the [values](Self::values).
+    #[inline(always)]
+    #[expect(clippy::many_single_char_names, reason = "sixteen coordinates in their order")]
+    pub fn of(values: [N; 19]) -> Self {
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, square, mixed, speed] = values;
+        Self {
+            x2: Plane { x: a, y: b },
+            d2: Plane { x: c, y: d },
+            x3: Plane { x: e, y: f },
+            d3: Plane { x: g, y: h },
+            x32: Plane { x: i, y: j },
+            d32: Plane { x: k, y: l },
+            x23: Plane { x: m, y: n },
+            d23: Plane { x: o, y: p },
+            g: square,
+            h: mixed,
+            i: speed,
+        }
+    }
 }
 
-/// The coefficients of two particle-edge pairs before the removal of small leading ones, highest power first.
+/// The coefficients of particle-edge pairs before the removal of small leading ones, highest power first.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct Coefficients {
-    distance: [Lanes; 5],
-    beyond_first: [Lanes; 3],
-    before_second: [Lanes; 3],
-    approach: [Lanes; 6],
+pub(in super::super) struct Coefficients<N> {
+    /// "Closer than the radii to the line".
+    pub distance: [N; 5],
+    /// "Beyond the first end".
+    pub beyond_first: [N; 3],
+    /// "Before the second end".
+    pub before_second: [N; 3],
+    /// "Approaching".
+    pub approach: [N; 6],
 }
 
-impl Coefficients {
-    /// Writes the four polynomials of both pairs, untrimmed: "closer than the radii to the line", "beyond the first end",
-    /// "before the second end" and "approaching".
+impl Coefficients<Two> {
+    /// Writes the four polynomials of both pairs, untrimmed.
     #[inline]
     pub fn write(&self, polynomials: &mut [[Polynomial; 4]; 2]) {
         for (lane, [distance, beyond_first, before_second, approach]) in polynomials.iter_mut().enumerate() {
@@ -58,17 +94,24 @@ impl Coefficients {
     }
 }
 
-/// The coefficients for each of two edges with a disc that starts at `x1` and moves by `d1` in the step, and whose radius
+/// The coefficients for each of several edges with a disc that starts at `x1` and moves by `d1` in the step, and whose radius
 /// and the edge's add up to `radii`. Letters are those of collisions.md 2.
 ///
 /// The t^3 coefficient of the last one is mathematically wrong (`g` where `h` belongs); it is the formula that every
 /// student was given.
-#[inline]
+#[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
-pub(in super::super) fn coefficients(x1: Vec2, d1: Vec2, edges: &EdgeMotions, radii: [f64; 2]) -> Coefficients {
+pub(in super::super) fn coefficients<N: Number>(
+    x1: Plane<N>,
+    d1: Plane<N>,
+    edges: &EdgeMotions<N>,
+    radii: N,
+) -> Coefficients<N>
+where
+    f64: Mul<N, Output = N>,
+{
     let EdgeMotions { x2, d2, x3, d3, x32, d32, x23, d23, g, h, i } = *edges;
-    let (x1, d1, r) = (Lanes2::both(x1), Lanes2::both(d1), Lanes(radii));
-    let s = r * r;
+    let s = radii * radii;
     let (x12, x21, x13) = (x1 - x2, x2 - x1, x1 - x3);
     let (d12, d21, d13) = (d1 - d2, d2 - d1, d1 - d3);
 
@@ -92,9 +135,12 @@ pub(in super::super) fn coefficients(x1: Vec2, d1: Vec2, edges: &EdgeMotions, ra
 }
 
 /// The coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`.
-#[inline]
+#[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
-fn approach([a, b, c, d, e, f, g, h]: [Lanes; 8], i: Lanes, j: Lanes) -> [Lanes; 6] {
+fn approach<N: Number>([a, b, c, d, e, f, g, h]: [N; 8], i: N, j: N) -> [N; 6]
+where
+    f64: Mul<N, Output = N>,
+{
     let k = a * f;
     let l = a * g + 2.0 * b * f;
     let m = a * h + 2.0 * b * g + c * f;
@@ -128,16 +174,17 @@ fn approach([a, b, c, d, e, f, g, h]: [Lanes; 8], i: Lanes, j: Lanes) -> [Lanes;
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::super::two::two, *};
     use crate::sim::samples::Numbers;
+    use fosssim_num::vector::Vec2;
 
     fn vector((x, y): (f64, f64)) -> Vec2 {
         Vec2::new(x, y)
     }
 
-    fn polynomials(x1: Vec2, d1: Vec2, edges: &EdgeMotions, radii: [f64; 2]) -> [[Polynomial; 4]; 2] {
+    fn polynomials(x1: Vec2, d1: Vec2, edges: &EdgeMotions<Two>, radii: [f64; 2]) -> [[Polynomial; 4]; 2] {
         let mut polynomials = Default::default();
-        coefficients(x1, d1, edges, radii).write(&mut polynomials);
+        coefficients(two([x1; 2]), two([d1; 2]), edges, Two(radii)).write(&mut polynomials);
         polynomials.as_flattened_mut().iter_mut().for_each(Polynomial::trim);
         polynomials
     }
@@ -230,10 +277,10 @@ mod tests {
             for lane in 0..2 {
                 let radii = if lane == 0 { [r, 0.5] } else { [0.5, r] };
                 let edges = EdgeMotions::new(
-                    [first[0], second[0]],
-                    [first[1], second[1]],
-                    [first[2], second[2]],
-                    [first[3], second[3]],
+                    two([first[0], second[0]]),
+                    two([first[1], second[1]]),
+                    two([first[2], second[2]]),
+                    two([first[3], second[3]]),
                 );
                 for (actual, expected) in polynomials(x1, d1, &edges, radii)[lane].iter().zip(&expected) {
                     let bits = |p: &Polynomial| p.coefficients().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
@@ -249,7 +296,7 @@ mod tests {
     fn a_translating_edge_gives_the_exact_polynomials() {
         let [x1, x2, x3] = [(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)].map(vector);
         let [d1, d2, d3] = [(0.0, -0.5), (0.0, 0.5), (0.0, 0.5)].map(vector);
-        let edges = EdgeMotions::new([x2; 2], [d2; 2], [x3; 2], [d3; 2]);
+        let edges = EdgeMotions::new(two([x2; 2]), two([d2; 2]), two([x3; 2]), two([d3; 2]));
         let [distance, first, second, approach] = polynomials(x1, d1, &edges, [0.25; 2])[0];
         // The gap along y is 1 - t and the squared length 4: 4 (1/16 - (1 - t)^2).
         assert_eq!(distance.coefficients(), [-4.0, 8.0, -3.75]);

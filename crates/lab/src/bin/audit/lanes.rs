@@ -1,0 +1,152 @@
+//! Lanes against single pairs: random scenes are stepped both ways, and every bit has to be the same.
+use super::{Random, V};
+use fosssim_oracle::{
+    num::vector::Vec2,
+    scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
+    sim::{RootSearch, SearchCounts, Simulation},
+    trace::{Layout, StepBytes},
+};
+use std::{
+    process::ExitCode,
+    sync::{
+        Mutex,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+/// What was compared so far.
+#[derive(Default)]
+struct Compared {
+    steps: u64,
+    failed: u64,
+    searched: u64,
+    bytes: u64,
+    /// The first scene, by its number, that differs.
+    first: Option<(u64, String)>,
+}
+
+/// Compares steps until so many pairs have been looked at.
+pub fn run(pairs: u64, seed: u64) -> ExitCode {
+    let (next, calls) = (AtomicU64::new(0), AtomicU64::new(0));
+    let total = Mutex::new(Compared::default());
+    let work = || {
+        while calls.load(Ordering::Relaxed) < pairs {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let mut random = Random::new(seed, number);
+            let scene = draw(&mut random);
+            let mut compared = Compared::default();
+            calls.fetch_add(compare(number, &scene, &mut compared), Ordering::Relaxed);
+            let mut total = total.lock().expect("no other thread has panicked");
+            total.steps += compared.steps;
+            total.failed += compared.failed;
+            total.searched += compared.searched;
+            total.bytes += compared.bytes;
+            total.first = [total.first.take(), compared.first].into_iter().flatten().min();
+        }
+    };
+    std::thread::scope(|scope| {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        (0..threads).for_each(|_| _ = scope.spawn(work));
+    });
+    let Compared { steps, failed, searched, bytes, first } = total.into_inner().expect("no thread has panicked");
+    let (scenes, calls) = (next.into_inner(), calls.into_inner());
+    println!("{calls} pairs in {steps} steps of {scenes} scenes, {failed} of them without a result");
+    println!("{searched} root searches, {bytes} bytes compared");
+    let differs = first.is_some();
+    match first {
+        Some((number, what)) => println!("first difference: scene {number}, {what}"),
+        None => println!("no bit differs"),
+    }
+    ExitCode::from(u8::from(differs))
+}
+
+/// Steps a scene both ways. Gives the number of pairs.
+fn compare(number: u64, scene: &Scene, compared: &mut Compared) -> u64 {
+    let [mut lanes, mut single] = [(); 2].map(|()| Simulation::new(scene, RootSearch::WhereNeeded));
+    single.forgo_lanes();
+    let [mut quick, mut slow] = [(); 2].map(|()| StepBytes::new(Layout::of(scene)));
+    for step in 1..=scene.steps() {
+        let results = [lanes.step(&mut quick), single.step(&mut slow)];
+        compared.steps += 1;
+        let has_failed = results[0].is_err();
+        compared.failed += u64::from(has_failed);
+        let same = results[0] == results[1] && lanes.search_counts() == single.search_counts();
+        let same = same && (has_failed || quick.records().eq(slow.records()));
+        if !same {
+            compared.first = Some((number, format!("step {step}: {results:?}\n{scene:?}")));
+        }
+        if has_failed || !same {
+            break;
+        }
+        compared.bytes += quick.len() as u64;
+    }
+    // A simulation that nobody listens to computes the same.
+    let mut unheard = Simulation::new(scene, RootSearch::WhereNeeded);
+    let is_over = (0..scene.steps()).all(|_| unheard.step(&mut ()).is_ok());
+    if is_over && unheard.search_counts() != lanes.search_counts() {
+        compared.first = compared.first.take().or(Some((number, format!("unheard: {scene:?}"))));
+    }
+    let SearchCounts { calls, searched, .. } = lanes.search_counts();
+    compared.searched += searched;
+    calls
+}
+
+/// A scene: sizes, places and motions from wide and nasty distributions.
+fn draw(random: &mut Random) -> Scene {
+    let scale = random.log(-3.0, 4.0) * if random.chance(50) { random.log(30.0, 160.0) } else { 1.0 };
+    let grid = random.chance(4);
+    let common = random.direction() * (scale * random.log(-6.0, 0.0));
+    let particles: Vec<Particle> = (0..1 + random.below(24))
+        .map(|_| {
+            let V(x, y) = if grid { random.grid(8, 0.125 * scale) } else { random.point(scale) };
+            let own = random.direction() * (scale * random.log(-14.0, 0.0));
+            let V(vx, vy) = match random.below(4) {
+                0 => V(0.0, 0.0),
+                1 => common,
+                2 if grid => random.grid(4, 0.125 * scale),
+                _ => own,
+            };
+            let radius = if grid { 0.125 * scale } else { scale * random.log(-4.0, -0.5) };
+            let velocity = if random.chance(5000) { f64::NAN } else { vx };
+            Particle {
+                position: Vec2::new(x, y),
+                velocity: Vec2::new(velocity, vy),
+                mass: random.log(-1.0, 1.0),
+                fixed: random.chance(3),
+                radius,
+                tag: None,
+            }
+        })
+        .collect();
+    let count = particles.len() as u64;
+    let end = |random: &mut Random| random.below(count) as usize;
+    let edges = (0..random.below(7))
+        .map(|_| Edge { first: end(random), second: end(random), radius: scale * random.log(-4.0, -1.0) })
+        .collect();
+    let half_planes = (0..random.below(4))
+        .map(|_| {
+            let V(x, y) = if grid { random.grid(8, 0.125 * scale) } else { random.point(scale) };
+            let V(nx, ny) = if grid { random.grid(2, 1.0) } else { random.direction() * random.log(-2.0, 2.0) };
+            HalfPlane { point: Vec2::new(x, y), normal: Vec2::new(nx, ny) }
+        })
+        .collect();
+    let restitution = random.uniform(0.0, 1.0);
+    let collision = if random.chance(2) {
+        Collision::ContinuousTime { restitution }
+    } else {
+        let max_iterations = random.below(4) as i32;
+        Collision::Hybrid { restitution, max_iterations, stiffness: 0.0, thickness: 0.0 }
+    };
+    Scene {
+        duration: 3.0,
+        time_step: 1.0,
+        integrator: Integrator::ExplicitEuler,
+        collision,
+        particles,
+        edges,
+        half_planes,
+        forces: Vec::new(),
+        description: None,
+        display: Display::default(),
+    }
+}

@@ -1,0 +1,92 @@
+//! A detection pass whose polynomials only have to be logged: several pairs of one kind at a time, in lanes.
+//!
+//! Every formula is the pair's own, evaluated in the same order, and every lane rounds like a single number; so polynomials,
+//! decisions and counts are those of [`super::pass`] bit for bit, however pairs are put together. Where inputs are so large
+//! that a NaN could arise, or are one, there are no blocks.
+//!
+//! `lists` holds what lanes are loaded from, `group` computes blocks of pairs, `rows` goes through them in the order of the
+//! trace, `settle` decides about single ones and writes them.
+mod group;
+mod lists;
+mod rows;
+mod settle;
+
+use super::super::{
+    bodies::Bodies,
+    observer::{Impulse, PairKind},
+    polynomial_bytes::PolynomialBytes,
+    simulation::{SearchCounts, StepError},
+};
+use fosssim_num::lanes::Instructions;
+use group::Group;
+use lists::Lists;
+use rows::Pairs;
+
+/// The pair that a pass looks at next, in the order of collisions.md 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    /// The particle.
+    pub first: usize,
+    /// What it meets.
+    pub kind: PairKind,
+    /// The number of that; behind the last one the next kind follows.
+    pub second: usize,
+}
+
+impl Place {
+    /// The first pair.
+    pub const BEGIN: Self = Self { first: 0, kind: PairKind::ParticleParticle, second: 1 };
+}
+
+/// What a pass is about.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Setting<'a> {
+    /// The scene's constants.
+    pub bodies: &'a Bodies,
+    /// Number of the step, from 1.
+    pub step: u32,
+    /// Positions at the start of the step.
+    pub q_start: &'a [f64],
+    /// Displacements within the step, as far as responses have left them.
+    pub displacements: &'a [f64],
+}
+
+/// Goes through the pairs of passes; keeps its memory.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Blocks {
+    instructions: Instructions,
+    lists: Lists,
+    group: Group,
+}
+
+impl Blocks {
+    /// Prepares a pass. False where pairs have to be computed one by one.
+    pub fn prepare(&mut self, setting: Setting<'_>) -> bool {
+        self.group.clear();
+        self.lists.prepare(setting)
+    }
+
+    /// Takes over the displacements of these particles. False where the rest has to be computed one by one.
+    pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
+        self.group.clear();
+        self.lists.refresh(setting, moved)
+    }
+
+    /// Goes on to the next hit and past it; none is left where there is none. Polynomials are appended to `bytes`.
+    ///
+    /// # Errors
+    /// [`StepError::RootSearch`]
+    pub fn next_hit(
+        &mut self,
+        setting: Setting<'_>,
+        place: &mut Place,
+        counts: &mut SearchCounts,
+        bytes: Option<&mut PolynomialBytes>,
+    ) -> Result<Option<Impulse>, StepError> {
+        let Self { instructions, lists, group } = self;
+        instructions.run(Pairs { lists, group, setting, place, counts, bytes })
+    }
+}
+
+#[cfg(test)]
+mod tests;

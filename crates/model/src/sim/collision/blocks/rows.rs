@@ -1,0 +1,224 @@
+//! Goes through all pairs in the order of the trace, particle by particle.
+use super::{
+    Group, Lists, Place, Setting,
+    group::{OF_EDGE, OF_TWO, TRIMMED, WHOLE, of_particles},
+    settle::{Output, decide},
+};
+use crate::sim::{
+    observer::{Impulse, Pair, PairKind},
+    polynomial_bytes::PolynomialBytes,
+    simulation::{SearchCounts, StepError},
+};
+use fosssim_num::lanes::{Lanes, MOST_LANES, Simd, Work};
+
+/// The pairs from a place on, up to the next hit.
+pub(super) struct Pairs<'a> {
+    pub lists: &'a Lists,
+    pub group: &'a mut Group,
+    pub setting: Setting<'a>,
+    pub place: &'a mut Place,
+    pub counts: &'a mut SearchCounts,
+    pub bytes: Option<&'a mut PolynomialBytes>,
+}
+
+/// Bytes of a pair with an edge, and of another one, where nothing is dropped.
+const EDGE_BYTES: usize = 4 * 4 + 8 * 17;
+const TWO_BYTES: usize = 2 * 4 + 8 * 5;
+
+impl Work for Pairs<'_> {
+    type Output = Result<Option<Impulse>, StepError>;
+
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) -> Self::Output {
+        let bodies = self.setting.bodies;
+        let particles = bodies.particles();
+        while self.place.first < particles {
+            let first = self.place.first;
+            let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
+            let mut bytes = self.bytes.take();
+            let mut output = Output::new(bytes.as_mut().map(|bytes| bytes.room(pairs)));
+            let hit = self.row(simd, &mut output)?;
+            let Output { used, polynomials, largest, .. } = output;
+            if let Some(bytes) = &mut bytes {
+                bytes.added(used, polynomials);
+                bytes.raise(largest.max(self.group.largest));
+            }
+            self.bytes = bytes;
+            if hit.is_some() {
+                return Ok(hit);
+            }
+            *self.place = Place { first: first + 1, kind: PairKind::ParticleParticle, second: first + 2 };
+        }
+        Ok(None)
+    }
+}
+
+impl Pairs<'_> {
+    /// What is left of the pairs of one particle. At a hit the place is the next pair's.
+    #[inline(always)]
+    fn row<S: Simd>(&mut self, simd: S, output: &mut Output<'_>) -> Result<Option<Impulse>, StepError> {
+        let width = Lanes::<S>::COUNT;
+        let Place { first, kind, second } = *self.place;
+        let bodies = self.setting.bodies;
+        let from = |asked| if kind == asked { second } else { 0 };
+        if kind == PairKind::ParticleParticle
+            && let Some(hit) = self.particles(simd, first, second, output)?
+        {
+            return Ok(Some(hit));
+        }
+        if bodies.edges.is_empty() && bodies.points.is_empty() {
+            return Ok(None);
+        }
+        if !self.group.particles.contains(&first) {
+            self.group.fill(simd, self.lists, bodies, first);
+        }
+        let lane = first - self.group.particles.start;
+        if kind <= PairKind::ParticleEdge {
+            let begin = from(PairKind::ParticleEdge);
+            let mut own = self.lists.own_edges(first, begin);
+            for edge in begin..bodies.edges.len() {
+                if let [skipped, others @ ..] = own
+                    && *skipped == edge
+                {
+                    own = others;
+                    continue;
+                }
+                let numbers = &self.group.edges[edge * OF_EDGE * width..(edge + 1) * OF_EDGE * width];
+                let pair = Numbers { numbers, width, lane };
+                if let Some(hit) = pair.settle::<17, 4, EDGE_BYTES>(
+                    (PairKind::ParticleEdge, [5, 3, 3, 6]),
+                    [first, edge],
+                    (self.setting, self.counts, self.place),
+                    output,
+                )? {
+                    return Ok(Some(hit));
+                }
+            }
+        }
+        for half_plane in from(PairKind::ParticleHalfPlane)..bodies.points.len() {
+            let numbers = &self.group.half_planes[half_plane * OF_TWO * width..(half_plane + 1) * OF_TWO * width];
+            let pair = Numbers { numbers, width, lane };
+            if let Some(hit) = pair.settle::<5, 2, TWO_BYTES>(
+                (PairKind::ParticleHalfPlane, [3, 2]),
+                [first, half_plane],
+                (self.setting, self.counts, self.place),
+                output,
+            )? {
+                return Ok(Some(hit));
+            }
+        }
+        Ok(None)
+    }
+
+    /// A particle and later particles.
+    #[inline(always)]
+    fn particles<S: Simd>(
+        &mut self,
+        simd: S,
+        first: usize,
+        begin: usize,
+        output: &mut Output<'_>,
+    ) -> Result<Option<Impulse>, StepError> {
+        let width = Lanes::<S>::COUNT;
+        let mut numbers = [0.0; OF_TWO * MOST_LANES];
+        let mut largest = Lanes::all(simd, 0.0);
+        let particles = self.setting.bodies.particles();
+        for block in (begin..particles).step_by(width) {
+            largest = of_particles(simd, self.lists, [first, block], &mut numbers[..OF_TWO * width], largest);
+            for lane in 0..width.min(particles - block) {
+                let pair = Numbers { numbers: &numbers[..OF_TWO * width], width, lane };
+                if let Some(hit) = pair.settle::<5, 2, TWO_BYTES>(
+                    (PairKind::ParticleParticle, [3, 2]),
+                    [first, block + lane],
+                    (self.setting, self.counts, self.place),
+                    output,
+                )? {
+                    output.largest = output.largest.max(largest.largest());
+                    return Ok(Some(hit));
+                }
+            }
+        }
+        output.largest = output.largest.max(largest.largest());
+        Ok(None)
+    }
+}
+
+/// One pair among those of a block.
+struct Numbers<'a> {
+    /// All numbers of all pairs.
+    numbers: &'a [f64],
+    /// How many pairs there are.
+    width: usize,
+    /// Which one is meant.
+    lane: usize,
+}
+
+impl Numbers<'_> {
+    /// Decides about the pair and writes its polynomials: `COUNT` with `lengths` coefficients, which take `BYTES` where none
+    /// is dropped.
+    #[inline(always)]
+    fn settle<const COEFFICIENTS: usize, const COUNT: usize, const BYTES: usize>(
+        &self,
+        (kind, lengths): (PairKind, [usize; COUNT]),
+        [first, second]: [usize; 2],
+        (setting, counts, place): (Setting<'_>, &mut SearchCounts, &mut Place),
+        output: &mut Output<'_>,
+    ) -> Result<Option<Impulse>, StepError> {
+        let Self { numbers, width, lane } = *self;
+        let known = numbers[COEFFICIENTS * width + lane];
+        if known == WHOLE || known == TRIMMED {
+            counts.calls += 1;
+            counts.excluded += 1;
+            if output.room.is_none() {
+                return Ok(None);
+            }
+        }
+        let mut coefficients = [0.0; COEFFICIENTS];
+        for (number, coefficient) in coefficients.iter_mut().enumerate() {
+            *coefficient = numbers[number * width + lane];
+        }
+        if known == WHOLE {
+            output.write_whole::<COEFFICIENTS, COUNT, BYTES>(&coefficients, lengths);
+            return Ok(None);
+        }
+        let open = (known != TRIMMED).then_some((setting, counts, super::super::pass::pair(kind, first, second)));
+        let hit = match kind {
+            PairKind::ParticleEdge => of_edge(&coefficients, open, output),
+            PairKind::ParticleParticle | PairKind::ParticleHalfPlane => of_two(&coefficients, open, output),
+        }?;
+        if hit.is_some() {
+            *place = Place { first, kind, second: second + 1 };
+        }
+        Ok(hit)
+    }
+}
+
+/// A pair that is still to be decided, with what is needed for it.
+type Open<'a> = Option<(Setting<'a>, &'a mut SearchCounts, Pair)>;
+
+/// Decides about a pair of particles, or with a half-plane, if it is open, and writes its polynomials.
+#[inline(never)]
+fn of_two(coefficients: &[f64], open: Open<'_>, output: &mut Output<'_>) -> Result<Option<Impulse>, StepError> {
+    settle(coefficients, [3, 2], open, output)
+}
+
+/// Decides about a pair with an edge, if it is open, and writes its polynomials.
+#[inline(never)]
+fn of_edge(coefficients: &[f64], open: Open<'_>, output: &mut Output<'_>) -> Result<Option<Impulse>, StepError> {
+    settle(coefficients, [5, 3, 3, 6], open, output)
+}
+
+#[inline(always)]
+fn settle<const COUNT: usize>(
+    coefficients: &[f64],
+    lengths: [usize; COUNT],
+    open: Open<'_>,
+    output: &mut Output<'_>,
+) -> Result<Option<Impulse>, StepError> {
+    let hit = match open {
+        Some((setting, counts, pair)) => decide(setting, counts, pair, coefficients, lengths)?,
+        None => None,
+    };
+    output.write(coefficients, lengths);
+    Ok(hit)
+}

@@ -1,0 +1,123 @@
+//! Decides about single pairs whose coefficients are known, and writes their polynomials.
+use super::{
+    super::{particle_edge, particle_half_plane, particle_particle, pass::time_of_impact},
+    Setting,
+};
+use crate::sim::{
+    observer::{Impulse, Pair, PairKind, Time},
+    simulation::{RootSearch, SearchCounts, StepError},
+};
+use fosssim_num::{
+    polynomial::Polynomial,
+    tolerances::LEADING_COEFFICIENT,
+    vector::{Vec2, at},
+};
+
+/// Where polynomials go, and how many have gone there.
+pub(super) struct Output<'a> {
+    /// Room for all of them; none where nobody wants to know.
+    pub room: Option<&'a mut [u8]>,
+    /// Bytes that are written.
+    pub used: usize,
+    /// Polynomials that are written.
+    pub polynomials: usize,
+    /// The largest modulus of coefficients.
+    pub largest: f64,
+}
+
+impl<'a> Output<'a> {
+    /// Nothing is written yet.
+    #[inline(always)]
+    pub fn new(room: Option<&'a mut [u8]>) -> Self {
+        Self { room, used: 0, polynomials: 0, largest: 0.0 }
+    }
+
+    /// Writes a pair's polynomials of which nothing is dropped.
+    #[inline(always)]
+    pub fn write_whole<const COEFFICIENTS: usize, const COUNT: usize, const BYTES: usize>(
+        &mut self,
+        coefficients: &[f64; COEFFICIENTS],
+        lengths: [usize; COUNT],
+    ) {
+        let Some(room) = self.room.as_deref_mut().and_then(|room| room[self.used..].first_chunk_mut::<BYTES>()) else {
+            return;
+        };
+        let (mut at, mut number) = (0, 0);
+        for length in lengths {
+            #[expect(clippy::cast_possible_truncation, reason = "at most six")]
+            let size = length as u32;
+            room[at..at + 4].copy_from_slice(&size.to_le_bytes());
+            at += 4;
+            for _ in 0..length {
+                room[at..at + 8].copy_from_slice(&coefficients[number].to_le_bytes());
+                (at, number) = (at + 8, number + 1);
+            }
+        }
+        self.used += BYTES;
+        self.polynomials += COUNT;
+    }
+
+    /// Writes a pair's polynomials without their small leading coefficients.
+    #[inline(always)]
+    pub fn write<const COUNT: usize>(&mut self, coefficients: &[f64], lengths: [usize; COUNT]) {
+        let Some(room) = &mut self.room else { return };
+        let (mut at, mut number) = (self.used, 0);
+        for length in lengths {
+            // Each coefficient is written; the next one takes its place if it is dropped.
+            let mut end = at + 4;
+            let mut leads = true;
+            for coefficient in &coefficients[number..number + length] {
+                room[end..end + 8].copy_from_slice(&coefficient.to_le_bytes());
+                leads &= coefficient.abs() < LEADING_COEFFICIENT;
+                end += if leads { 0 } else { 8 };
+            }
+            #[expect(clippy::cast_possible_truncation, reason = "at most six")]
+            let size = ((end - at - 4) / 8) as u32;
+            room[at..at + 4].copy_from_slice(&size.to_le_bytes());
+            (at, number) = (end, number + length);
+        }
+        self.used = at;
+        self.polynomials += COUNT;
+    }
+}
+
+/// Asks the certificate about a pair, and the root finder where it knows no answer.
+#[inline(always)]
+pub(super) fn decide<const COUNT: usize>(
+    setting: Setting<'_>,
+    counts: &mut SearchCounts,
+    pair: Pair,
+    coefficients: &[f64],
+    lengths: [usize; COUNT],
+) -> Result<Option<Impulse>, StepError> {
+    let mut begin = 0;
+    let mut polynomials = [Polynomial::default(); COUNT];
+    for (polynomial, length) in polynomials.iter_mut().zip(lengths) {
+        *polynomial = Polynomial::untrimmed(&coefficients[begin..begin + length]);
+        polynomial.trim();
+        begin += length;
+    }
+    let time = time_of_impact(RootSearch::WhereNeeded, counts, setting.step, pair, &polynomials)?;
+    let Time::Found(time) = time else { return Ok(None) };
+    Ok((time <= 1.0).then(|| normal(setting, pair, time)).flatten().map(|normal| Impulse { pair, normal, time }))
+}
+
+/// The contact normal; none where it is zero and therefore no hit.
+fn normal(setting: Setting<'_>, pair: Pair, time: f64) -> Option<Vec2> {
+    let Setting { bodies, q_start, displacements, .. } = setting;
+    let (first, second) = (pair.first as usize, pair.second as usize);
+    let x = |particle: usize| at(q_start, particle);
+    let d = |particle: usize| at(displacements, particle);
+    match pair.kind {
+        PairKind::ParticleParticle => Some(particle_particle::normal(x(first), d(first), x(second), d(second), time)),
+        PairKind::ParticleEdge => {
+            let particles = [first, bodies.edges[second][0], bodies.edges[second][1]];
+            particle_edge::normal(particles.map(x), particles.map(d), time)
+        }
+        PairKind::ParticleHalfPlane => {
+            let (point, normal) = (bodies.points[second], bodies.normals[second]);
+            let squared = normal.dot(&normal);
+            Some(particle_half_plane::normal(x(first), d(first), point, normal, squared, time))
+        }
+    }
+}

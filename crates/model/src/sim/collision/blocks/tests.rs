@@ -1,0 +1,112 @@
+//! Lanes and single pairs, side by side.
+use crate::{
+    scene::{Collision, Scene},
+    sim::{
+        Impulse, Observer, PolynomialBytes, Resume, RootSearch, Simulation, State, Wanted,
+        samples::{Numbers, edge, fixed, half_plane, particle, scene},
+    },
+};
+
+/// Keeps all that a step logs.
+#[derive(Default)]
+struct Log {
+    polynomials: PolynomialBytes,
+    impulses: Vec<Impulse>,
+    states: Vec<u64>,
+}
+
+impl Observer for Log {
+    fn begin_step(&mut self, _step: u32) {
+        self.polynomials.clear();
+        self.impulses.clear();
+        self.states.clear();
+    }
+    fn wanted(&mut self) -> Wanted<'_> {
+        Wanted::Bytes(&mut self.polynomials)
+    }
+    fn impulse(&mut self, impulse: &Impulse) {
+        self.impulses.push(*impulse);
+    }
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        self.end_step(0, state);
+        Resume::Own
+    }
+    fn end_step(&mut self, _step: u32, state: &State) {
+        self.states.extend(state.positions.iter().chain(&state.velocities).map(|number| number.to_bits()));
+    }
+}
+
+/// Steps a scene both ways and compares everything that comes of it. Gives the number of pairs.
+fn compare(scene: &Scene) -> u64 {
+    let [mut lanes, mut single] = [(); 2].map(|()| Simulation::new(scene, RootSearch::WhereNeeded));
+    single.forgo_lanes();
+    let [mut quick, mut slow] = [(); 2].map(|()| Log::default());
+    for _ in 0..scene.steps() {
+        let results = [lanes.step(&mut quick), single.step(&mut slow)];
+        assert_eq!(results[0], results[1]);
+        assert_eq!(lanes.search_counts(), single.search_counts());
+        if results[0].is_err() {
+            break;
+        }
+        assert_eq!(quick.polynomials.count(), slow.polynomials.count());
+        assert!(quick.polynomials.bytes() == slow.polynomials.bytes(), "{scene:?}");
+        assert!(quick.states == slow.states, "{scene:?}");
+        assert_eq!(format!("{:?}", quick.impulses), format!("{:?}", slow.impulses));
+    }
+    lanes.search_counts().calls
+}
+
+/// Some particles, of which some rest, some are fixed and some move together, with edges and half-planes.
+fn crowd(numbers: &mut Numbers, size: f64, collision: Collision) -> Scene {
+    let mut drawn = |bound: f64| ((numbers.next() + 1.0) * 0.5 * bound) as usize;
+    let count = 1 + drawn(13.0);
+    let edges: Vec<_> = (0..drawn(5.0)).map(|_| edge(drawn(count as f64), drawn(count as f64), 0.05 * size)).collect();
+    let kinds: Vec<usize> = (0..count).map(|_| drawn(4.0)).collect();
+    let planes = drawn(3.0);
+    let mut vector = |size: f64| {
+        let (x, y) = numbers.pair();
+        (size * x, size * y)
+    };
+    let common = vector(size);
+    let particles = kinds.iter().map(|kind| match kind {
+        0 => fixed(particle(vector(size), (0.0, 0.0), 1.0, 0.1 * size)),
+        1 => particle(vector(size), (0.0, 0.0), 1.0, 0.1 * size),
+        2 => particle(vector(size), common, 2.0, 0.2 * size),
+        _ => particle(vector(size), vector(size), 1.0, 0.1 * size),
+    });
+    let mut scene = scene(particles.collect());
+    scene.edges = edges;
+    scene.half_planes = (0..planes).map(|_| half_plane(vector(size), vector(1.0))).collect();
+    (scene.collision, scene.duration) = (collision, 2.0);
+    scene
+}
+
+#[test]
+fn lanes_change_no_bit_and_no_count() {
+    let mut numbers = Numbers(11);
+    let hybrid =
+        |max_iterations| Collision::Hybrid { restitution: 0.5, max_iterations, stiffness: 0.0, thickness: 0.0 };
+    let mut pairs = 0;
+    for round in 0..400 {
+        for collision in [Collision::ContinuousTime { restitution: 0.7 }, hybrid(0), hybrid(3)] {
+            let size = [1.0, 1.0, 1e-3, 1e5][round % 4];
+            pairs += compare(&crowd(&mut numbers, size, collision));
+        }
+    }
+    assert!(pairs > 100_000, "{pairs}");
+}
+
+/// Beyond what lanes are trusted with, and where numbers are none, pairs are computed one by one; a response may lead there.
+#[test]
+fn what_is_too_large_for_lanes_is_the_same_as_well() {
+    let mut numbers = Numbers(13);
+    for size in [1e47, 1e49, 1e160, f64::NAN] {
+        for _ in 0..20 {
+            let mut scene = crowd(&mut numbers, 1.0, Collision::ContinuousTime { restitution: 1.0 });
+            scene.particles[0].velocity.x = size;
+            compare(&scene);
+            scene.half_planes.push(half_plane((size, 0.0), (0.0, 1.0)));
+            compare(&scene);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! The certificate's closed forms for several polynomials at once: the questions of `closed_form`, in the same order of
+//! operations, about polynomials whose small leading coefficients are still there.
+//!
+//! The answers are the same as those for each polynomial alone, where all numbers are finite; lanes in which a question does
+//! not arise compute what nobody looks at.
+use super::super::{
+    lanes::{Lanes, Mask, Simd},
+    tolerances::{
+        LEADING_COEFFICIENT, LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_NEAR, PARABOLA_ROOM,
+        SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+    },
+};
+
+/// Where a coefficient is so small that it is dropped when it leads.
+#[inline(always)]
+pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
+    coefficient.abs().below(LEADING_COEFFICIENT)
+}
+
+/// Where the polynomial `a t + b`, with small leading coefficients dropped, is certainly not positive within the step.
+#[inline(always)]
+pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
+    let (zero, small) = (a.like(0.0), is_small(a));
+    // Without the leading one the rest is empty, or a constant that is not positive.
+    let constant = small & b.below(LEADING_COEFFICIENT);
+    let near = a.lt(zero) & b.le(zero) & (LINE_NEAR * a).le(b);
+    let known = constant | (!small & (b.is_zero() | near));
+    // Positive before its zero at a positive time; only rounding could hide it.
+    let falls = a.lt(zero) & zero.lt(b);
+    let open = !(small | known | falls);
+    if open.any() { known | (open & exact_line(a, b)) } else { known }
+}
+
+/// The root finder's own operations: one zero and the samples on its two sides.
+#[inline(always)]
+fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
+    let (nothing, one) = (a.like(0.0), a.like(1.0));
+    let zero = -b / a;
+    let before = nothing.lt(a * (zero - one) + b);
+    let after = nothing.lt(a * (zero + one) + b);
+    !((before & nothing.lt(zero)) | (after & zero.le(one)))
+}
+
+/// Where the polynomial `a t^2 + b t + c`, with small leading coefficients dropped, is certainly not positive within the step.
+#[inline(always)]
+pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
+    let small = is_small(a);
+    let vanishing = b.is_zero() & c.is_zero();
+    let whole = (vanishing | parabola(a, b, c)) & !small;
+    if small.any() { whole | (small & never_positive_line(b, c)) } else { whole }
+}
+
+/// The parabola with a leading coefficient that counts: it has no real zero, or is below zero with margin.
+#[inline(always)]
+fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
+    let product = 4.0 * a * c;
+    let misses = a.below(0.0)
+        & (b * b).lt(PARABOLA_COMPLEX * product)
+        & c.le(PARABOLA_ROOM * a)
+        & within(product, 1e-200, 1e200)
+        & within(-a, 1e-150, 1e150);
+    let size = a.abs() + b.abs() + c.abs();
+    let below = -PARABOLA_MARGIN * size;
+    let negative = c.lt(below)
+        & (c + 0.5 * b).lt(below)
+        & ((a + b) + c).lt(below)
+        & b.abs().le(PARABOLA_NEAR * a.abs())
+        & c.abs().le((PARABOLA_NEAR * PARABOLA_NEAR) * a.abs())
+        & within(size, 1e-200, 1e200);
+    c.below(0.0) & (misses | negative)
+}
+
+/// Where a value is at least `low` and less than `high`.
+#[inline(always)]
+fn within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
+    value.at_least(low) & value.below(high)
+}
+
+/// Where all coefficients are of a size with which a search is known to end.
+#[inline(always)]
+pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGTH]) -> Mask<S> {
+    let mut all = ends(coefficients[0]);
+    for coefficient in &coefficients[1..] {
+        all = all & ends(*coefficient);
+    }
+    all
+}
+
+#[inline(always)]
+fn ends<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
+    let modulus = coefficient.abs();
+    let largest = modulus.like(SEARCH_LARGEST_COEFFICIENT);
+    modulus.is_zero() | (modulus.at_least(SEARCH_SMALLEST_COEFFICIENT) & modulus.le(largest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        certificate::closed_form,
+        lanes::{Instructions, MOST_LANES, Work},
+        polynomial::trim,
+    };
+    use proptest::prelude::*;
+
+    struct Ask<'a>(&'a [[f64; MOST_LANES]; 3]);
+
+    impl Work for Ask<'_> {
+        type Output = [[f64; MOST_LANES]; 3];
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let mut answers = [[0.0; MOST_LANES]; 3];
+            for first in (0..MOST_LANES).step_by(Lanes::<S>::COUNT) {
+                let [a, b, c] = self.0.map(|numbers| Lanes::load(simd, &numbers[first..]));
+                let masks = [never_positive(a, b, c), never_positive_line(b, c), search_ends(&[a, b, c])];
+                for (answer, mask) in answers.iter_mut().zip(masks) {
+                    let mut lanes = [0.0; MOST_LANES];
+                    mask.as_numbers().store(&mut lanes);
+                    answer[first..first + Lanes::<S>::COUNT].copy_from_slice(&lanes[..Lanes::<S>::COUNT]);
+                }
+            }
+            answers
+        }
+    }
+
+    /// Of all sizes that formulas make, with zeros and bounds of the certificate among them.
+    fn coefficient() -> impl Strategy<Value = f64> {
+        let exponents = prop_oneof![-7..7_i32, -53..53_i32, -530..465_i32];
+        let power = |exponent: i32| f64::from_bits(u64::try_from(1023 + exponent).expect("not negative") << 52);
+        let sign = prop_oneof![Just(0.0), Just(-0.0), Just(1.0), Just(-1.0), Just(-1.0)];
+        let bounds = [1e-12, -1e-12, -9.9e-13, 0.5, -0.25, -LINE_NEAR].map(Just);
+        prop_oneof![
+            4 => (sign, 1.0..2.0, exponents).prop_map(move |(sign, size, exponent)| sign * size * power(exponent)),
+            1 => prop::strategy::Union::new(bounds),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, cases: 20_000, ..ProptestConfig::default() })]
+
+        #[test]
+        fn lanes_say_what_single_polynomials_say(lists in prop::array::uniform3(prop::array::uniform8(coefficient()))) {
+            for instructions in [Instructions::default(), Instructions::plain()] {
+                let answers = instructions.run(Ask(&lists));
+                for lane in 0..MOST_LANES {
+                    let [a, b, c] = lists.map(|numbers| numbers[lane]);
+                    let expected = [
+                        closed_form::never_positive(trim(&[a, b, c])).is_some(),
+                        closed_form::never_positive(trim(&[b, c])).is_some(),
+                        super::super::search_ends(&[a, b, c]),
+                    ];
+                    for (answer, expected) in answers.iter().zip(expected) {
+                        prop_assert_eq!(answer[lane] == 1.0, expected, "{:?}", [a, b, c]);
+                    }
+                }
+            }
+        }
+    }
+}
