@@ -170,6 +170,29 @@ test("a link leads to a moment", async () => {
   await close();
 });
 
+test("a motion that is too large is rounded, and the page says so", async (t) => {
+  const bodies = [...Array(180).keys()].map((k) => `<particle m="1" px="${k % 15}.1${k}" py="${Math.floor(k / 15)}.2${k}" vx="${Math.sin(k)}" vy="${Math.cos(k)}" fixed="0" radius="0.1"/>`);
+  const scene = (gravity) => `<scene><duration time="8"/><integrator type="symplectic-euler" dt="0.01"/>${bodies.join("\n")}<simplegravity fx="0" fy="${gravity}"/></scene>`;
+  const [right, wrong, trace, html] = ["large.xml", "other.xml", "large.bin", "large.html"].map((name) => join(folder, name));
+  writeFileSync(right, scene(-1));
+  writeFileSync(wrong, scene(-1.001));
+  execFileSync(join(programs, "fosssim-sample"), ["-s", wrong, "-d", "0", "-o", trace]);
+  spawnSync(join(programs, "fosssim-oracle"), ["check", right, trace, "--format", "html", "--output", html]);
+  assert.ok(statSync(html).size < 3_000_000, `${statSync(html).size}`);
+  t.diagnostic(`180 bodies, 800 steps: ${statSync(html).size} bytes`);
+  const { page, complaints, close } = await open(html);
+  assert.match(await page.locator(".viewer .hint").first().innerText(), /too large to be here to the last bit: positions are rounded to .* Exact are the records around these steps: 0, 1/);
+  // What is looked at is exact, and what is far from it near enough.
+  assert.match(await page.locator(".say").innerText(), /Step 1 of 800 is wrong by itself\. The furthest particle is 1e-7 from where it should be/);
+  await page.locator(".stepbox").fill("800");
+  await page.locator(".stepbox").press("Enter");
+  // Half of 0.001 times 8 squared.
+  const furthest = Number((await page.locator(".say").innerText()).match(/furthest particle is ([\d.]+) from the reference/)[1]);
+  assert.ok(Math.abs(furthest - 0.032) < 0.001, `${furthest}`);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("a still and a clip are saved", async () => {
   const { page, complaints, close } = await open(report("contact"));
   const saved = async (name) => {

@@ -19,7 +19,8 @@ pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision:
     // Below full hints a page holds nothing but what the program wrote itself.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
-    let what = case.what_if.filter(|_| is_full).map(|what| ("what", &what.track));
+    // What is the same to the last bit need not be there twice.
+    let what = case.what_if.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
     let tracks: Vec<(&str, &Track)> =
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();
     let Packed { blocks, rounded } = Packed::of(evidence, &tracks, precision);

@@ -192,6 +192,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
         for hidden in [
             "id=\"reference-",
             "id=\"what-",
+            "\"whatIf\":{",
             "Coefficients",
             "First divergence",
             "differs",
@@ -207,9 +208,16 @@ fn what_the_hints_hide_is_not_in_the_file() {
         assert_eq!(html.contains("id=\"submission-"), level != "none", "{level}");
         assert_eq!(html.contains("class=\"steps\""), level != "none", "{level}");
     }
-    for shown in
-        ["id=\"reference-", "id=\"what-", "Coefficients", "First divergence", "differs", "data-plot", "Proof", row.what]
-    {
+    for shown in [
+        "id=\"reference-",
+        "\"whatIf\":{",
+        "Coefficients",
+        "First divergence",
+        "differs",
+        "data-plot",
+        "Proof",
+        row.what,
+    ] {
         assert!(full.contains(shown), "{shown}");
     }
 }

@@ -180,6 +180,7 @@ async function make(article, key) {
     const buffer = await unpack(`${name}-${key}`);
     tracks[name] = buffer && (data.rounded ? unround(buffer, data.rounded, data.n) : new Float64Array(buffer));
   }
+  if (data.whatIf && data.whatIf.equal) tracks.what = tracks.submission;
   const viewer = new Viewer(article, data, tracks);
   viewers.set(key, viewer);
   return viewer;
