@@ -302,7 +302,7 @@ fn a_summary_says_what_happened_and_where_reading_ended() {
     let summary = Summary::of(&scene, &trace[..]);
     assert_eq!(summary.polynomials_per_pass, 10);
     assert_eq!((summary.polynomials.total(), summary.impulses.total()), (counts.polynomials, counts.impulses));
-    assert_eq!((counts.passes(), counts.calls), (30, [90, 30, 0]));
+    assert_eq!((counts.passes(), counts.calls), (30, [90, 30, 0].into()));
     assert!(counts.hits_of_all_kinds() > 0);
     assert_eq!(summary.collisions.len() as u64, counts.impulses);
     let text = summary.to_string();

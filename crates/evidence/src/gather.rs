@@ -7,8 +7,8 @@ use crate::{
 use fosssim_judge::{Detail, Finding, budget::Budget};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Detection, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, State},
-    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
+    sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State},
+    trace::{Layout, Lenient, LenientFrame, record_memory},
 };
 use std::io::Read;
 
@@ -84,17 +84,11 @@ impl From<&Finding> for Focus {
             Detail::MissedCollision { expected }
             | Detail::WrongNormal { expected, .. }
             | Detail::ContactTime { expected, .. } => (None, Some(expected.pair)),
-            Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => (None, pair_of(actual)),
+            Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => (None, actual.pair()),
             _ => (None, None),
         };
         Self { step: finding.step, pass, pair }
     }
-}
-
-fn pair_of(logged: &LoggedImpulse) -> Option<Pair> {
-    let kinds = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
-    let kind = kinds.into_iter().find(|kind| kind.code() == logged.kind)?;
-    Some(Pair { kind, first: u32::try_from(logged.first).ok()?, second: u32::try_from(logged.second).ok()? })
 }
 
 /// Everything that a viewer shows of one trace.

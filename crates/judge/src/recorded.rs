@@ -12,8 +12,8 @@ use super::{
 };
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Impulse, Observer, Pair, PairKind, Pass, Stage},
-    trace::{Cause, Layout, Lenient, LenientFrame, record_memory},
+    sim::{Impulse, Observer, Pair, PairKind, Pairs, Pass, Stage, pairs},
+    trace::{Cause, Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use std::io::Read;
@@ -110,71 +110,31 @@ pub fn judge<T: Read, R: Read>(
 }
 
 /// An impulse of a sound recording.
-fn impulse(logged: &fosssim_model::trace::LoggedImpulse) -> Option<Impulse> {
-    let kind = match logged.kind {
-        0 => PairKind::ParticleParticle,
-        1 => PairKind::ParticleEdge,
-        2 => PairKind::ParticleHalfPlane,
-        _ => return None,
-    };
-    let (first, second) = (u32::try_from(logged.first).ok()?, u32::try_from(logged.second).ok()?);
+fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
     let normal = Vec2::new(logged.normal.x, logged.normal.y);
-    Some(Impulse { pair: Pair { kind, first, second }, normal, time: logged.time })
+    Some(Impulse { pair: logged.pair()?, normal, time: logged.time })
 }
 
-/// Which polynomial of a step belongs to which pair (the order of collisions.md 1).
-struct Places<'a> {
-    scene: &'a Scene,
-    per_pass: usize,
+/// Which polynomial of a step belongs to which pair.
+struct Places {
+    pairs: Pairs<'static>,
     continuous: bool,
 }
 
-impl<'a> Places<'a> {
-    fn of(scene: &'a Scene) -> Self {
-        let continuous = matches!(scene.collision, Collision::ContinuousTime { .. });
-        let per_pass = (0..scene.particles.len()).map(|particle| of_particle(scene, particle)).sum();
-        Self { scene, per_pass, continuous }
+impl Places {
+    fn of(scene: &Scene) -> Self {
+        Self { pairs: pairs(scene), continuous: matches!(scene.collision, Collision::ContinuousTime { .. }) }
     }
 
     /// The place of polynomial `index` of a frame. In `hybrid` the recording does not tell where the impulse rounds
     /// end, so passes are counted as rounds.
     fn at(&self, index: usize) -> PolynomialPlace {
-        let (number, mut rest) = (index / self.per_pass.max(1), index % self.per_pass.max(1));
+        // A scene without pairs has no recording with polynomials; of one that has, the place is nobody's.
+        let nobody = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);
+        let (number, pair, which) = self.pairs.polynomial(index).unwrap_or(nobody);
         let round = u32::try_from(number).unwrap_or(u32::MAX);
         let stage = if self.continuous { Stage::ContinuousTime } else { Stage::Impulses { round } };
         let pass = Pass { stage, index: round };
-        let mut particle = 0;
-        while particle + 1 < self.scene.particles.len() && rest >= of_particle(self.scene, particle) {
-            rest -= of_particle(self.scene, particle);
-            particle += 1;
-        }
-        let (kind, second, number) = self.within(particle, rest);
-        #[expect(clippy::cast_possible_truncation, reason = "a scene's indices fit 32 bits")]
-        let pair = Pair { kind, first: particle as u32, second: second as u32 };
-        PolynomialPlace { pass, pair, role: Role::of(kind, number), index }
+        PolynomialPlace { pass, pair, role: Role::of(pair.kind, which), index }
     }
-
-    /// Kind, second object and number of the `rest`-th polynomial of a particle's pairs.
-    fn within(&self, particle: usize, mut rest: usize) -> (PairKind, usize, usize) {
-        let later = self.scene.particles.len() - particle - 1;
-        if rest < 2 * later {
-            return (PairKind::ParticleParticle, particle + 1 + rest / 2, rest % 2);
-        }
-        rest -= 2 * later;
-        let free =
-            self.scene.edges.iter().enumerate().filter(|(_, edge)| edge.first != particle && edge.second != particle);
-        for (edge, _) in free {
-            if rest < 4 {
-                return (PairKind::ParticleEdge, edge, rest);
-            }
-            rest -= 4;
-        }
-        (PairKind::ParticleHalfPlane, rest / 2, rest % 2)
-    }
-}
-
-/// Polynomials of one pass in which this particle comes first.
-fn of_particle(scene: &Scene, particle: usize) -> usize {
-    let free = scene.edges.iter().filter(|edge| edge.first != particle && edge.second != particle).count();
-    2 * (scene.particles.len() - particle - 1) + 4 * free + 2 * scene.half_planes.len()
 }

@@ -242,11 +242,14 @@ pub struct PairWords(pub Pair);
 impl Display for PairWords {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Pair { kind, first, second } = self.0;
-        match kind {
-            PairKind::ParticleParticle => write!(f, "particles {first} and {second}"),
-            PairKind::ParticleEdge => write!(f, "particle {first} and edge {second}"),
-            PairKind::ParticleHalfPlane => write!(f, "particle {first} and half-plane {second}"),
-        }
+        two(f, kind, &first, &second)
+    }
+}
+
+fn two(f: &mut Formatter<'_>, kind: PairKind, first: &dyn Display, second: &dyn Display) -> fmt::Result {
+    match kind {
+        PairKind::ParticleParticle => write!(f, "particles {first} and {second}"),
+        kind => write!(f, "particle {first} and {} {second}", kind.second()),
     }
 }
 
@@ -256,11 +259,9 @@ struct LoggedPair<'a>(&'a LoggedImpulse);
 impl Display for LoggedPair<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let LoggedImpulse { kind, first, second, .. } = self.0;
-        match kind {
-            0 => write!(f, "particles {first} and {second}"),
-            1 => write!(f, "particle {first} and edge {second}"),
-            2 => write!(f, "particle {first} and half-plane {second}"),
-            kind => write!(f, "a pair of unknown kind {kind} ({first}, {second})"),
+        match self.0.kind() {
+            Some(known) => two(f, known, first, second),
+            None => write!(f, "a pair of unknown kind {kind} ({first}, {second})"),
         }
     }
 }

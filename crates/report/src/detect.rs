@@ -4,7 +4,7 @@ use super::{
     number::exact,
     style::{Look, Style},
     table::{Align, Cell, Table},
-    view::{Number, PairView, PassView, numbers, pair_kind},
+    view::{Number, PairView, PassView, numbers},
 };
 use fosssim_evidence::Logged;
 use fosssim_judge::{
@@ -162,7 +162,7 @@ impl Detect<'_> {
                     Logged::Nothing | Logged::Unknown => None,
                 },
             })),
-            "kind": pair_kind(study.motion.kind()),
+            "kind": study.motion.kind().name(),
             "motion": motion_view(&study.motion),
             "polynomials": study.curves.iter().map(curve_view).collect::<Vec<_>>(),
             "answer": answer_view(&study.answer),

@@ -3,10 +3,10 @@ use super::{
     number::{count, counted},
     style::{Look, Style},
     table::{Align, Table},
-    view::{SCHEMA, pair_kind},
+    view::SCHEMA,
 };
 use fosssim_model::{
-    sim::{PairKind, SearchCounts},
+    sim::SearchCounts,
     trace::{Counts, Written},
 };
 use serde_json::json;
@@ -28,8 +28,6 @@ pub struct Summary<'a> {
     pub audited: Option<SearchCounts>,
 }
 
-const KINDS: [PairKind; 3] = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
-
 impl Summary<'_> {
     /// For people.
     #[must_use]
@@ -48,9 +46,10 @@ impl Summary<'_> {
         .map(|(number, name)| format!("{} {name}", count(number)))
         .collect();
         table.row(["detection passes".into(), count(counts.passes()).into(), passes.join(", ").into()]);
-        for (kind, (calls, hits)) in KINDS.into_iter().zip(counts.calls.into_iter().zip(counts.hits)) {
+        for (kind, &calls) in counts.calls.iter() {
+            let hits = counts.hits[kind];
             let hits = if calls > 0 { format!("{} collide", count(hits)) } else { String::new() };
-            table.row([format!("{} calls", pair_kind(kind)).into(), count(calls).into(), hits.into()]);
+            table.row([format!("{} calls", kind.name()).into(), count(calls).into(), hits.into()]);
         }
         table.row(["impulses".into(), count(counts.impulses).into(), "".into()]);
         let zones = if counts.failsafes > 0 {
@@ -80,10 +79,10 @@ impl Summary<'_> {
     #[must_use]
     pub fn json(&self) -> String {
         let counts = &self.counts;
-        let calls: serde_json::Map<_, _> = KINDS
-            .into_iter()
-            .zip(counts.calls.into_iter().zip(counts.hits))
-            .map(|(kind, (calls, hits))| (pair_kind(kind).to_owned(), json!({ "calls": calls, "hits": hits })))
+        let calls: serde_json::Map<_, _> = counts
+            .calls
+            .iter()
+            .map(|(kind, calls)| (kind.name().to_owned(), json!({ "calls": calls, "hits": counts.hits[kind] })))
             .collect();
         let value = json!({
             "schema": SCHEMA,

@@ -50,29 +50,14 @@ pub struct PairView {
 
 impl From<Pair> for PairView {
     fn from(pair: Pair) -> Self {
-        Self { kind: pair_kind(pair.kind), first: i64::from(pair.first), second: i64::from(pair.second) }
+        Self { kind: pair.kind.name(), first: i64::from(pair.first), second: i64::from(pair.second) }
     }
 }
 
 impl From<&LoggedImpulse> for PairView {
     fn from(impulse: &LoggedImpulse) -> Self {
-        let kind = match impulse.kind {
-            0 => "particle-particle",
-            1 => "particle-edge",
-            2 => "particle-half-plane",
-            _ => "unknown",
-        };
+        let kind = impulse.kind().map_or("unknown", PairKind::name);
         Self { kind, first: i64::from(impulse.first), second: i64::from(impulse.second) }
-    }
-}
-
-/// The key of a kind of pair.
-#[must_use]
-pub const fn pair_kind(kind: PairKind) -> &'static str {
-    match kind {
-        PairKind::ParticleParticle => "particle-particle",
-        PairKind::ParticleEdge => "particle-edge",
-        PairKind::ParticleHalfPlane => "particle-half-plane",
     }
 }
 

@@ -59,12 +59,12 @@ pub(in crate::cli) fn of_scene(word: &str, scene: &Scene) -> Result<Pair> {
         bail!("there is no {what} {index}; the scene has {count}, counted from 0")
     };
     let first = index(first, scene.particles.len(), "particle")?;
-    let (count, what) = match kind {
-        PairKind::ParticleParticle => (scene.particles.len(), "particle"),
-        PairKind::ParticleEdge => (scene.edges.len(), "edge"),
-        PairKind::ParticleHalfPlane => (scene.half_planes.len(), "half-plane"),
+    let count = match kind {
+        PairKind::ParticleParticle => scene.particles.len(),
+        PairKind::ParticleEdge => scene.edges.len(),
+        PairKind::ParticleHalfPlane => scene.half_planes.len(),
     };
-    let second = index(second, count, what)?;
+    let second = index(second, count, kind.second())?;
     match kind {
         PairKind::ParticleParticle if first == second => bail!("a particle makes no pair with itself"),
         // Detection looks at each pair once, the lower index first.
@@ -81,13 +81,8 @@ pub(in crate::cli) fn of_scene(word: &str, scene: &Scene) -> Result<Pair> {
 }
 
 fn kind_of(word: &str) -> Result<PairKind> {
-    Ok(match word {
-        "pp" | "particle-particle" => PairKind::ParticleParticle,
-        "pe" | "particle-edge" => PairKind::ParticleEdge,
-        "ph" | "particle-half-plane" => PairKind::ParticleHalfPlane,
-        _ => bail!(
-            "`{word}` is no kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and half-plane)"
-        ),
+    PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&word)).with_context(|| {
+        format!("`{word}` is no kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and half-plane)")
     })
 }
 

@@ -8,7 +8,7 @@ use fosssim_judge::{
     fair::Verdict,
     parity::{Options, judge},
 };
-use fosssim_model::scene::Scene;
+use fosssim_model::{scene::Scene, sim::PairKind};
 
 /// How what is told of a mistake stands to it, from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -86,9 +86,9 @@ fn place(mutant: &Mutant) -> &'static str {
 fn rating(mutant: &Mutant, told: &Explanation) -> Rating {
     let what = told.what.to_lowercase();
     let named = &what[..what.find(':').unwrap_or(0)];
-    let kinds = ["particle-particle", "particle-edge", "particle-half-plane"];
-    let names_other_kind =
-        kinds.iter().any(|kind| named.contains(kind)) && !mutant.kind.is_empty() && !named.contains(mutant.kind);
+    let names_other_kind = PairKind::ALL.into_iter().any(|kind| named.contains(kind.name()))
+        && !mutant.kind.is_empty()
+        && !named.contains(mutant.kind);
     let of_row = student::find(&told.key);
     let is_there = of_row.map_or(named.contains(place(mutant)), |row| row.area == mutant.area);
     if !is_there || names_other_kind {

@@ -11,7 +11,7 @@ use fosssim_judge::{
 };
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Decision, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, Stage, State},
+    sim::{ByKind, Decision, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, Stage, State, pairs},
     trace::{Layout, Lenient, LenientFrame, LoggedImpulse, PolynomialLog, record_memory},
 };
 use fosssim_num::{polynomial::Polynomial, vector::at};
@@ -49,7 +49,7 @@ pub(super) fn samples(scene: &Scene, trace: impl Read) -> Vec<Sample> {
         let _ = budget.step(&mut simulation, &mut gatherer);
         before.state.clone_from(&end.state);
     }
-    gathered.kinds.into_iter().flat_map(|kind| kind.samples).collect()
+    gathered.kinds.into_values().flat_map(|kind| kind.samples).collect()
 }
 
 /// Reads a record. False at the end of what is sound: nobody is to blame for what is left of a damaged record.
@@ -59,7 +59,7 @@ fn read<R: Read>(reader: &mut Lenient<R>, frame: &mut LenientFrame) -> bool {
 
 #[derive(Default)]
 struct Gathered {
-    kinds: [OfKind; 3],
+    kinds: ByKind<OfKind>,
 }
 
 #[derive(Default)]
@@ -71,23 +71,13 @@ struct OfKind {
 
 impl Gathered {
     fn is_full(&self) -> bool {
-        self.kinds.iter().all(|kind| kind.wrong >= MOST_WRONG)
+        self.kinds.values().all(|kind| kind.wrong >= MOST_WRONG)
     }
 }
 
 /// How many of its polynomials each detection logs, by kind of pair; all of them as a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Sizes([usize; 3]);
-
-const KINDS: [PairKind; 3] = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
-
-const fn row(kind: PairKind) -> usize {
-    match kind {
-        PairKind::ParticleParticle => 0,
-        PairKind::ParticleEdge => 1,
-        PairKind::ParticleHalfPlane => 2,
-    }
-}
+struct Sizes(ByKind<usize>);
 
 /// The observer of one step.
 struct Gatherer<'a> {
@@ -109,7 +99,7 @@ impl<'a> Gatherer<'a> {
         log: &'a PolynomialLog,
         gathered: &'a mut Gathered,
     ) -> Self {
-        let counts = pairs(scene);
+        let counts = pairs(scene).counts();
         let sizes = sizes(counts, mid.polynomials.len(), log.len());
         Self { scene, step, mid, log, gathered, sizes, next: None }
     }
@@ -148,49 +138,33 @@ impl<'a> Gatherer<'a> {
     }
 }
 
-/// How many pairs of each kind a pass looks at.
-fn pairs(scene: &Scene) -> [usize; 3] {
-    let count = scene.particles.len();
-    let is_end =
-        |particle: usize| move |edge: &&fosssim_model::scene::Edge| edge.first == particle || edge.second == particle;
-    let at_edges: usize = (0..count).map(|i| scene.edges.len() - scene.edges.iter().filter(is_end(i)).count()).sum();
-    [count * count.saturating_sub(1) / 2, at_edges, count * scene.half_planes.len()]
-}
-
 /// How many polynomials each detection logs so that the lists consist of whole passes: all of them if that fits, else as
-/// many as possible. `None` when nothing fits.
-fn sizes(pairs: [usize; 3], before: usize, all: usize) -> Option<Sizes> {
-    let fits = |sizes: [usize; 3]| {
-        let pass: usize = pairs.iter().zip(sizes).map(|(pairs, size)| pairs * size).sum();
+/// many as possible. `None` when nothing fits. `pairs` are those of one pass.
+fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<Sizes> {
+    let fits = |sizes: &ByKind<usize>| {
+        let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
         pass > 0 && before.is_multiple_of(pass) && all.is_multiple_of(pass) && all > 0
     };
-    let full = KINDS.map(PairKind::polynomials);
-    if fits(full) {
+    let full = ByKind::from_fn(PairKind::polynomials);
+    if fits(&full) {
         return Some(Sizes(full));
     }
-    let mut choices: Vec<[usize; 3]> = Vec::new();
-    for a in 0..=full[0] {
-        for b in 0..=full[1] {
-            for c in 0..=full[2] {
-                choices.push([a, b, c]);
-            }
-        }
-    }
-    // Fewest changes first: a student forgets something of one detection, seldom of two.
-    choices.sort_by_key(|sizes| {
-        let changed = sizes.iter().zip(full).zip(pairs).filter(|((size, full), pairs)| *pairs > 0 && **size != *full);
-        (changed.count(), std::cmp::Reverse(sizes.iter().sum::<usize>()))
-    });
-    let changes = |sizes: &[usize; 3]| {
-        sizes.iter().zip(full).zip(pairs).filter(|((size, full), pairs)| *pairs > 0 && **size != *full).count()
-    };
-    let is_empty = |sizes: &[usize; 3]| sizes.iter().zip(pairs).any(|(size, pairs)| pairs > 0 && *size == 0);
+    let there: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pairs[*kind] > 0).collect();
     // Kinds without a pair have one choice.
-    choices.retain(|sizes| sizes.iter().zip(full).zip(pairs).all(|((size, full), pairs)| pairs > 0 || *size == full));
-    let mut fitting = choices.into_iter().filter(|sizes| fits(*sizes));
+    let mut choices = vec![full];
+    for &kind in &there {
+        let with =
+            |sizes: ByKind<usize>, size| ByKind::from_fn(|other| if other == kind { size } else { sizes[other] });
+        choices = choices.into_iter().flat_map(|sizes| (0..=full[kind]).map(move |size| with(sizes, size))).collect();
+    }
+    let changes = |sizes: &ByKind<usize>| there.iter().filter(|kind| sizes[**kind] != full[**kind]).count();
+    let is_empty = |sizes: &ByKind<usize>| there.iter().any(|kind| sizes[*kind] == 0);
+    // Fewest changes first: a student forgets something of one detection, seldom of two.
+    choices.sort_by_key(|sizes| (changes(sizes), std::cmp::Reverse(sizes.values().sum::<usize>())));
+    let mut fitting = choices.into_iter().filter(fits);
     let first = fitting.next()?;
     // Which of two detections is empty numbers alone can't tell, and a wrong guess would make everything look wrong.
-    let is_rival = |other: [usize; 3]| changes(&other) == changes(&first) && is_empty(&other);
+    let is_rival = |other: ByKind<usize>| changes(&other) == changes(&first) && is_empty(&other);
     let is_open = is_empty(&first) && fitting.any(is_rival);
     (!is_open).then_some(Sizes(first))
 }
@@ -208,7 +182,7 @@ impl Observer for Gatherer<'_> {
 
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
         let (Some((pass, index)), Some(Sizes(sizes))) = (self.next, self.sizes) else { return };
-        let size = sizes[row(pair.kind)];
+        let size = sizes[pair.kind];
         let lists = index..index + size;
         // What comes behind a contact of the submission's own depends on a response that is not logged.
         self.next = (!self.is_hit(pair)).then_some((pass, lists.end));
@@ -223,12 +197,12 @@ impl Observer for Gatherer<'_> {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
                 forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
             });
-        let kind = &self.gathered.kinds[row(pair.kind)];
+        let kind = &self.gathered.kinds[pair.kind];
         if if is_right { kind.right >= MOST_RIGHT } else { kind.wrong >= MOST_WRONG } {
             return;
         }
         let motion = self.motion(pair, q_start, q_end);
-        let kind = &mut self.gathered.kinds[row(pair.kind)];
+        let kind = &mut self.gathered.kinds[pair.kind];
         *(if is_right { &mut kind.right } else { &mut kind.wrong }) += 1;
         kind.samples.push(Sample { step: self.step, pass, pair, motion, polynomials });
     }

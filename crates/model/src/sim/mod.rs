@@ -11,6 +11,7 @@ mod collision;
 mod forces;
 mod integrators;
 mod observer;
+mod pairs;
 mod polynomial_bytes;
 #[cfg(test)]
 mod samples;
@@ -18,5 +19,6 @@ mod simulation;
 
 pub use collision::{PairMotion, PointMotion};
 pub use observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, Time, Wanted, Zone};
+pub use pairs::{ByKind, Pairs, pairs};
 pub use polynomial_bytes::PolynomialBytes;
 pub use simulation::{RootSearch, SearchCounts, Simulation, State, StepError};

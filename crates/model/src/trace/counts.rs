@@ -1,5 +1,5 @@
 //! Counting what happens inside the steps: an observer that adds up and does nothing else.
-use crate::sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Stage, State, Zone};
+use crate::sim::{ByKind, Decision, Detection, Impulse, Observer, Pass, Stage, State, Zone};
 use std::fmt;
 
 /// Numbers of events over all steps that it heard. Use it with others as a tuple: `(&mut recorder, &mut counts)`.
@@ -31,10 +31,10 @@ pub struct Counts {
     pub impulse_passes: u64,
     /// Passes of the geometric stage of `hybrid`.
     pub geometric_passes: u64,
-    /// Detection calls per kind of pair, in the order of the trace's numbers.
-    pub calls: [u64; 3],
+    /// Detection calls per kind of pair.
+    pub calls: ByKind<u64>,
     /// Calls that found a collision, per kind of pair.
-    pub hits: [u64; 3],
+    pub hits: ByKind<u64>,
     /// Polynomials of all calls.
     pub polynomials: u64,
     /// Responses.
@@ -53,28 +53,19 @@ impl Counts {
     /// Detection calls of all kinds.
     #[must_use]
     pub fn calls_of_all_kinds(&self) -> u64 {
-        self.calls.iter().sum()
+        self.calls.values().sum()
     }
 
     /// Hits of all kinds.
     #[must_use]
     pub fn hits_of_all_kinds(&self) -> u64 {
-        self.hits.iter().sum()
+        self.hits.values().sum()
     }
 
     /// Passes of all stages.
     #[must_use]
     pub fn passes(&self) -> u64 {
         self.simple_passes + self.continuous_time_passes + self.impulse_passes + self.geometric_passes
-    }
-}
-
-/// Place of a kind in the arrays.
-const fn slot(pair: Pair) -> usize {
-    match pair.kind {
-        PairKind::ParticleParticle => 0,
-        PairKind::ParticleEdge => 1,
-        PairKind::ParticleHalfPlane => 2,
     }
 }
 
@@ -92,9 +83,9 @@ impl Observer for Counts {
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
-        let slot = slot(detection.pair);
-        self.calls[slot] += 1;
-        self.hits[slot] += u64::from(matches!(detection.decision, Decision::Hit { .. }));
+        let kind = detection.pair.kind;
+        self.calls[kind] += 1;
+        self.hits[kind] += u64::from(matches!(detection.decision, Decision::Hit { .. }));
         self.polynomials += detection.polynomials.len() as u64;
     }
 
@@ -125,11 +116,9 @@ impl fmt::Display for Counts {
             self.simple_passes, self.continuous_time_passes, self.impulse_passes, self.geometric_passes
         )?;
         for (name, numbers) in [("calls", self.calls), ("hits", self.hits)] {
-            let [particles, edges, half_planes] = numbers;
-            writeln!(
-                f,
-                "{name:<13} {particles} particle-particle, {edges} particle-edge, {half_planes} particle-half-plane"
-            )?;
+            let of_kinds: Vec<String> =
+                numbers.iter().map(|(kind, number)| format!("{number} {}", kind.name())).collect();
+            writeln!(f, "{name:<13} {}", of_kinds.join(", "))?;
         }
         writeln!(f, "polynomials   {}", self.polynomials)?;
         writeln!(f, "impulses      {}", self.impulses)?;
@@ -144,7 +133,7 @@ impl fmt::Display for Counts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::Time;
+    use crate::sim::{Pair, PairKind, Time};
     use fosssim_num::vector::Vec2;
 
     #[test]
@@ -163,7 +152,7 @@ mod tests {
         counts.failsafe(0, &zone);
         counts.end_step(1, &State::default());
         assert_eq!((counts.geometric_passes, counts.geometric_steps, counts.passes()), (2, 1, 2));
-        assert_eq!((counts.calls, counts.hits), ([0, 4, 0], [0, 2, 0]));
+        assert_eq!((counts.calls, counts.hits), ([0, 4, 0].into(), [0, 2, 0].into()));
         assert_eq!((counts.most_zones, counts.failsafes, counts.largest_zone, counts.steps), (1, 1, 3, 1));
     }
 }

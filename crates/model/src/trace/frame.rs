@@ -1,5 +1,5 @@
 //! One record in memory.
-use crate::sim::{Impulse, State};
+use crate::sim::{Impulse, Pair, PairKind, State};
 use fosssim_num::vector::Vec2;
 use std::fmt;
 
@@ -29,6 +29,21 @@ pub struct LoggedImpulse {
     pub time: f64,
 }
 
+impl LoggedImpulse {
+    /// The kind of its pair; none in a damaged trace.
+    #[must_use]
+    pub fn kind(&self) -> Option<PairKind> {
+        PairKind::from_code(self.kind)
+    }
+
+    /// Its pair; none where it names nothing that could be one.
+    #[must_use]
+    pub fn pair(&self) -> Option<Pair> {
+        let (first, second) = (u32::try_from(self.first).ok()?, u32::try_from(self.second).ok()?);
+        Some(Pair { kind: self.kind()?, first, second })
+    }
+}
+
 impl From<Impulse> for LoggedImpulse {
     fn from(impulse: Impulse) -> Self {
         #[expect(clippy::cast_possible_wrap, reason = "the format has 32 signed bits for an index")]
@@ -40,11 +55,9 @@ impl From<Impulse> for LoggedImpulse {
 impl fmt::Display for LoggedImpulse {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, first, second, normal, time } = self;
-        match kind {
-            0 => write!(f, "particle {first} - particle {second}")?,
-            1 => write!(f, "particle {first} - edge {second}")?,
-            2 => write!(f, "particle {first} - half-plane {second}")?,
-            kind => write!(f, "unknown type {kind} {first} {second}")?,
+        match self.kind() {
+            Some(kind) => write!(f, "particle {first} - {} {second}", kind.second())?,
+            None => write!(f, "unknown type {kind} {first} {second}")?,
         }
         write!(f, ", normal ({:?}, {:?}), time {time:?}", normal.x, normal.y)
     }

@@ -9,7 +9,7 @@ use super::{
     layout::Layout,
     source::{Source, WINDOW},
 };
-use crate::scene::Scene;
+use crate::{scene::Scene, sim::PairKind};
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 use std::io::{Read, Seek};
 
@@ -296,11 +296,14 @@ impl<R: Read> Reader<R> {
     /// What is odd about an impulse.
     fn odd(&self, number: u64, impulse: &LoggedImpulse) -> Option<Malformation> {
         let particles = self.layout.particles;
-        let (object, count) = match (impulse.kind, self.objects) {
-            (0, _) => ("particle", Some(particles)),
-            (1, objects) => ("edge", objects.map(|(edges, _)| edges)),
-            (2, objects) => ("half-plane", objects.map(|(_, half_planes)| half_planes)),
-            (kind, _) => return Some(Malformation::UnknownKind { impulse: number, kind }),
+        let Some(kind) = impulse.kind() else {
+            return Some(Malformation::UnknownKind { impulse: number, kind: impulse.kind });
+        };
+        let object = kind.second();
+        let count = match kind {
+            PairKind::ParticleParticle => Some(particles),
+            PairKind::ParticleEdge => self.objects.map(|(edges, _)| edges),
+            PairKind::ParticleHalfPlane => self.objects.map(|(_, half_planes)| half_planes),
         };
         let first = ("particle", impulse.first, particles);
         let second = (object, impulse.second, count.unwrap_or(usize::MAX));

@@ -10,7 +10,10 @@ use super::{
     histogram::Histogram,
     layout::Layout,
 };
-use crate::scene::{Collision, Scene};
+use crate::{
+    scene::{Collision, Scene},
+    sim::{Pair, Pairs, pairs},
+};
 use sha2::{Digest, Sha256};
 use std::{fmt, io::Read};
 
@@ -190,7 +193,8 @@ impl Summary {
 impl StepView {
     fn of(scene: &Scene, per_pass: u64, step: u32, frame: &Frame) -> Self {
         let log = &frame.polynomials;
-        let labels = labels(scene).cycle();
+        let pairs = pairs(scene);
+        let labels = labels(&pairs).cycle();
         let shown = log
             .iter()
             .zip(labels)
@@ -206,16 +210,10 @@ impl StepView {
     }
 }
 
-/// For each polynomial of a detection pass its pair in words (collisions.md 1).
-fn labels(scene: &Scene) -> impl Iterator<Item = String> + Clone {
-    let count = scene.particles.len();
-    (0..count).flat_map(move |i| {
-        let particles = (i + 1..count).map(move |j| (format!("particle {i} - particle {j}"), 2));
-        let apart = move |edge: usize| scene.edges[edge].first != i && scene.edges[edge].second != i;
-        let edges = (0..scene.edges.len()).filter(move |&e| apart(e));
-        let edges = edges.map(move |e| (format!("particle {i} - edge {e}"), 4));
-        let half_planes = (0..scene.half_planes.len()).map(move |h| (format!("particle {i} - half-plane {h}"), 2));
-        particles.chain(edges).chain(half_planes).flat_map(|(label, times)| std::iter::repeat_n(label, times))
+/// For each polynomial of a detection pass its pair in words.
+fn labels<'a>(pairs: &'a Pairs<'_>) -> impl Iterator<Item = String> + Clone + 'a {
+    pairs.iter().flat_map(|Pair { kind, first, second }| {
+        std::iter::repeat_n(format!("particle {first} - {} {second}", kind.second()), kind.polynomials())
     })
 }
 
@@ -224,10 +222,7 @@ fn polynomials_per_pass(scene: &Scene) -> u64 {
     if !Layout::of(scene).polynomials {
         return 0;
     }
-    let particles = scene.particles.len() as u64;
-    let apart = |first, second| particles - if first == second { 1 } else { 2 };
-    let edges: u64 = scene.edges.iter().map(|edge| apart(edge.first, edge.second)).sum();
-    particles * particles.saturating_sub(1) + 4 * edges + 2 * particles * scene.half_planes.len() as u64
+    pairs(scene).polynomials() as u64
 }
 
 fn name(collision: &Collision) -> &'static str {

@@ -1,5 +1,6 @@
 //! Commands that look closer at the first thing that is wrong.
 use super::{super::view::FindingView, Check, text};
+use fosssim_model::sim::PairKind;
 
 /// The commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input and is gone.
 pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
@@ -7,18 +8,13 @@ pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     let (scene, trace, step) = (quoted(check.scene), quoted(check.trace), first.step);
     let mut commands = Vec::new();
     let view = FindingView::from(first);
-    let kind = view.pair.and_then(|pair| match pair.kind {
-        "particle-particle" => Some("pp"),
-        "particle-edge" => Some("pe"),
-        "particle-half-plane" => Some("ph"),
-        _ => None,
-    });
+    let kind = view.pair.and_then(|pair| PairKind::ALL.into_iter().find(|kind| kind.name() == pair.kind));
     if let (Some(pair), Some(kind), 1..) = (view.pair, kind, step) {
         let pass = match view.polynomial.map_or(0, |polynomial| polynomial.pass.index) {
             0 => String::new(),
             index => format!(" --pass {}", index + 1),
         };
-        let pair = format!("{kind}:{},{}", pair.first, pair.second);
+        let pair = format!("{}:{},{}", kind.short(), pair.first, pair.second);
         commands
             .push(format!("fosssim-oracle detect --scene {scene} --trace {trace} --step {step} --pair {pair}{pass}"));
     }

@@ -8,7 +8,7 @@ use fosssim_grading::config::Hints;
 use fosssim_judge::PassWords;
 use fosssim_model::{
     scene::{self, Collision, Scene},
-    sim::{Impulse, Pair, PairKind, State},
+    sim::{Impulse, Pair, State},
     trace::LoggedImpulse,
 };
 use serde_json::{Value, json};
@@ -160,22 +160,11 @@ fn contact(impulse: &Impulse) -> Value {
 }
 
 fn logged(impulse: &LoggedImpulse) -> Option<Value> {
-    let letters = match impulse.kind {
-        0 => "pp",
-        1 => "pe",
-        2 => "ph",
-        _ => return None,
-    };
-    let pair = format!("{letters}:{},{}", impulse.first, impulse.second);
+    let pair = format!("{}:{},{}", impulse.kind()?.short(), impulse.first, impulse.second);
     Some(json!([pair, impulse.time, impulse.normal.x, impulse.normal.y]))
 }
 
 /// A pair as `detect --pair` takes it.
 pub(super) fn key(pair: Pair) -> String {
-    let letters = match pair.kind {
-        PairKind::ParticleParticle => "pp",
-        PairKind::ParticleEdge => "pe",
-        PairKind::ParticleHalfPlane => "ph",
-    };
-    format!("{letters}:{},{}", pair.first, pair.second)
+    format!("{}:{},{}", pair.kind.short(), pair.first, pair.second)
 }

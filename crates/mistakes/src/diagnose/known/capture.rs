@@ -2,7 +2,7 @@
 use super::compare::{Logged, StepRecords};
 use fosssim_model::{
     scene::Collision,
-    sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone},
+    sim::{Decision, Detection, Impulse, Observer, Pair, Pass, Resume, Stage, State, Zone},
     trace::PolynomialLog,
 };
 
@@ -85,7 +85,7 @@ impl Observer for Capture {
                     Stage::Impulses { .. } => 3,
                     Stage::Geometric { .. } => 6,
                 };
-                self.event(stage + kind_number(detection.pair.kind));
+                self.event(stage + detection.pair.kind.code().unsigned_abs());
             }
         }
     }
@@ -118,15 +118,6 @@ impl Observer for Capture {
     fn end_step(&mut self, _step: u32, state: &State) {
         let end: &mut Logged = &mut self.records.end;
         copy_state(&mut end.state, state);
-    }
-}
-
-/// 0, 1, 2: particle, edge, half-plane.
-pub(super) fn kind_number(kind: PairKind) -> u32 {
-    match kind {
-        PairKind::ParticleParticle => 0,
-        PairKind::ParticleEdge => 1,
-        PairKind::ParticleHalfPlane => 2,
     }
 }
 

@@ -64,12 +64,7 @@ fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (String, Vec<f6
     let key = |contact: &LoggedImpulse| (contact.kind, contact.first, contact.second);
     let values = |contact: &LoggedImpulse| vec![contact.normal.x, contact.normal.y, contact.time];
     let place = |contact: &LoggedImpulse| {
-        let other = match contact.kind {
-            0 => "particle",
-            1 => "edge",
-            2 => "half-plane",
-            _ => "object of unknown kind",
-        };
+        let other = contact.kind().map_or("object of unknown kind", PairKind::second);
         format!("contact of particle {} and {other} {}, normal and time", contact.first, contact.second)
     };
     for contact in ours {
@@ -103,10 +98,5 @@ fn count(number: usize) -> Vec<f64> {
 }
 
 fn describe(pair: Pair) -> String {
-    let other = match pair.kind {
-        PairKind::ParticleParticle => "particle",
-        PairKind::ParticleEdge => "edge",
-        PairKind::ParticleHalfPlane => "half-plane",
-    };
-    format!("particle {} and {other} {}", pair.first, pair.second)
+    format!("particle {} and {} {}", pair.first, pair.kind.second(), pair.second)
 }

@@ -1,7 +1,7 @@
 //! Reads a trace once, finds its wrong steps, and keeps some of them, as diverse as possible.
 use super::{
     candidates::{Correct, resimulate},
-    capture::{Capture, kind_number},
+    capture::Capture,
     compare::{Difference, Logged, ROUND_OFF, SINGLE_PRECISION, StepRecords, first_difference, same_polynomial},
 };
 use crate::student::{StepLog, World};
@@ -238,7 +238,9 @@ impl<'a, R: Read> Scanner<'a, R> {
             None => 0,
             Some(Difference::Polynomial(index)) => match self.capture.place(index) {
                 Some((pair, pass, number)) => {
-                    8 + u64::from(pass.index.min(2)) * 32 + u64::from(kind_number(pair.kind)) * 8 + number as u64
+                    8 + u64::from(pass.index.min(2)) * 32
+                        + u64::from(pair.kind.code().unsigned_abs()) * 8
+                        + number as u64
                 }
                 None => 1,
             },

@@ -50,8 +50,7 @@ const AS_LIKELY: f64 = 1.6;
 /// formulas overflow are left out. The samples of one kind should hold all of its polynomials.
 #[must_use]
 pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
-    let kinds = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
-    let subjects = kinds.into_iter().flat_map(Subject::of).copied();
+    let subjects = PairKind::ALL.into_iter().flat_map(Subject::of).copied();
     let mut open: Vec<Suspect> = subjects
         .filter_map(|subject| Study::new(subject, samples))
         .map(|study| Suspect { candidates: candidates(&study), study })
@@ -68,16 +67,16 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
         open.into_iter().partition(|suspect| suspect.candidates.is_empty());
     explanations.extend(open.iter().map(Suspect::alone));
     explanations.extend(unexplained(&hopeless));
-    explanations.extend(missing(&kinds, samples));
+    explanations.extend(missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
     debug_assert!(explanations.iter().all(|one| formula_in(&one.what).is_none()), "{explanations:?}");
     explanations
 }
 
 /// Tells that no detection of a kind has all its polynomials.
-fn missing(kinds: &[PairKind], samples: &[Sample]) -> Option<Explanation> {
+fn missing(samples: &[Sample]) -> Option<Explanation> {
     let (mut names, mut details, mut count) = (Vec::new(), Vec::new(), 0);
-    for &kind in kinds {
+    for kind in PairKind::ALL {
         let of_kind = || samples.iter().filter(|sample| sample.motion.kind() == kind);
         let logged = of_kind().map(|sample| sample.polynomials.len()).max().unwrap_or(usize::MAX);
         let absent = Subject::of(kind).iter().skip(logged);

@@ -123,7 +123,7 @@ mod tests {
     };
     use fosssim_model::{
         scene::{original, read, write},
-        sim::{Decision, Detection, Observer, PairKind, RootSearch, Simulation},
+        sim::{ByKind, Decision, Detection, Observer, PairKind, RootSearch, Simulation},
     };
 
     #[test]
@@ -143,16 +143,16 @@ mod tests {
     #[derive(Default)]
     struct Seen {
         /// Per kind and polynomial the greatest modulus per coefficient, from the lowest power.
-        greatest: [[[f64; 6]; 4]; 3],
+        greatest: ByKind<[[f64; 6]; PairKind::MOST_POLYNOMIALS]>,
         /// Hits per kind.
-        hits: [usize; 3],
+        hits: ByKind<usize>,
         /// A coefficient that is no integer, or too great to be exact.
         inexact: Option<f64>,
     }
 
     impl Observer for Seen {
         fn detection(&mut self, detection: &Detection<'_>) {
-            let kind = usize::try_from(detection.pair.kind.code()).expect("a small number");
+            let kind = detection.pair.kind;
             for (polynomial, greatest) in detection.polynomials.iter().zip(&mut self.greatest[kind]) {
                 for (coefficient, greatest) in polynomial.coefficients().iter().rev().zip(greatest) {
                     *greatest = greatest.max(coefficient.abs());
@@ -185,23 +185,22 @@ mod tests {
         {
             let seen = seen(&probe(name));
             assert_eq!(seen.inexact, None, "{name}");
-            let kind_index = usize::try_from(kind.code()).expect("a small number");
             let degrees: &[usize] = if kind == PairKind::ParticleEdge { &[4, 2, 2, 5] } else { &[2, 1] };
-            for (greatest, degree) in seen.greatest[kind_index].iter().zip(degrees) {
+            for (greatest, degree) in seen.greatest[kind].iter().zip(degrees) {
                 assert!(greatest[..=*degree].iter().all(|&modulus| modulus > 0.0), "{name}");
             }
-            assert!(seen.hits[kind_index] > 3, "{name}: {:?}", seen.hits);
+            assert!(seen.hits[kind] > 3, "{name}: {:?}", seen.hits);
         }
     }
 
     #[test]
     fn every_kind_of_pair_collides() {
         for (name, kinds) in [
-            ("slanted-half-planes", &[2][..]),
-            ("particles-meet", &[0]),
-            ("edges-struck", &[1]),
-            ("ends-of-edges", &[1]),
-            ("contact-at-start-and-end", &[0, 1, 2]),
+            ("slanted-half-planes", &[PairKind::ParticleHalfPlane][..]),
+            ("particles-meet", &[PairKind::ParticleParticle]),
+            ("edges-struck", &[PairKind::ParticleEdge]),
+            ("ends-of-edges", &[PairKind::ParticleEdge]),
+            ("contact-at-start-and-end", &PairKind::ALL),
         ] {
             let seen = seen(&probe(name));
             assert!(kinds.iter().all(|&kind| seen.hits[kind] >= 2), "{name}: {:?}", seen.hits);

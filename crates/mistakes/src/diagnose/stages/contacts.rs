@@ -6,10 +6,11 @@ use super::{
     times,
 };
 use crate::diagnose::known::same_impulse;
-use fosssim_model::{sim::Stage, trace::LoggedImpulse};
+use fosssim_model::{
+    sim::{PairKind, Stage},
+    trace::LoggedImpulse,
+};
 use fosssim_num::vector::{Vec2, length};
-
-const KINDS: [&str; 3] = ["particle-particle", "particle-edge", "particle-half-plane"];
 
 /// The pairs of the first pass in another order: all its polynomials are there.
 pub(super) fn order(facts: &[Facts]) -> Option<Explanation> {
@@ -73,10 +74,10 @@ fn is_permuted(facts: &Facts) -> bool {
 #[derive(Default)]
 struct Contacts {
     /// Kind and time of impact.
-    right: Vec<(i32, f64)>,
-    missed: Vec<(i32, f64)>,
-    superfluous: Vec<(i32, f64)>,
-    vectors: Vec<(i32, Vec2, Vec2)>,
+    right: Vec<(PairKind, f64)>,
+    missed: Vec<(PairKind, f64)>,
+    superfluous: Vec<(PairKind, f64)>,
+    vectors: Vec<(PairKind, Vec2, Vec2)>,
     times: Vec<(f64, f64)>,
 }
 
@@ -117,29 +118,30 @@ impl Contacts {
                 }
                 Some((impulse, Some(at))) if at < hit.place => {
                     if is_certain(at) {
-                        self.superfluous.push((impulse.kind, impulse.time));
+                        self.superfluous.push((facts.detections[at].0.kind, impulse.time));
                     }
                     return;
                 }
                 Some((_, None)) => return,
                 _ => {
                     if is_certain(hit.place) {
-                        self.missed.push((hit.pair.kind.code(), hit.time));
+                        self.missed.push((hit.pair.kind, hit.time));
                     }
                     return;
                 }
             }
         }
         if let Some(impulse) = theirs.next()
-            && place(impulse).is_some_and(is_certain)
+            && let Some(at) = place(impulse)
+            && is_certain(at)
         {
-            self.superfluous.push((impulse.kind, impulse.time));
+            self.superfluous.push((facts.detections[at].0.kind, impulse.time));
         }
     }
 
     /// Whether vector and time are right.
     fn compare(&mut self, hit: &Hit, impulse: &LoggedImpulse) -> bool {
-        let kind = hit.pair.kind.code();
+        let kind = hit.pair.kind;
         let expected = LoggedImpulse { normal: hit.normal, time: hit.time, ..*impulse };
         if same_impulse(&expected, impulse, &ROUND_OFF) {
             self.right.push((kind, hit.time));
@@ -164,7 +166,7 @@ impl Contacts {
                 "contacts are counted that its polynomials do not show",
             ),
             _ => {
-                let all: Vec<(i32, f64)> = self.missed.iter().chain(&self.superfluous).copied().collect();
+                let all: Vec<(PairKind, f64)> = self.missed.iter().chain(&self.superfluous).copied().collect();
                 let what =
                     "the polynomials are right, the decisions are not: contacts are missed, others are superfluous";
                 return Some(said("stage-decisions", "detection", &all, what, Vec::new()));
@@ -191,14 +193,15 @@ impl Contacts {
         if self.vectors.is_empty() {
             return None;
         }
-        let listed: Vec<(i32, f64)> = self.vectors.iter().map(|(kind, ..)| (*kind, 0.0)).collect();
+        let listed: Vec<(PairKind, f64)> = self.vectors.iter().map(|(kind, ..)| (*kind, 0.0)).collect();
         let ratios: Vec<f64> = self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
-        let off = |(_, ours, theirs): &(i32, Vec2, Vec2)| {
+        let off = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
             let along = theirs.dot(ours) / ours.dot(ours) * ours;
             length(theirs - along) > ALIKE * length(*theirs)
         };
-        let right_angle =
-            |(_, ours, theirs): &(i32, Vec2, Vec2)| theirs.dot(ours).abs() <= ALIKE * length(*ours) * length(*theirs);
+        let right_angle = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
+            theirs.dot(ours).abs() <= ALIKE * length(*ours) * length(*theirs)
+        };
         let what = if self.vectors.iter().all(right_angle) {
             "it is perpendicular to what it should be"
         } else if self.vectors.iter().any(off) {
@@ -234,7 +237,7 @@ impl Contacts {
 }
 
 /// The kind that all of these have.
-fn only_kind(listed: &[(i32, f64)]) -> Option<i32> {
+fn only_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
     let first = listed.first()?.0;
     listed.iter().all(|(kind, _)| *kind == first).then_some(first)
 }
@@ -243,9 +246,9 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-fn said(key: &str, stage: &str, listed: &[(i32, f64)], what: &str, details: Vec<String>) -> Explanation {
-    let place = match only_kind(listed).and_then(|kind| usize::try_from(kind).ok()).and_then(|kind| KINDS.get(kind)) {
-        Some(kind) => format!("{} {stage}", sentence(kind)),
+fn said(key: &str, stage: &str, listed: &[(PairKind, f64)], what: &str, details: Vec<String>) -> Explanation {
+    let place = match only_kind(listed) {
+        Some(kind) => format!("{} {stage}", sentence(kind.name())),
         None => sentence(stage),
     };
     observation(key, format!("{place}: {}.", sentence(what)), details, listed.len())

@@ -19,7 +19,7 @@ pub(super) const KEY: &str = "stage-response";
 const SMALL: f64 = 1e-11;
 
 /// Whose what: kind of pair, body, and whether it is the velocity.
-type Place = (i32, usize, bool);
+type Place = (PairKind, usize, bool);
 
 /// What a contact changed.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +49,7 @@ impl Responses {
                     for is_velocity in [false, true] {
                         let states = [&facts.prediction, expected, actual];
                         let change = change(particle, is_velocity, states, unit(hit.normal));
-                        changes.push(((hit.pair.kind.code(), role, is_velocity), change));
+                        changes.push(((hit.pair.kind, role, is_velocity), change));
                     }
                 }
                 let is_nothing = |change: &Change| !change.across && change.ratio.is_none_or(|ratio| ratio == 0.0);
@@ -69,7 +69,7 @@ impl Responses {
 
     /// Whether an isolated contact of this kind was seen, all of which are right.
     pub(super) fn is_right(&self, kind: PairKind) -> bool {
-        let of_kind = || self.changes.iter().filter(|((code, ..), _)| *code == kind.code());
+        let of_kind = || self.changes.iter().filter(|((other, ..), _)| *other == kind);
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
     }
 
@@ -84,9 +84,9 @@ impl Responses {
         if wrong.is_empty() {
             return of_many(facts).or_else(|| self.unresolved());
         }
-        let kinds: Vec<i32> = distinct(wrong.keys().map(|(kind, ..)| *kind));
+        let kinds: Vec<PairKind> = distinct(wrong.keys().map(|(kind, ..)| *kind));
         let place = match kinds[..] {
-            [kind] if changes.keys().any(|(other, ..)| *other != kind) => format!("{} response", name(kind)),
+            [kind] if changes.keys().any(|(other, ..)| *other != kind) => format!("{} response", sentence(kind.name())),
             _ => "Collision response".to_owned(),
         };
         let what = if wrong.values().flatten().all(|change| !change.across && change.ratio == Some(0.0)) {
@@ -191,17 +191,13 @@ fn change(particle: usize, is_velocity: bool, states: [&State; 3], u: Vec2) -> C
     }
 }
 
-fn name(kind: i32) -> &'static str {
-    ["Particle-particle", "Particle-edge", "Particle-half-plane"][usize::try_from(kind).unwrap_or(0).min(2)]
-}
-
 /// The body in words.
 fn body((kind, role, _): Place) -> &'static str {
     match (kind, role) {
-        (0, 0) => "the first particle",
-        (0, _) => "the second particle",
-        (1, 1) => "the first endpoint",
-        (1, 2) => "the second endpoint",
+        (PairKind::ParticleParticle, 0) => "the first particle",
+        (PairKind::ParticleParticle, _) => "the second particle",
+        (PairKind::ParticleEdge, 1) => "the first endpoint",
+        (PairKind::ParticleEdge, 2) => "the second endpoint",
         _ => "the particle",
     }
 }
@@ -241,7 +237,7 @@ fn detail(place: Place, wrong: &[Change], all: usize) -> String {
         _ => format!("by {} what it should", times(&ratios)),
     };
     let across = if wrong.iter().any(|change| change.across) { ", and across the contact vector, too" } else { "" };
-    let where_ = format!("{}: the {} of {}", name(place.0), quantity(place), body(place));
+    let where_ = format!("{}: the {} of {}", sentence(place.0.name()), quantity(place), body(place));
     format!("{where_} changes {amount}{across} (in {} of {all} isolated contacts)", wrong.len())
 }
 

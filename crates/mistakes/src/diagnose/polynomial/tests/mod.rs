@@ -159,8 +159,6 @@ fn right_lists(motion: &Motion) -> Lists {
     }
 }
 
-const KINDS: [PairKind; 3] = [PairKind::ParticleParticle, PairKind::ParticleEdge, PairKind::ParticleHalfPlane];
-
 /// The only explanation of what this student does; it has to reproduce everything and say `key` and `detail`.
 fn only(kind: PairKind, key: &str, detail: &str, student: impl Fn(&Motion) -> Lists) -> Explanation {
     let found = explain(&samples(kind, 300, student));
@@ -174,7 +172,7 @@ fn only(kind: PairKind, key: &str, detail: &str, student: impl Fn(&Motion) -> Li
 
 #[test]
 fn right_polynomials_need_no_explanation() {
-    for kind in KINDS {
+    for kind in PairKind::ALL {
         assert_eq!(explain(&samples(kind, 300, right_lists)), []);
         for scale in [3.0, 1e-3, 1e6] {
             let scaled = explain(&samples(kind, 300, |motion| {
@@ -205,7 +203,7 @@ fn the_right_quintic_is_as_good_as_the_supplied_one() {
 #[test]
 fn the_tables_are_the_formulas_of_the_fair_rules() {
     let mut numbers = Numbers(5);
-    for kind in KINDS {
+    for kind in PairKind::ALL {
         for _ in 0..200 {
             let motion = numbers.motion(kind);
             let (judged, inputs) = (motion.judged().polynomials(), sample::Inputs::new(&motion));
@@ -365,7 +363,7 @@ fn lists_handed_over_wrongly_are_named() {
             }
         }),
     ];
-    for kind in KINDS {
+    for kind in PairKind::ALL {
         for (key, change) in changes {
             let found = explain(&samples(kind, 300, |motion| {
                 let mut lists = right_lists(motion);
@@ -489,7 +487,7 @@ fn what_is_not_reproduced_everywhere_says_so() {
 #[test]
 fn hostile_samples_do_no_harm() {
     let strange = [f64::NAN, f64::INFINITY, 1e300, -0.0, 5e-324];
-    for kind in KINDS {
+    for kind in PairKind::ALL {
         let mut list = samples(kind, 40, right_lists);
         for (index, sample) in list.iter_mut().enumerate() {
             let value = strange[index % strange.len()];

@@ -1,0 +1,304 @@
+//! The pairs that a detection pass looks at: their kinds, order and number, and whose a logged polynomial is
+//! (collisions.md 1, trace-format.md 2).
+//!
+//! This is the only enumeration of a pass. The passes themselves go through the same loops with values of their own at each
+//! level; a test holds them to this order.
+use super::observer::{Pair, PairKind};
+use crate::scene::Scene;
+use std::{
+    borrow::Cow,
+    ops::{Index, IndexMut},
+};
+
+impl PairKind {
+    /// So many polynomials a detection call logs at most.
+    pub const MOST_POLYNOMIALS: usize = 4;
+
+    /// All kinds, in the order in which a pass looks at a particle's pairs, and of the trace's numbers.
+    pub const ALL: [Self; 3] = [Self::ParticleParticle, Self::ParticleEdge, Self::ParticleHalfPlane];
+
+    /// Its place in [`PairKind::ALL`].
+    #[inline]
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The kind that a trace writes as this number; none for numbers of a damaged trace.
+    #[must_use]
+    pub fn from_code(code: i32) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.code() == code)
+    }
+
+    /// Its name: `particle-edge`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "particle-particle",
+            Self::ParticleEdge => "particle-edge",
+            Self::ParticleHalfPlane => "particle-half-plane",
+        }
+    }
+
+    /// Its name on command lines and in keys: `pe`.
+    #[must_use]
+    pub const fn short(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "pp",
+            Self::ParticleEdge => "pe",
+            Self::ParticleHalfPlane => "ph",
+        }
+    }
+
+    /// What the second object is: `edge`.
+    #[must_use]
+    pub const fn second(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "particle",
+            Self::ParticleEdge => "edge",
+            Self::ParticleHalfPlane => "half-plane",
+        }
+    }
+}
+
+/// A value for each kind of pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ByKind<T>([T; PairKind::ALL.len()]);
+
+impl<T> ByKind<T> {
+    /// The values that a function gives.
+    #[must_use]
+    pub fn from_fn(value: impl FnMut(PairKind) -> T) -> Self {
+        Self(PairKind::ALL.map(value))
+    }
+
+    /// Kinds and values, in the order of [`PairKind::ALL`].
+    pub fn iter(&self) -> impl Iterator<Item = (PairKind, &T)> {
+        PairKind::ALL.into_iter().zip(&self.0)
+    }
+
+    /// The values, in the order of [`PairKind::ALL`].
+    pub fn values(&self) -> impl Iterator<Item = &T> {
+        self.0.iter()
+    }
+
+    /// The values, to be changed.
+    pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.0.iter_mut()
+    }
+
+    /// The values themselves.
+    pub fn into_values(self) -> impl Iterator<Item = T> {
+        self.0.into_iter()
+    }
+}
+
+impl<T> From<[T; PairKind::ALL.len()]> for ByKind<T> {
+    fn from(values: [T; PairKind::ALL.len()]) -> Self {
+        Self(values)
+    }
+}
+
+impl<T> Index<PairKind> for ByKind<T> {
+    type Output = T;
+
+    #[inline]
+    fn index(&self, kind: PairKind) -> &T {
+        &self.0[kind.index()]
+    }
+}
+
+impl<T> IndexMut<PairKind> for ByKind<T> {
+    #[inline]
+    fn index_mut(&mut self, kind: PairKind) -> &mut T {
+        &mut self.0[kind.index()]
+    }
+}
+
+/// The pairs of one pass over a scene.
+#[derive(Debug, Clone)]
+pub struct Pairs<'a> {
+    particles: usize,
+    /// The ends of each edge.
+    edges: Cow<'a, [[usize; 2]]>,
+    half_planes: usize,
+}
+
+/// The pairs of one pass over a scene.
+#[must_use]
+pub fn pairs(scene: &Scene) -> Pairs<'static> {
+    let edges = scene.edges.iter().map(|edge| [edge.first, edge.second]).collect();
+    Pairs { particles: scene.particles.len(), edges: Cow::Owned(edges), half_planes: scene.half_planes.len() }
+}
+
+impl Pairs<'_> {
+    /// All pairs, in the order of the pass: particle by particle, with all later particles, then with the edges that it is no
+    /// end of, then with the half-planes.
+    pub fn iter(&self) -> impl Iterator<Item = Pair> + Clone {
+        (0..self.particles).flat_map(|particle| self.of(particle))
+    }
+
+    /// The pairs in which this particle comes first.
+    fn of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
+        PairKind::ALL.into_iter().flat_map(move |kind| {
+            let (begin, end) = match kind {
+                PairKind::ParticleParticle => (first + 1, self.particles),
+                PairKind::ParticleEdge => (0, self.edges.len()),
+                PairKind::ParticleHalfPlane => (0, self.half_planes),
+            };
+            let is_pair = move |&second: &usize| kind != PairKind::ParticleEdge || !self.edges[second].contains(&first);
+            (begin..end).filter(is_pair).map(move |second| {
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    reason = "a scene with 2^32 objects does not fit into memory"
+                )]
+                Pair { kind, first: first as u32, second: second as u32 }
+            })
+        })
+    }
+
+    /// How many pairs of each kind there are.
+    #[must_use]
+    pub fn counts(&self) -> ByKind<usize> {
+        let at_ends: usize = self.edges.iter().map(|[one, other]| if one == other { 1 } else { 2 }).sum();
+        ByKind::from_fn(|kind| match kind {
+            PairKind::ParticleParticle => self.particles * self.particles.saturating_sub(1) / 2,
+            PairKind::ParticleEdge => self.particles * self.edges.len() - at_ends,
+            PairKind::ParticleHalfPlane => self.particles * self.half_planes,
+        })
+    }
+
+    /// How many pairs there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.counts().values().sum()
+    }
+
+    /// How many polynomials a pass logs, where passes log any.
+    #[must_use]
+    pub fn polynomials(&self) -> usize {
+        self.counts().iter().map(|(kind, count)| kind.polynomials() * count).sum()
+    }
+
+    /// Whose polynomial `index` of a step's list is: the number of the pass, the pair, and the polynomial's number among its
+    /// own. None where a pass has no polynomial.
+    #[must_use]
+    pub fn polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
+        let per_pass = self.polynomials();
+        let (pass, mut rest) = (index.checked_div(per_pass)?, index % per_pass.max(1));
+        for particle in 0..self.particles {
+            let apart = self.edges.iter().filter(|ends| !ends.contains(&particle)).count();
+            let of_particle = PairKind::ParticleParticle.polynomials() * (self.particles - particle - 1)
+                + PairKind::ParticleEdge.polynomials() * apart
+                + PairKind::ParticleHalfPlane.polynomials() * self.half_planes;
+            if let Some(more) = rest.checked_sub(of_particle) {
+                rest = more;
+                continue;
+            }
+            for pair in self.of(particle) {
+                match rest.checked_sub(pair.kind.polynomials()) {
+                    Some(more) => rest = more,
+                    None => return Some((pass, pair, rest)),
+                }
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scene::original,
+        sim::{Detection, Observer, Pass, RootSearch, Simulation},
+    };
+
+    /// Five discs, edges that share ends, half-planes; far apart, but for two discs that meet.
+    fn scene(collision: &str) -> Scene {
+        let particle = |x: f64, y: f64, vx: f64| {
+            format!("<particle m=\"1\" px=\"{x}\" py=\"{y}\" vx=\"{vx}\" vy=\"0\" fixed=\"0\" radius=\"0.25\"/>")
+        };
+        let particles: String =
+            [(0.0, 0.0, 4.0), (1.0, 0.0, -4.0), (9.0, 9.0, 0.0), (13.0, 9.0, 0.0), (9.0, 20.0, 0.0)]
+                .map(|(x, y, vx)| particle(x, y, vx))
+                .concat();
+        let xml = format!(
+            "<scene><duration time=\"0.2\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>{collision}{particles}\
+             <edge i=\"2\" j=\"3\" radius=\"0.1\"/><edge i=\"3\" j=\"4\" radius=\"0.1\"/>\
+             <halfplane px=\"0\" py=\"-9\" nx=\"0\" ny=\"1\"/><halfplane px=\"0\" py=\"90\" nx=\"0\" ny=\"-1\"/></scene>"
+        );
+        original::read(xml.as_bytes()).expect("a scene").scene
+    }
+
+    /// What each pass looked at.
+    #[derive(Default)]
+    struct Looked(Vec<Vec<(Pair, usize)>>);
+
+    impl Observer for Looked {
+        fn begin_pass(&mut self, _: Pass) {
+            self.0.push(Vec::new());
+        }
+
+        fn detection(&mut self, detection: &Detection<'_>) {
+            self.0.last_mut().expect("a pass").push((detection.pair, detection.polynomials.len()));
+        }
+    }
+
+    #[test]
+    fn every_pass_looks_at_these_pairs_in_this_order() {
+        for collision in [
+            "<collision type=\"simple\" COR=\"1\"/>",
+            "<collision type=\"continuous-time\" COR=\"1\"/>",
+            "<collision type=\"hybrid\" COR=\"1\" maxiters=\"2\" k=\"1\" thickness=\"0.01\"/>",
+        ] {
+            let scene = scene(collision);
+            let expected: Vec<Pair> = pairs(&scene).iter().collect();
+            assert_eq!(expected.len(), pairs(&scene).count());
+            let mut looked = Looked::default();
+            let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+            simulation.step(&mut looked).expect("a step");
+            assert!(!looked.0.is_empty());
+            for pass in &looked.0 {
+                assert_eq!(pass.iter().map(|(pair, _)| *pair).collect::<Vec<_>>(), expected, "{collision}");
+                let logged: usize = pass.iter().map(|(_, polynomials)| polynomials).sum();
+                assert!(logged == 0 || logged == pairs(&scene).polynomials(), "{collision}");
+            }
+        }
+    }
+
+    #[test]
+    fn each_polynomial_of_a_step_finds_its_pair() {
+        let scene = scene("<collision type=\"continuous-time\"/>");
+        let pairs = pairs(&scene);
+        // Ten pairs of discs, fifteen less four of discs and edges, ten of discs and half-planes.
+        assert_eq!(pairs.counts(), ByKind([10, 6, 10]));
+        assert_eq!(pairs.polynomials(), 2 * 10 + 4 * 6 + 2 * 10);
+        let mut index = 0;
+        for pass in 0..3 {
+            for pair in pairs.iter() {
+                for number in 0..pair.kind.polynomials() {
+                    assert_eq!(pairs.polynomial(index), Some((pass, pair, number)));
+                    index += 1;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_pairs_there_is_no_polynomial() {
+        let xml = b"<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
+        let scene = original::read(xml).expect("a scene").scene;
+        let pairs = pairs(&scene);
+        assert_eq!((pairs.iter().count(), pairs.polynomials(), pairs.polynomial(0)), (0, 0, None));
+    }
+
+    #[test]
+    fn numbers_lead_back_to_kinds() {
+        for (number, kind) in PairKind::ALL.into_iter().enumerate() {
+            assert_eq!((kind.index(), PairKind::from_code(kind.code())), (number, Some(kind)));
+            assert!(kind.polynomials() <= PairKind::MOST_POLYNOMIALS);
+        }
+        assert_eq!((PairKind::from_code(-1), PairKind::from_code(3)), (None, None));
+    }
+}
