@@ -88,6 +88,10 @@ pub(super) struct Grade {
     /// results go to the folder shard-I-of-N in the output folder.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
     pub(super) shard: Option<Shard>,
+    /// Judge traces that are there already: every path is a folder with Group/name.bin, or name.bin, for each scene.
+    /// Nothing is run.
+    #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single"])]
+    pub(super) traces: bool,
     /// Run programs although required layers of the sandbox are missing here; those that hold stay up. Every report
     /// says what is missing.
     #[arg(long)]

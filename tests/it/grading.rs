@@ -11,7 +11,7 @@ use std::{
     time::Duration,
 };
 
-const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n[limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
+pub(crate) const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n[limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
                      [[group]]\nname = \"Impulses\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\ncredit = \"steps\"\n\
                      [[group]]\nname = \"Zones\"\nscenes = [\"asset:GeometricTests/ball-*\"]\npoints = 10\n";
 
@@ -579,27 +579,4 @@ fn a_grading_that_is_stopped_by_the_platform_keeps_its_partial_results() {
     let grades: serde_json::Value = serde_json::from_slice(&workspace.read("grades.json")).expect("JSON");
     let text = grades.to_string();
     assert!(text.contains("\"not run\"") && text.contains("\"accepted\""), "{text}");
-}
-
-#[test]
-fn the_demo_writes_a_wrong_program_that_may_be_handed_in() {
-    let Some(workspace) = workspace() else { return };
-    let sample = env!("CARGO_BIN_EXE_fosssim-sample");
-    let grade = |program: &str| workspace.run(["grade", program, "--suite", "suite.toml", "--format", "csv"]);
-    // A copy of the sample itself is nobody's submission: it is right.
-    std::fs::copy(sample, workspace.path("copy")).expect("a copy");
-    assert!(grade("copy").out().contains("the grader's own program"), "{}", grade("copy").shown());
-    let made = workspace.run(["demo", "--sample", sample, "--mistake", "pe-square-no-eh", "--program", "flawed"]);
-    assert_eq!(made.code, Some(0), "{}", made.shown());
-    let graded = grade("flawed");
-    assert_eq!(graded.code, Some(1), "{}", graded.shown());
-    assert!(graded.out().contains(",WA,") && graded.out().contains(",pe-square-no-eh"), "{}", graded.shown());
-    // Neither another name nor another wish makes it right.
-    let told = Command::new(workspace.path("flawed")).args(["--mistake", "no-such", "-s", "none.xml"]).output();
-    let told = String::from_utf8(told.expect("the program").stderr).expect("text");
-    assert!(told.contains("none.xml"), "{told}");
-    let unknown = workspace.run(["demo", "--sample", sample, "--mistake", "no-such", "--program", "other"]);
-    assert_eq!(unknown.code, Some(2), "{}", unknown.shown());
-    let other = workspace.run(["demo", "--sample", "/bin/sh", "--program", "other"]);
-    assert!(other.code == Some(2) && other.err().contains("another version"), "{}", other.shown());
 }

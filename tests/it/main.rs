@@ -11,6 +11,7 @@ mod fair;
 mod folder_in_memory;
 mod fuzz_replay;
 mod grading;
+mod handed_in;
 mod kills;
 mod known;
 mod layers;

@@ -53,7 +53,7 @@ impl Cards<'_> {
     ///
     /// # Errors
     /// When it can't be written.
-    pub(super) fn keep(&self, judged: &Judged<'_>) -> io::Result<Option<String>> {
+    pub fn keep(&self, judged: &Judged<'_>) -> io::Result<Option<String>> {
         let Some(card) = (self.draw)(judged) else { return Ok(None) };
         let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
         let path = file(self.folder, &name);

@@ -7,6 +7,7 @@ use super::{
     results::{Report, Results, reports},
     shard::Sharding,
     submissions::Search,
+    traces,
 };
 use crate::{
     cli::{console, exit, grading::Grade as Arguments, output, selection::Selection},
@@ -58,6 +59,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         plan.hints = hints.into();
     }
     let reports = reports(&arguments.format)?;
+    if arguments.traces {
+        return traces::run(arguments, plan, &reports);
+    }
     let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUTPUT));
     let mut submissions = Search::new(arguments, plan.build.as_ref(), &output).run()?;
     let sharding = arguments.shard.map(|shard| Sharding::new(shard, &plan, arguments, &submissions, &output));

@@ -22,6 +22,7 @@ mod simulate;
 mod submissions;
 mod suite;
 mod trace;
+mod traces;
 
 use super::{
     arguments::{Command, Trace},

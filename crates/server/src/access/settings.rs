@@ -22,7 +22,7 @@ pub struct Settings {
     /// How much reports tell: `none`, `where`, `what` or `full`; without it the suite decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hints: Option<String>,
-    /// What may be handed in: `program`, `sources`.
+    /// What may be handed in: `program`, `sources`, `traces`.
     pub forms: Vec<String>,
     /// The program's name in a folder of sources.
     pub program: String,
@@ -92,8 +92,10 @@ impl Settings {
         if let Some(archive) = &self.suite_archive {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
         }
-        if self.forms.is_empty() || self.forms.iter().any(|form| !matches!(form.as_str(), "program" | "sources")) {
-            return Err(Problem::invalid("forms is a list of program and sources"));
+        if self.forms.is_empty()
+            || self.forms.iter().any(|form| !matches!(form.as_str(), "program" | "sources" | "traces"))
+        {
+            return Err(Problem::invalid("forms is a list of program, sources and traces"));
         }
         if !is_file_name(&self.program) {
             return Err(Problem::invalid("program is a plain file name"));

@@ -171,7 +171,8 @@ pub(super) async fn examine(file: &Path, said: Option<&str>) -> Result<Form, Pro
         None => None,
         Some("program") => Some(Form::Program),
         Some("sources") => Some(Form::Sources),
-        Some(_) => return Err(Problem::invalid("form is program or sources")),
+        Some("traces") => Some(Form::Traces),
+        Some(_) => return Err(Problem::invalid("form is program, sources or traces")),
     };
     let file = file.to_owned();
     tokio::task::spawn_blocking(move || examine_now(&file, said)).await.map_err(|_| Problem::fault())?
@@ -192,9 +193,18 @@ fn examine_now(file: &Path, said: Option<Form>) -> Result<Form, Problem> {
         Form::Program => Ok(form),
         _ => match archive::look_through(file, Limits::USUAL) {
             Ok(files) if files.is_empty() => Err(Problem::unusable("the archive is empty")),
-            Ok(_) => Ok(form),
+            Ok(files) => {
+                let are_traces = files.iter().all(|file| file.extension().is_some_and(|extension| extension == "bin"));
+                match (said, are_traces) {
+                    (Some(Form::Traces), false) => Err(Problem::unusable(
+                        "an archive of traces holds files NAME.bin, one for each scene, and nothing else",
+                    )),
+                    (None, true) => Ok(Form::Traces),
+                    _ => Ok(form),
+                }
+            }
             Err(archive::ArchiveError::Unknown) if said.is_none() => Err(Problem::unusable(
-                "this is neither a program for Linux nor an archive of sources (zip, tar, tar.gz)",
+                "this is neither a program for Linux nor an archive of sources or traces (zip, tar, tar.gz)",
             )),
             Err(error) => Err(Problem::unusable(error.to_string())),
         },

@@ -73,8 +73,10 @@ impl Program {
     fn command(&self, task: &Task, submission: &Path, folder: &Path) -> Command {
         let mut command = Command::new(&self.path);
         command.arg("grade").arg(submission).arg("--jobs").arg(self.threads.to_string());
-        if task.submission.form == Form::Sources {
-            command.arg("--single").arg("--program").arg(&task.program);
+        match task.submission.form {
+            Form::Program => {}
+            Form::Sources => drop(command.arg("--single").arg("--program").arg(&task.program)),
+            Form::Traces => drop(command.arg("--traces")),
         }
         match &task.suite {
             Suite::Named(name) => command.arg("--suite").arg(name),
@@ -114,7 +116,8 @@ impl Grader for Program {
                 place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?
             }
             Form::Sources => unpack(submission, folder.join("submission")).await?,
-            Form::Traces => return Err(GraderFault::Failed("traces can't be graded yet".to_owned())),
+            // Their folder stays: it may be the group of all scenes.
+            Form::Traces => unpack_all(submission, folder.join("submission")).await?,
         };
         if let Some(suite) = suite {
             unpack(suite, folder.join("suite")).await?;
@@ -184,13 +187,18 @@ fn cannot(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
 
-/// Unpacks an archive into a new folder. It was looked through when it came, so that it can be.
+/// Unpacks an archive, and returns the folder that holds everything.
 async fn unpack(archive: &Path, folder: PathBuf) -> Result<PathBuf, GraderFault> {
+    unpack_all(archive, folder).await.map(only_folder)
+}
+
+/// Unpacks an archive into a new folder. It was looked through when it came, so that it can be.
+async fn unpack_all(archive: &Path, folder: PathBuf) -> Result<PathBuf, GraderFault> {
     let archive = archive.to_owned();
     let unpacking = tokio::task::spawn_blocking(move || {
         fs::create_dir(&folder).map_err(|error| error.to_string())?;
         archive::unpack(&archive, &folder, Limits::USUAL).map_err(|error| error.to_string())?;
-        Ok::<_, String>(only_folder(folder))
+        Ok::<_, String>(folder)
     });
     let unpacked = unpacking.await.map_err(|error| GraderFault::Failed(error.to_string()))?;
     unpacked.map_err(|error| GraderFault::Failed(format!("cannot unpack an archive: {error}")))

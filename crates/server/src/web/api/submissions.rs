@@ -39,7 +39,7 @@ pub(super) async fn own(
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
     params(("course" = String, Path), ("assignment" = String, Path),
         ("name" = Option<String>, Query, description = "What the file is called"),
-        ("form" = Option<String>, Query, description = "program or sources; told from the file otherwise"),
+        ("form" = Option<String>, Query, description = "program, sources or traces; told from the file otherwise"),
         ("Idempotency-Key" = Option<String>, Header, description = "A name of the sender's own for this upload")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 201, body = Submission), (status = 200, body = Submission),

@@ -21,6 +21,7 @@ fi
 [ "$1" = grade ] || exit 2
 program=$2
 rules=of-the-suite
+traces=
 suite=none
 while [ $# -gt 0 ]; do
     case $1 in
@@ -29,10 +30,12 @@ while [ $# -gt 0 ]; do
         html=*) html=${1#html=} ;;
         --rules) rules=$2 ;;
         --suite) suite=$2 ;;
+        --traces) traces=yes ;;
     esac
     shift
 done
-# A folder of sources is graded by the program in it.
+# A folder of sources is graded by the program in it, and one of traces by the first of them.
+[ "$traces" ] && program=$program/Group/one.bin
 [ -d "$program" ] && program=$program/FOSSSim
 read -r _ code points scene right < "$program"
 [ "$code" = HANG ] && exec sleep 600
@@ -222,7 +225,7 @@ impl Server {
     pub(crate) fn course(&self, admin: &Client, slug: &str) {
         admin.post_json("/api/v1/courses", &format!(r#"{{"slug": "{slug}", "title": "Course {slug}"}}"#)).expect(201);
         let wish = r#"{"title": "Milestone one", "visible": true,
-            "settings": {"per_hour": 0, "forms": ["program", "sources"]}}"#;
+            "settings": {"per_hour": 0, "forms": ["program", "sources", "traces"]}}"#;
         let path = format!("/api/v1/courses/{slug}/assignments/m1");
         admin.send("PUT", &path, JSON, wish.as_bytes()).expect(200);
     }

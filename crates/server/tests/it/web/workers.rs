@@ -100,6 +100,15 @@ async fn a_worker_of_another_machine_grades(fresh: Fresh) {
     assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "90");
     let report = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/files/report.txt")).expect(200);
     assert!(report.text().contains("FOSSSim by suite.toml"), "{}", report.text());
+    // Traces, too, and are told from sources by their names.
+    let traces = archive(&[("Group/one.bin", b"#!grade WA 30\n"), ("Group/two.bin", b"x")]);
+    let path = "/api/v1/courses/physics/assignments/m1/submissions?name=traces.tar";
+    let id = ada.send("POST", path, &[], &traces).expect(201).json();
+    assert_eq!(id["form"], "traces");
+    let id = id["id"].as_i64().expect("a number");
+    assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "30");
+    let refused = ada.send("POST", &format!("{path}&form=traces"), &[], &sources).expect(422);
+    assert!(refused.text().contains("an archive of traces holds files NAME.bin"), "{}", refused.text());
     let queue = admin.get("/api/v1/queue").expect(200).json();
     assert!(queue["workers"][0]["name"].as_str().expect("a name").starts_with("lab/same."), "{queue}");
     // A worker that is asked to stop gives back what it has, and nobody counts a failure.

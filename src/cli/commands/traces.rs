@@ -1,0 +1,205 @@
+//! `grade --traces`: judges traces that are there already, a folder of them for each submission. Nothing is run, so that no
+//! sandbox is needed; how long a program took, and that it ended well, nobody knows.
+use super::{
+    grade::exit_code,
+    pages::{self, Pages},
+    results::{Report, Results},
+};
+use crate::{
+    cli::{console, grading::Grade as Arguments, selection::Selection},
+    diagnose,
+    evidence::Rulings,
+    judge::{
+        Rules,
+        parity::{self, Options},
+    },
+    report::grade::{Format, Shown, Text, rehearse},
+    sandbox::{self, Ended},
+    suite::{
+        Grade, Reason, Run, SceneResult, SceneTask, Verdict,
+        cards::{Cards, Judged},
+        conclude,
+        config::Visibility,
+        guarded,
+        plan::Plan,
+        result::Failure,
+        score, upload,
+    },
+};
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+use std::{
+    fs::{self, File},
+    io::{self, Read},
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Duration,
+};
+
+/// So many accepted scenes are asked whether they speak against a likely mistake.
+const WITNESSES: usize = 12;
+
+pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Result<u8> {
+    let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
+    let selection = Selection::new(&arguments.scene, &names)?;
+    let whole = names.len();
+    let plan = plan.part(|scene| selection.takes(scene));
+    let is_part = plan.scenes().count() < whole;
+    for folder in &arguments.programs {
+        if !folder.is_dir() {
+            bail!(
+                "{} is no folder: with --traces a submission is a folder of traces, Group/name.bin",
+                folder.display()
+            );
+        }
+    }
+    if arguments.programs.len() > 1
+        && let Some(report) = reports.iter().find(|report| !report.format.takes_several())
+    {
+        bail!("--format {} holds one submission, and there are {}", report.name, arguments.programs.len());
+    }
+    if let Some(output) = &arguments.output {
+        fs::create_dir_all(output).with_context(|| format!("cannot make {}", output.display()))?;
+    }
+    let draws = arguments.output.is_some() || reports.iter().any(|report| report.format == Format::Html);
+    let pages = if draws { Some(Pages::new(arguments.output.as_deref())?) } else { None };
+    let grades: Vec<Grade> = arguments.programs.iter().map(|folder| grade(&plan, folder, pages.as_ref())).collect();
+    let (folder, reader) = (arguments.output.as_deref(), arguments.reader.into());
+    let results = Results { folder, pages: pages.as_ref(), reader, is_part, grades: &grades };
+    results.write(reports, || {
+        let shown = match (arguments.quiet, arguments.verbose) {
+            (true, _) => Shown::Line,
+            (_, true) => Shown::All,
+            _ => Shown::Wrong,
+        };
+        let (style, width) = (console::style(), console::width());
+        Text { style, shown, width, again: None, closer: None }.render(&grades)
+    })?;
+    Ok(exit_code(&grades))
+}
+
+/// The grade of a folder of traces.
+fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
+    let tasks: Vec<&SceneTask> = plan.scenes().collect();
+    // In the plan's order, whatever the number of threads.
+    let mut results = tasks.par_iter().map(|task| scene(plan, task, folder, pages)).collect::<Vec<_>>().into_iter();
+    let groups: Vec<_> = plan
+        .groups
+        .iter()
+        .map(|group| {
+            let own = results.by_ref().take(group.scenes.len()).map(|result| (result, false)).collect();
+            score::group(&group.name, group.stakes, own)
+        })
+        .collect();
+    let scenes = || groups.iter().flat_map(|group| &group.scenes).zip(&tasks);
+    let wrong: Vec<_> =
+        scenes().map(|(graded, _)| graded.explanations.as_slice()).filter(|found| !found.is_empty()).collect();
+    let mut right: Vec<_> = scenes()
+        .filter(|(graded, _)| graded.verdict == Verdict::Accepted && graded.differs.is_none())
+        .map(|(_, task)| &task.scene)
+        .collect();
+    right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
+    right.truncate(WITNESSES);
+    let refuted = if wrong.len() < 2 { Vec::new() } else { diagnose::refuted(&wrong, &right) };
+    let name = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    Grade {
+        submission: upload::name(folder.file_name().or(name.file_name()).unwrap_or(folder.as_os_str())),
+        suite: plan.name.clone(),
+        rules: plan.rules,
+        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
+        points: groups.iter().map(|group| group.points).sum(),
+        max_points: plan.max_points(),
+        shows_output: plan.show_output || groups.iter().all(|group| group.visibility == Visibility::Visible),
+        groups,
+        build: None,
+        warnings: Vec::new(),
+        layers: Vec::new(),
+        wall: Duration::ZERO,
+        refuted,
+    }
+}
+
+/// The result of one scene. A panic is its judge error.
+fn scene(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) -> SceneResult {
+    let failed = |failure| {
+        SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, Reason::Failed(failure))
+    };
+    let judged = guarded(|| judge(plan, task, folder, pages));
+    match judged {
+        Ok(Ok(result)) => result,
+        Ok(Err(error)) => failed(Failure::Machine(error.to_string())),
+        Err(fault) => failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }),
+    }
+}
+
+fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) -> io::Result<SceneResult> {
+    let trace = read(folder, &task.name, plan.limits.trace)?;
+    let options =
+        Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
+    let mut quiet = ();
+    let mut rulings = Rulings::new(&mut quiet);
+    let outcome = parity::judge(&task.scene, &trace[..], &options, &mut rulings);
+    // As if a program had ended well after it wrote this.
+    let program = sandbox::Outcome {
+        ended: Ended::Exited(0),
+        cpu: Duration::ZERO,
+        wall: Duration::ZERO,
+        peak_memory: 0,
+        bytes_written: trace.len() as u64,
+        stdout: sandbox::Captured::default(),
+        stderr: sandbox::Captured::default(),
+        layers: Arc::from([]),
+    };
+    let run = Run {
+        scene: &task.name,
+        program: &program,
+        judged: &outcome,
+        trace_bytes: trace.len() as u64,
+        rules: plan.rules,
+        hints: plan.hints,
+        limits: &plan.limits,
+    };
+    let mut result = SceneResult { ended: None, memory: None, ..conclude(&run) };
+    let fair_finds_fault = plan.rules == Rules::Fair || result.differs.is_none();
+    if matches!(result.verdict, Verdict::WrongAnswer | Verdict::BadTrace) && fair_finds_fault {
+        result.explanations = plan.hints.cut(diagnose::explain(&task.scene, &trace));
+    }
+    if let Some(pages) = pages
+        && !(result.verdict.is_accepted() && result.differs.is_none())
+    {
+        let judged = Judged {
+            task,
+            result: &result,
+            outcome: &outcome,
+            rulings: &rulings.into_steps(&outcome),
+            trace: &trace,
+            is_cut: false,
+            rules: plan.rules,
+            hints: plan.hints,
+        };
+        let draw = |judged: &Judged<'_>| pages::draw(judged, (&judged.task.name, None), false);
+        let card = Cards { folder: pages.cards(), draw: &draw }.keep(&judged)?;
+        result.card = card;
+    }
+    rehearse(&result);
+    Ok(result)
+}
+
+/// The trace of a scene, under its whole name or the name behind its group; nothing when there is none. More than `most` bytes
+/// are not read: what is cut there is a bad trace.
+fn read(folder: &Path, scene: &str, most: u64) -> io::Result<Vec<u8>> {
+    let last = scene.rsplit('/').next().unwrap_or(scene);
+    let places: [PathBuf; 2] = [scene, last].map(|name| folder.join(format!("{name}.bin")));
+    for place in places {
+        // A link may lead anywhere, and a pipe nowhere.
+        match fs::symlink_metadata(&place) {
+            Ok(data) if data.is_file() => {
+                let mut trace = Vec::new();
+                File::open(&place)?.take(most).read_to_end(&mut trace)?;
+                return Ok(trace);
+            }
+            _ => {}
+        }
+    }
+    Ok(Vec::new())
+}

@@ -1,0 +1,83 @@
+//! What may be handed in besides a student's own program: a sample that is always wrong, and traces that are there already.
+use crate::{
+    grading::{SUITE, workspace},
+    workspace::Workspace,
+};
+use std::{
+    os::unix::fs::symlink,
+    process::{Command, Stdio},
+};
+
+#[test]
+fn the_demo_writes_a_wrong_program_that_may_be_handed_in() {
+    let Some(workspace) = workspace() else { return };
+    let sample = env!("CARGO_BIN_EXE_fosssim-sample");
+    let grade = |program: &str| workspace.run(["grade", program, "--suite", "suite.toml", "--format", "csv"]);
+    // A copy of the sample itself is nobody's submission: it is right.
+    std::fs::copy(sample, workspace.path("copy")).expect("a copy");
+    assert!(grade("copy").out().contains("the grader's own program"), "{}", grade("copy").shown());
+    let made = workspace.run(["demo", "--sample", sample, "--mistake", "pe-square-no-eh", "--program", "flawed"]);
+    assert_eq!(made.code, Some(0), "{}", made.shown());
+    let graded = grade("flawed");
+    assert_eq!(graded.code, Some(1), "{}", graded.shown());
+    assert!(graded.out().contains(",WA,") && graded.out().contains(",pe-square-no-eh"), "{}", graded.shown());
+    // Neither another name nor another wish makes it right.
+    let told = Command::new(workspace.path("flawed")).args(["--mistake", "no-such", "-s", "none.xml"]).output();
+    let told = String::from_utf8(told.expect("the program").stderr).expect("text");
+    assert!(told.contains("none.xml"), "{told}");
+    let unknown = workspace.run(["demo", "--sample", sample, "--mistake", "no-such", "--program", "other"]);
+    assert_eq!(unknown.code, Some(2), "{}", unknown.shown());
+    let other = workspace.run(["demo", "--sample", "/bin/sh", "--program", "other"]);
+    assert!(other.code == Some(2) && other.err().contains("another version"), "{}", other.shown());
+}
+
+#[test]
+fn traces_that_are_there_already_are_graded_without_running_anything() {
+    let workspace = Workspace::new();
+    workspace.write("suite.toml", SUITE);
+    let names = workspace.run(["suite", "check", "suite.toml"]);
+    assert_eq!(names.code, Some(0), "{}", names.shown());
+    let listing = workspace.run(["scene", "list"]).out();
+    let scenes: Vec<&str> = listing
+        .split_whitespace()
+        .filter_map(|word| word.strip_prefix("asset:"))
+        .filter(|name| name.starts_with("ImpulsesTests/o") || name.starts_with("GeometricTests/ball-"))
+        .collect();
+    assert!(scenes.len() > 1, "{listing}");
+    for scene in &scenes {
+        for (folder, mistake) in [("right", None), ("wrong", Some("pe-square-no-eh"))] {
+            // Under the whole name, or the last part of it.
+            let name = if folder == "right" { scene } else { scene.rsplit('/').next().expect("a name") };
+            let trace = workspace.path(format!("{folder}/{name}.bin"));
+            std::fs::create_dir_all(trace.parent().expect("a folder")).expect("a folder");
+            let xml = workspace.path("scene.xml");
+            std::fs::write(&xml, fosssim_oracle::suite::library::scene(scene).expect("a scene")).expect("written");
+            let mut sample = Command::new(env!("CARGO_BIN_EXE_fosssim-sample"));
+            sample.arg("-s").arg(&xml).arg("-o").arg(&trace).stdout(Stdio::null());
+            assert!(sample.args(mistake.map(|id| format!("--mistake={id}"))).status().expect("the sample").success());
+        }
+    }
+    let grade = |folder: &str, words: &[&str]| {
+        workspace.run(["grade", folder, "--suite", "suite.toml", "--traces"].iter().chain(words))
+    };
+    let right = grade("right", &[]);
+    assert_eq!(right.code, Some(0), "{}", right.shown());
+    assert!(right.out().contains("right: accepted, 20 of 20 points"), "{}", right.out());
+    let wrong = grade("wrong", &["--format", "csv", "--format", "html=wrong.html"]);
+    assert_eq!(wrong.code, Some(1), "{}", wrong.shown());
+    assert!(wrong.out().contains(",WA,") && wrong.out().contains(",pe-square-no-eh"), "{}", wrong.out());
+    let page = String::from_utf8(workspace.read("wrong.html")).expect("text");
+    assert!(page.contains("data-scene="), "the page has a viewer");
+    // What is missing, cut or a link is no trace.
+    let first = workspace.path(format!("right/{}.bin", scenes[0]));
+    let bytes = std::fs::read(&first).expect("a trace");
+    std::fs::write(&first, &bytes[..bytes.len() / 2]).expect("cut");
+    let second = workspace.path(format!("right/{}.bin", scenes[1]));
+    std::fs::rename(&second, workspace.path("elsewhere.bin")).expect("moved");
+    symlink(workspace.path("elsewhere.bin"), &second).expect("a link");
+    let damaged = grade("right", &["--format", "csv"]);
+    assert_eq!(damaged.code, Some(1), "{}", damaged.shown());
+    assert!(damaged.out().contains(",BT,") && damaged.out().contains(",NO,"), "{}", damaged.out());
+    assert_eq!(grade("suite.toml", &[]).code, Some(2));
+    assert_eq!(grade("right", &["--watch"]).code, Some(2));
+}
