@@ -9,8 +9,11 @@ use crate::{
     problem::Problem,
     store::{Artefact, Digest},
     task::OutputFile,
-    values,
+    values, worker,
 };
+
+/// The report that holds no group that its suite hides from students.
+const SHOWN: &str = "report.html";
 
 /// A member of a course.
 pub struct Member {
@@ -139,12 +142,28 @@ impl Member {
     /// When there is none of this name.
     pub async fn report(&self, id: i64, name: &str) -> Result<(OutputFile, Vec<u8>), Problem> {
         let submission = self.kept(id).await?;
+        if name != SHOWN && self.hides(&submission).await? {
+            return Err(Problem::not_found("report"));
+        }
         let file = submission
             .grade
             .and_then(|grade| grade.outcome.files.into_iter().find(|file| file.name == name))
             .ok_or_else(|| Problem::not_found("report"))?;
         let bytes = self.house.bytes(&file.artefact).await?;
         Ok((file, bytes))
+    }
+
+    /// Whether a submission's reports tell of groups that its suite hides from whoever asks. Then there is only the page for
+    /// students, which the grader makes without them.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub async fn hides(&self, submission: &Submission) -> Result<bool, Problem> {
+        let grade = submission.grade.as_ref().filter(|_| !self.is_staff);
+        let Some(file) = grade.and_then(|grade| grade.files.iter().find(|file| file.name == "grade.json")) else {
+            return Ok(false);
+        };
+        Ok(worker::hides_groups(&self.house.bytes(&file.artefact).await?))
     }
 
     /// What was handed in.

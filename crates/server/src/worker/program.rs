@@ -88,6 +88,8 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
+        // Students look at the page; what a suite hides from them is in the other reports, for staff.
+        command.args(["--for", "student"]);
         for (format, file, _) in REPORTS {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }

@@ -102,6 +102,13 @@ pub(crate) fn essence(grade: &[u8]) -> Result<String, serde_json::Error> {
     serde_json::to_string(&value)
 }
 
+/// Whether a `grade.json` tells of groups that students do not see at once; also when it can't be read.
+pub(crate) fn hides_groups(grade: &[u8]) -> bool {
+    let Ok(report) = serde_json::from_slice::<Value>(grade) else { return true };
+    let groups = report["grades"].as_array().into_iter().flatten().filter_map(|grade| grade["groups"].as_array());
+    groups.flatten().any(|group| group["visibility"].as_str().is_some_and(|visibility| visibility != "visible"))
+}
+
 /// Whether so many wrong scenes leave a submission nearly right: what it answers there may be worth a second look.
 fn is_nearly_right(wrong: usize, scenes: usize) -> bool {
     wrong <= 1 || wrong * 10 <= scenes

@@ -43,9 +43,11 @@ read -r _ code points scene right < "$program"
 [ "$rules" = parity ] && points=$((points / 2))
 printf '<script>alert(1)</script> %s by %s\n' "$(basename "$program")" "$(basename "$suite")" > "$text"
 echo '<script>document.title = document.cookie</script>' > "$html"
+visibility=visible
+case $scene in Secret/*) visibility=hidden ;; esac
 cat > "$json" <<END
 {"schema": 3, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
- "max_points": 100, "wall_seconds": $$.5, "groups": [{"scenes": [{"scene": "Group/easy", "code": "AC", "right_steps": 9},
+ "max_points": 100, "wall_seconds": $$.5, "groups": [{"visibility": "$visibility", "scenes": [{"scene": "Group/easy", "code": "AC", "right_steps": 9},
  {"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
 END
 [ "$code" = AC ]

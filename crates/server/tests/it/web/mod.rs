@@ -2,6 +2,7 @@
 
 mod example;
 mod flows;
+mod hidden;
 mod hostile;
 mod passwords;
 mod replay;
