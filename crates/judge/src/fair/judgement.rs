@@ -4,7 +4,7 @@ use crate::{
     finding::{Detail, Finding},
     outcome::Counts,
 };
-use fosssim_model::sim::{Pair, PairKind, Pass};
+use fosssim_model::sim::{ByKind, Pair, PairKind, Pass};
 
 /// So many examples of borderline decisions are kept.
 const EXAMPLES: usize = 8;
@@ -87,7 +87,7 @@ impl Shares {
 
 /// Smallest and largest factor of the polynomials, by kind of pair and number of the polynomial; `None` where no
 /// polynomial differs from the reference's bits.
-pub type Scales = [[Option<[f64; 2]>; 4]; 3];
+pub type Scales = ByKind<[Option<[f64; 2]>; PairKind::MOST_POLYNOMIALS]>;
 
 /// Everything that the fair rules say about a trace.
 #[derive(Debug, Clone, Default)]
@@ -134,7 +134,7 @@ impl Judgement {
     /// The factor of all polynomials of all kinds as an interval, where it is not 1.
     #[must_use]
     pub fn scale(&self) -> Option<[f64; 2]> {
-        let all = self.scales.iter().flatten().flatten();
+        let all = self.scales.values().flatten().flatten();
         let range = all.copied().reduce(|[low, high], [l, h]| [low.min(l), high.max(h)])?;
         (range.iter().any(|factor| (factor - 1.0).abs() > 1e-9)).then_some(range)
     }
@@ -155,7 +155,7 @@ impl Judgement {
         self.borderline += step.borderline.len() as u64;
         let room = EXAMPLES.saturating_sub(self.borderline_examples.len());
         self.borderline_examples.extend(step.borderline.iter().take(room));
-        for (all, new) in self.scales.iter_mut().flatten().zip(step.scales.iter().flatten()) {
+        for (all, new) in self.scales.values_mut().flatten().zip(step.scales.values().flatten()) {
             *all = match (*all, *new) {
                 (Some([low, high]), Some([l, h])) => Some([low.min(l), high.max(h)]),
                 (known, new) => known.or(new),
@@ -179,8 +179,8 @@ impl Judgement {
         self.wrong_steps += u64::from(is_wrong);
         // A range of factors that fits already will fit at the end.
         let hangs = |pending: &&Pending| {
-            let (row, number) = pending.place;
-            self.scales[row][number].is_none_or(|range| pending.finding(range).is_some())
+            let (kind, number) = pending.place;
+            self.scales[kind][number].is_none_or(|range| pending.finding(range).is_some())
         };
         let hanging: Vec<Hanging> =
             step.pending.iter().filter(hangs).map(|&polynomials| Hanging { polynomials, is_wrong }).collect();
@@ -202,8 +202,8 @@ impl Judgement {
     fn settle_pending(&mut self) {
         let mut last_wrong = 0;
         for Hanging { polynomials, is_wrong } in std::mem::take(&mut self.pending) {
-            let (row, number) = polynomials.place;
-            let Some(finding) = polynomials.finding(self.scales[row][number].unwrap_or([1.0; 2])) else { continue };
+            let (kind, number) = polynomials.place;
+            let Some(finding) = polynomials.finding(self.scales[kind][number].unwrap_or([1.0; 2])) else { continue };
             // Steps come in their order, so the polynomials of one stand together.
             self.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
@@ -237,15 +237,5 @@ impl Judgement {
         } else {
             Verdict::None
         };
-    }
-}
-
-/// The place of a kind of pair in [`Scales`].
-#[must_use]
-pub(super) const fn row(kind: PairKind) -> usize {
-    match kind {
-        PairKind::ParticleParticle => 0,
-        PairKind::ParticleEdge => 1,
-        PairKind::ParticleHalfPlane => 2,
     }
 }

@@ -14,7 +14,7 @@ use crate::{
 };
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Pair, PairKind, Pass, Simulation, State, StepError},
+    sim::{Pair, PairKind, Pass, Simulation, State, StepError, pairs},
     trace::{Layout, LenientFrame},
 };
 use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::at};
@@ -40,13 +40,8 @@ pub(crate) struct Context<'a> {
 impl<'a> Context<'a> {
     /// The context of a scene.
     pub fn new(scene: &'a Scene) -> Self {
-        let count = scene.particles.len();
-        let ends = |particle: usize| {
-            scene.edges.iter().filter(|edge| edge.first == particle || edge.second == particle).count()
-        };
-        let edges: usize = (0..count).map(|particle| scene.edges.len() - ends(particle)).sum();
-        let per_pass = count * count.saturating_sub(1) + 4 * edges + 2 * count * scene.half_planes.len();
-        let pairs = count * count.saturating_sub(1) / 2 + edges + count * scene.half_planes.len();
+        let pairs = pairs(scene);
+        let (per_pass, pairs) = (pairs.polynomials(), pairs.count());
         let records_per_step = Layout::of(scene).records_per_step();
         Self { scene, per_pass, pairs, records_per_step, ordinary: Ordinary::of(scene) }
     }
@@ -102,8 +97,8 @@ pub(crate) struct Records<'a> {
 /// Polynomials of a kind that are right if the program's polynomials of that kind have a factor within bounds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
-    /// Row and number of the polynomial in [`Scales`].
-    pub place: (usize, usize),
+    /// Kind of pair and number of the polynomial in [`Scales`].
+    pub place: (PairKind, usize),
     /// How many there are in the step.
     pub count: u64,
     /// The greatest of the least factors that they need, and what is wrong otherwise.
@@ -114,7 +109,7 @@ pub(crate) struct Pending {
 
 impl Pending {
     /// One polynomial with the least and the greatest factor that it may have.
-    pub fn new(finding: Finding, place: (usize, usize), [least, most]: [f64; 2]) -> Self {
+    pub fn new(finding: Finding, place: (PairKind, usize), [least, most]: [f64; 2]) -> Self {
         Self { place, count: 1, least: (least, finding), most: (most, finding) }
     }
 

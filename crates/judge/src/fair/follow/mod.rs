@@ -16,7 +16,7 @@ use crate::{
     finding::{Detail, Finding, Part, PolynomialPlace},
 };
 use decisions::Own;
-use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Stage, State, Zone};
+use fosssim_model::sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone};
 use fosssim_num::polynomial::Polynomial;
 
 /// A decision as it was followed.
@@ -60,9 +60,9 @@ pub(super) struct Follower<'a> {
     /// Whether the part before the mid record, or the geometric part, has an error that its result may follow from.
     spoilt: [bool; 2],
     /// Polynomials that were wrong of known positions in this step.
-    wrong_formulas: [[bool; 4]; 3],
+    wrong_formulas: ByKind<[bool; PairKind::MOST_POLYNOMIALS]>,
     /// Factors of polynomials so far: for each kind of pair and number of the polynomial the last one.
-    factors: [[Option<f64>; 4]; 3],
+    factors: ByKind<[Option<f64>; PairKind::MOST_POLYNOMIALS]>,
     /// Polynomials that do not tell their factor, to be judged when others of their kind do.
     deferred: Vec<Deferred>,
     /// The pairs of the logged impulses.
@@ -106,8 +106,8 @@ impl<'a> Follower<'a> {
             next: None,
             moved: vec![false; context.scene.particles.len()],
             spoilt: [false; 2],
-            wrong_formulas: [[false; 4]; 3],
-            factors: [[None; 4]; 3],
+            wrong_formulas: ByKind::default(),
+            factors: ByKind::default(),
             deferred: Vec::new(),
             contacts: Contacts::of(&records.end.impulses),
             used: vec![false; records.end.impulses.len()],

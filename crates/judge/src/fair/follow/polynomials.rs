@@ -4,7 +4,6 @@ use crate::{
     fair::{
         compare::{Match, Mismatch, compare, possible_factors},
         formulas::{Expected, Motion},
-        judgement::row,
         step::Pending,
     },
     finding::{Detail, Finding, PolynomialPlace, Role},
@@ -23,7 +22,7 @@ impl Follower<'_> {
         let mut seen = motion(q_end, bounds);
         let mut expected = seen.polynomials();
         let log = &self.records.end.polynomials;
-        let hints: [_; 4] = std::array::from_fn(|number| self.hints(row(pair.kind), number));
+        let hints: [_; PairKind::MOST_POLYNOMIALS] = std::array::from_fn(|number| self.hints(pair.kind, number));
         let matches = |expected: &Expected| -> [Result<Match, Mismatch>; 4] {
             std::array::from_fn(|number| {
                 if number >= count {
@@ -69,8 +68,8 @@ impl Follower<'_> {
                 Ok(Match { scale, share }) => {
                     self.judged.shares.coefficient = self.judged.shares.coefficient.max(share);
                     if let Some(scale) = scale {
-                        self.factors[row(pair.kind)][number] = Some(scale);
-                        let range = &mut self.judged.scales[row(pair.kind)][number];
+                        self.factors[pair.kind][number] = Some(scale);
+                        let range = &mut self.judged.scales[pair.kind][number];
                         *range =
                             Some(range.map_or([scale; 2], |[low, high]| [f64::min(low, scale), f64::max(high, scale)]));
                     }
@@ -92,20 +91,20 @@ impl Follower<'_> {
 
     /// The factors that a polynomial may have which does not tell its own: that of the same polynomial of another pair of its
     /// kind, or 1. Factors of other polynomials vouch for nothing.
-    fn hints(&self, row: usize, number: usize) -> [f64; 2] {
-        [self.factors[row][number].unwrap_or(1.0), 1.0]
+    fn hints(&self, kind: PairKind, number: usize) -> [f64; 2] {
+        [self.factors[kind][number].unwrap_or(1.0), 1.0]
     }
 
     /// Judges what does not tell its factor by those of the same polynomial of other pairs.
     pub(super) fn settle_deferred(&mut self) {
         for Deferred { place, number, expected } in std::mem::take(&mut self.deferred) {
-            let hints = self.hints(row(place.pair.kind), number);
+            let hints = self.hints(place.pair.kind, number);
             let actual = self.records.end.polynomials.get(place.index);
             let Err(mismatch) = compare(expected.polynomial(number), actual, &hints) else { continue };
             let Some(factors) = possible_factors(expected.polynomial(number), actual) else { continue };
             let detail = self.wrong_polynomial(place, number, &expected, mismatch);
             let finding = Finding { step: self.records.step, frame: self.records.frame, detail };
-            self.judged.pend(Pending::new(finding, (row(place.pair.kind), number), factors));
+            self.judged.pend(Pending::new(finding, (place.pair.kind, number), factors));
         }
     }
 
@@ -133,13 +132,13 @@ impl Follower<'_> {
         }
         if self.is_moved(place.pair) && !is_known {
             // A formula that is known to be wrong is wrong here, too, wherever the particles are.
-            if !self.wrong_formulas[row(place.pair.kind)][number] {
+            if !self.wrong_formulas[place.pair.kind][number] {
                 self.charge(Detail::PassPositions { place });
                 self.spoilt[part] = true;
             }
             return;
         }
-        self.wrong_formulas[row(place.pair.kind)][number] = true;
+        self.wrong_formulas[place.pair.kind][number] = true;
         self.charge(self.wrong_polynomial(place, number, expected, mismatch));
     }
 
