@@ -106,6 +106,7 @@ fn a_mistake_beside_another_is_told_once() {
     let author = rows.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/HolisticTests");
     let explained = ["funnel-of-fractional-masses", "rope-bridge", "pendulum-into-a-wall-of-balls"].map(|name| {
+        #[expect(clippy::disallowed_methods, reason = "a test reads the scenes that come with the program")]
         let xml = std::fs::read(folder.join(name).with_extension("xml")).expect("a bundled scene");
         let scene = fosssim_model::scene::original::read(&xml).expect("a scene").scene;
         explain(&scene, &student::trace(&scene, author).unwrap_or_else(|(bytes, _)| bytes))
