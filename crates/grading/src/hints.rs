@@ -3,7 +3,7 @@
 //! What is not to be told is cut here, before a report or the journal sees it, so that no format can let it out.
 use super::told::{Account, Place, Told, ToldFinding};
 use fosssim_judge::{Book, Detail, Finding, Outcome, Rules};
-use fosssim_mistakes::diagnose::Explanation;
+use fosssim_mistakes::{diagnose::Explanation, student::find};
 use serde::Deserialize;
 
 /// How much a report tells a student.
@@ -32,19 +32,18 @@ impl Hints {
         }
     }
 
-    /// What of explanations may be told: nothing below [`Hints::What`]; at that level the sentence, which holds no formula;
-    /// exact forms, keys of others and examples in [`Hints::Full`] only.
+    /// What of explanations may be told: nothing below [`Hints::What`]; at that level the sentence, which holds no formula, and
+    /// the known mistakes that can't be told apart from it, which have such sentences, too; exact forms and examples in
+    /// [`Hints::Full`] only.
     #[must_use]
     pub fn cut(self, explanations: Vec<Explanation>) -> Vec<Explanation> {
         match self {
             Self::None | Self::Where => Vec::new(),
             Self::What => explanations
                 .into_iter()
-                .map(|explanation| Explanation {
-                    details: Vec::new(),
-                    example: None,
-                    same_as: Vec::new(),
-                    ..explanation
+                .map(|mut explanation| {
+                    explanation.same_as.retain(|key| find(key).is_some());
+                    Explanation { details: Vec::new(), example: None, ..explanation }
                 })
                 .collect(),
             Self::Full => explanations,
@@ -135,7 +134,7 @@ mod tests {
             reproduced: 3,
             samples: 3,
             example: Some(example),
-            same_as: vec!["other".to_owned()],
+            same_as: vec!["other".to_owned(), "pe-square-two-eh".to_owned()],
         }
     }
 
@@ -145,7 +144,7 @@ mod tests {
         assert_eq!((told(Hints::None), told(Hints::Where)), (Vec::new(), Vec::new()));
         let what = told(Hints::What).remove(0);
         assert_eq!((what.what.as_str(), what.details.len(), what.example), ("A term is missing.", 0, None));
-        assert!(what.same_as.is_empty());
+        assert_eq!(what.same_as, ["pe-square-two-eh"], "what is found in polynomials alone may be a formula's name");
         assert_eq!(told(Hints::Full), [explanation()]);
     }
 
@@ -201,8 +200,11 @@ mod tests {
         for row in CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong) {
             let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
             for one in Hints::What.cut(explain(&scene, &trace)) {
-                assert_eq!(formula_in(&one.what), None, "{}: {one:?}", row.id);
-                assert!(one.details.is_empty() && one.same_as.is_empty() && one.example.is_none(), "{one:?}");
+                let others = one.same_as.iter().map(|key| find(key).expect("a known mistake").sentence());
+                for sentence in others.chain([one.what.clone()]) {
+                    assert_eq!(formula_in(&sentence), None, "{}: {one:?}", row.id);
+                }
+                assert!(one.details.is_empty() && one.example.is_none(), "{one:?}");
                 told += 1;
             }
         }

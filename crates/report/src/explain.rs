@@ -5,7 +5,7 @@
 use super::{number::exact, view::Number};
 use fosssim_mistakes::{
     diagnose::{Example, Explanation},
-    student::find,
+    student::{Row, find},
 };
 use serde::Serialize;
 
@@ -52,8 +52,10 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
     lines.extend(explanation.details.iter().map(|detail| format!("  {detail}")));
     if !explanation.same_as.is_empty() && explanation.key != Explanation::UNFINISHED {
         let (shown, more) = explanation.same_as.split_at(explanation.same_as.len().min(LISTED));
-        let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
-        lines.push(format!("  not told apart from: {}{more}", shown.join(", ")));
+        let more = if more.is_empty() { String::new() } else { format!(" And {} more.", more.len()) };
+        let words = |key: &String| find(key).map_or_else(|| format!("{key}."), Row::sentence);
+        let shown: Vec<String> = shown.iter().map(words).collect();
+        lines.push(format!("  can't be told apart here from: {}{more}", shown.join(" ")));
     }
     if let Some(example) = &explanation.example {
         lines.extend(of_example(example));
@@ -203,7 +205,7 @@ pub(crate) mod tests {
         insta::assert_snapshot!(lines(&explanations()).join("\n"), @r"
         likely mistake: The sum of radii is not squared. (in 11 of 12 wrong steps tried)
           t^2: R^2 (e1.e1) has weight 0, expected 1
-          not told apart from: a, b, c and 2 more
+          can't be told apart here from: a. b. c. And 2 more.
           example: step 3, particle 3 and edge 1, pass 0
             given     x1 = (0.5, -1), R = 0.25
             expected  1, -0.125
