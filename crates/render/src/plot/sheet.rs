@@ -144,8 +144,7 @@ impl Sheet {
             format!("M{x1} {y1}L{x2} {y2}")
         };
         let list: String = lines.iter().map(piece).collect();
-        let width = if self.is_styled { " stroke-width=\"1\"" } else { "" };
-        let _ = writeln!(self.svg, "<path{ink}{width} d=\"{list}\"/>");
+        let _ = writeln!(self.svg, "<path{ink} stroke-width=\"1\" d=\"{list}\"/>");
     }
 
     /// A line with the ink's dashes.
