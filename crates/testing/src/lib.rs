@@ -44,11 +44,15 @@ pub enum Need {
     Postgres,
     /// `pgbouncer`.
     Pgbouncer,
+    /// `systemd-analyze`.
+    Systemd,
+    /// Python's `yaml`.
+    Yaml,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Corpus,
         Self::Sandbox,
         Self::Walls,
@@ -63,6 +67,8 @@ impl Need {
         Self::Fish,
         Self::Postgres,
         Self::Pgbouncer,
+        Self::Systemd,
+        Self::Yaml,
     ];
 
     /// Its name in `FOSSSIM_REQUIRE`.
@@ -83,6 +89,8 @@ impl Need {
             Self::Fish => "fish",
             Self::Postgres => "postgres",
             Self::Pgbouncer => "pgbouncer",
+            Self::Systemd => "systemd",
+            Self::Yaml => "yaml",
         }
     }
 }
