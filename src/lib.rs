@@ -7,7 +7,7 @@
 
 pub use fosssim_num as num;
 
-pub use fosssim_model::{scene, sim, trace};
+pub use fosssim_model::{assignments, scene, sim, trace};
 
 pub use fosssim_mistakes::student;
 

@@ -3,11 +3,12 @@ use super::{
     grading::{Demo, Doctor, Grade, Merge, Selftest, Suite},
     pictures::{Detect, Render},
     scenes::Scene,
+    values::{Rules, at_least_one},
 };
-use crate::{judge, suite::config};
+use crate::suite::config;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf, str::FromStr};
+use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
 
 /// Grades the traces of FOSSSim, a course's collision simulator: right or wrong, where, and why.
 #[derive(Debug, Parser)]
@@ -67,11 +68,6 @@ fn step(word: &str) -> Result<u32, &'static str> {
     word.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
 }
 
-/// A count that can't be zero.
-pub(super) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
-    word.trim().parse().map_err(|_| "it is a whole number, 1 or more")
-}
-
 /// How a report is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
@@ -103,27 +99,6 @@ pub(super) enum ExplainFormat {
     Json,
     /// For a browser: one file with pictures and a viewer of both motions.
     Html,
-}
-
-/// Which rule books are asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Rules {
-    /// The original's rules alone.
-    Parity,
-    /// The fair rules give the verdict: round-off, scale and the course's own slip can't change it.
-    Fair,
-    /// The original's rules give the verdict, and the report says where the fair ones differ, and why.
-    Both,
-}
-
-impl From<Rules> for judge::Rules {
-    fn from(rules: Rules) -> Self {
-        match rules {
-            Rules::Parity => Self::Parity,
-            Rules::Fair => Self::Fair,
-            Rules::Both => Self::Both,
-        }
-    }
 }
 
 /// Of commands whose exit code, or whose file, is the answer.

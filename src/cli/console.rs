@@ -2,18 +2,19 @@
 //! bars that nothing is written across.
 use super::{
     arguments::{Colour, Format},
-    output,
+    interrupt,
+    screen::{clear_bars, on_screen},
 };
 use crate::{
     judge::parity::{Progress, Remark},
     report::{style::Style, wrap},
 };
 use anyhow::{Context, Result};
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::{
     io::{self, IsTerminal, Write},
     sync::{
-        Mutex, MutexGuard, OnceLock, PoisonError,
+        OnceLock,
         atomic::{AtomicBool, Ordering},
     },
     time::{Duration, Instant},
@@ -129,13 +130,6 @@ pub(super) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// The bars on standard error.
-static ON_SCREEN: Mutex<Option<MultiProgress>> = Mutex::new(None);
-
-fn on_screen() -> MutexGuard<'static, Option<MultiProgress>> {
-    ON_SCREEN.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// Whether bars are of use: on a terminal, unless nobody wants to see them.
 pub(super) fn wants_bars() -> bool {
     io::stderr().is_terminal() && !is_quiet()
@@ -144,18 +138,8 @@ pub(super) fn wants_bars() -> bool {
 /// A place for bars on standard error. Until [`clear_bars`] everything else is written above them, and an interrupt takes
 /// them away.
 pub(super) fn show_bars() -> MultiProgress {
-    output::clean_up_when_interrupted();
+    interrupt::clean_up_when_interrupted();
     on_screen().get_or_insert_with(MultiProgress::new).clone()
-}
-
-/// Takes the bars away.
-pub(super) fn clear_bars() {
-    if let Some(bars) = on_screen().take() {
-        drop(bars.clear());
-        // Another thread may have drawn meanwhile; from here on none can, and what it drew is taken away.
-        bars.set_draw_target(ProgressDrawTarget::hidden());
-        drop(io::stderr().lock().write_all(b"\r\x1b[2K"));
-    }
 }
 
 /// How long a command may take before a bar appears.

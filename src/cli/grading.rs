@@ -1,8 +1,30 @@
 //! Arguments of the commands that run programs, as typed.
-use super::arguments::{Rules, at_least_one};
-use crate::{report::page, suite::config};
+use super::values::{Rules, at_least_one};
+use crate::{
+    assignments::Assignment,
+    report::{grade::Format, page},
+    suite::{config, plan},
+};
 use clap::{Args, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
+
+/// What is said of `--format`, where these formats are taken.
+fn help_of_formats(takes: impl Fn(Format) -> bool) -> String {
+    format!("A report: {}; with =FILE into a file", Format::names(takes))
+}
+
+/// The suites that come with the program, by name.
+fn built_in() -> String {
+    plan::built_in_names().collect::<Vec<_>>().join(", ")
+}
+
+fn help_of_suite() -> String {
+    format!("The suite: a file, or one that comes with the program ({})", built_in())
+}
+
+fn help_of_built_in() -> String {
+    format!("A suite that comes with the program ({}), instead of the commented template", built_in())
+}
 
 /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
 #[derive(Debug, Args)]
@@ -28,8 +50,7 @@ pub(super) struct Grade {
     /// Programs, or folders of submissions.
     #[arg(required = true)]
     pub(super) programs: Vec<PathBuf>,
-    /// The suite: a file, or one that comes with the program (t2m2, earlier).
-    #[arg(long, value_name = "SUITE", default_value = "t2m2")]
+    #[arg(long, value_name = "SUITE", default_value = Assignment::DEFAULT.key(), help = help_of_suite())]
     pub(super) suite: String,
     /// The rule books; by default the suite's.
     #[arg(long, value_enum)]
@@ -37,8 +58,7 @@ pub(super) struct Grade {
     /// The folder for results, logs and the journal.
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,
-    /// A report: text, json, junit, gradescope, prairielearn, github, markdown, csv or html; with =FILE into a file.
-    #[arg(long, value_name = "FORMAT[=FILE]")]
+    #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(|_| true))]
     pub(super) format: Vec<String>,
     /// Whom HTML pages are for: students' hold no group that the suite hides from them, nor what tells of it. Into the output
     /// folder both kinds are written, those to hand out below students/.
@@ -153,8 +173,7 @@ pub(super) struct Merge {
     /// The folder for the results; by default the one that holds the shards, when it is the only one that is named.
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,
-    /// A report: text, json, junit, github, markdown or csv; with =FILE into a file.
-    #[arg(long, value_name = "FORMAT[=FILE]")]
+    #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
     pub(super) format: Vec<String>,
     /// Whom HTML pages are for: students' go to students/, beside those for staff.
     #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Reader::Staff)]
@@ -205,7 +224,7 @@ pub(super) enum Suite {
 Example:
   fosssim-oracle suite init > course.toml")]
 pub(super) struct SuiteInit {
-    /// A suite that comes with the program (t2m2, earlier), instead of the commented template.
+    #[arg(help = help_of_built_in())]
     pub(super) name: Option<String>,
 }
 

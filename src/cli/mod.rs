@@ -6,11 +6,14 @@ mod console;
 pub mod exit;
 mod grading;
 mod input;
+mod interrupt;
 mod original;
 mod output;
 mod pictures;
 mod scenes;
+mod screen;
 mod selection;
+mod values;
 
 use crate::report::grade::plain;
 use clap::Parser;

@@ -2,7 +2,11 @@
 //!
 //! An error, SIGINT and SIGTERM remove the temporary file. Standard output and character devices such as `/dev/null`
 //! are written directly. Pipes, sockets and block devices are refused: a pipe without a reader would block for ever.
-use super::{console, exit, input::Identity};
+use super::{
+    console,
+    input::Identity,
+    interrupt::{clean_up_when_interrupted, pending},
+};
 use anyhow::{Context, Result, bail};
 use std::{
     ffi::OsStr,
@@ -10,7 +14,6 @@ use std::{
     io::{self, Write},
     os::unix::fs::{FileTypeExt, OpenOptionsExt, PermissionsExt},
     path::{Path, PathBuf},
-    sync::{Mutex, OnceLock, PoisonError},
 };
 use tempfile::{NamedTempFile, TempPath};
 
@@ -241,31 +244,6 @@ impl Folder {
         output.write_all(bytes).with_context(|| format!("cannot write {}", self.0.join(name).display()))?;
         output.finish()
     }
-}
-
-/// Temporary files that an interrupt has to remove.
-fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
-    static PENDING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-    PENDING.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// From now on SIGINT and SIGTERM remove the temporary files and the bars, and end the program. A command that handles them
-/// itself has said so before, and then this does nothing.
-pub(super) fn clean_up_when_interrupted() {
-    static ONCE: OnceLock<()> = OnceLock::new();
-    ONCE.get_or_init(|| {
-        let installed = ctrlc::set_handler(|| {
-            // Held until the end: no rename and no new file in between.
-            let pending = pending();
-            for path in pending.iter() {
-                drop(fs::remove_file(path));
-            }
-            console::clear_bars();
-            std::process::exit(exit::INTERRUPTED.into());
-        });
-        // Without a handler an interrupt leaves a hidden file behind, which is better than not working at all.
-        drop(installed);
-    });
 }
 
 /// Whether a name has this extension, whatever its case.

@@ -1,5 +1,5 @@
 //! Arguments of the commands that draw and look closely, as typed.
-use super::arguments::at_least_one;
+use super::values::at_least_one;
 use crate::render::Size;
 use clap::{Args, ValueEnum};
 use std::{num::NonZeroU32, path::PathBuf};

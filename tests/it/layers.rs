@@ -27,14 +27,18 @@ const CRATES: [(&str, &[&str]); 14] = [
 ];
 
 /// Rooms that share a crate, lowest first.
-const ROOMS: [(&str, &[&str]); 2] =
-    [("model", &["scene", "sim", "trace"]), ("mistakes", &["plain", "student", "diagnose"])];
+const ROOMS: [(&str, &[&str]); 2] = [
+    ("model", &["assignments", "scene", "sim", "trace"]),
+    ("mistakes", &["plain", "assignments", "student", "diagnose"]),
+];
 
-fn root() -> &'static Path {
+/// The checkout.
+pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
+/// Appends all Rust files below a folder.
+pub fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("source folder").map(|entry| entry.expect("entry").path()) {
         if entry.is_dir() {
             rust_files(&entry, found);

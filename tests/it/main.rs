@@ -2,6 +2,7 @@
 mod allocations;
 mod attacks;
 mod check;
+mod circles;
 mod citations;
 mod corpus;
 mod detect;

@@ -1,7 +1,7 @@
 //! A stage for tests: programs that do what their names say, played by the sandbox's stand-in.
 use super::{
     batch,
-    execute::Cancellation,
+    cancellation::Cancellation,
     grade::Grade,
     grader::{Grader, Options, Submission},
     plan::{self, Plan},

@@ -9,8 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::{ops::Range, time::Duration};
 use toml::Spanned;
 
-/// The commented file that `suite init` writes; it is itself a valid suite.
-pub const TEMPLATE: &str = include_str!("template.toml");
+pub use super::assignments::TEMPLATE;
 
 /// A validated suite, its scenes not yet looked up.
 #[derive(Debug, Clone, PartialEq)]

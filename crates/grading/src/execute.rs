@@ -1,5 +1,6 @@
 //! Runs one program on one scene in the sandbox and judges its trace while it is written.
 use super::{
+    cancellation::Cancellation,
     cards::{Cards, Judged},
     conclude::{Run, conclude},
     config::{Hints, RunLimits},
@@ -7,6 +8,7 @@ use super::{
     guard::{Fault, guarded},
     result::{Failure, Reason, SceneResult, Stage},
     staging::Staged,
+    task::SceneTask,
     temporary::Temporary,
     verdict::Verdict,
 };
@@ -17,15 +19,11 @@ use fosssim_judge::{
     recorded::{self, RecordingError},
 };
 use fosssim_mistakes::diagnose::{self, Explanation};
-use fosssim_model::scene::Scene;
-use fosssim_sandbox::{self as sandbox, Backend, Canceller, Identity, Job, Limits, Policy, Running, SandboxError};
+use fosssim_sandbox::{self as sandbox, Backend, Identity, Job, Limits, Policy, Running, SandboxError};
 use std::{
     io::{self, Read},
     path::{Path, PathBuf},
-    sync::{
-        Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, AtomicU64, Ordering},
-    },
+    sync::atomic::{AtomicU64, Ordering},
 };
 
 /// Name of the scene's copy in the working folder, and of the trace.
@@ -38,19 +36,6 @@ const ATTEMPTS: u32 = 2;
 /// So much of a trace is kept in memory until it is judged, in bytes: should it be wrong, its beginning is explained, and
 /// should the grader fail on it, it is put aside. The course's largest trace has 18 MB.
 const KEPT_TRACE: usize = 24 << 20;
-
-/// A scene to run.
-#[derive(Debug, Clone)]
-pub struct SceneTask {
-    /// Its name, `Group/name`.
-    pub name: String,
-    /// Its XML, as the program gets it.
-    pub xml: Vec<u8>,
-    /// The scene itself.
-    pub scene: Scene,
-    /// Its recorded trace, compressed with zstd, when there is one.
-    pub recording: Option<&'static [u8]>,
-}
 
 /// How scenes are run.
 #[derive(Clone, Copy)]
@@ -327,54 +312,5 @@ struct Watch<'a> {
 impl Progress for Watch<'_> {
     fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
         (self.on_step)(step);
-    }
-}
-
-/// Stops a grading from outside, for example on Ctrl-C: no new run begins, and every run at work is ended.
-#[derive(Debug, Default)]
-pub struct Cancellation {
-    cancelled: AtomicBool,
-    next: AtomicU64,
-    running: Mutex<Vec<(u64, Canceller)>>,
-}
-
-impl Cancellation {
-    /// Stops everything, now and later.
-    pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::SeqCst);
-        for (_, canceller) in self.lock().iter() {
-            canceller.cancel();
-        }
-    }
-
-    /// Whether grading has been stopped.
-    #[must_use]
-    pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::SeqCst)
-    }
-
-    /// Adds a run for as long as the result lives. A run that begins after the stop is ended at once.
-    pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
-        let number = self.next.fetch_add(1, Ordering::Relaxed);
-        self.lock().push((number, canceller.clone()));
-        if self.is_cancelled() {
-            canceller.cancel();
-        }
-        Registered { cancellation: self, number }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Vec<(u64, Canceller)>> {
-        self.running.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-struct Registered<'a> {
-    cancellation: &'a Cancellation,
-    number: u64,
-}
-
-impl Drop for Registered<'_> {
-    fn drop(&mut self) {
-        self.cancellation.lock().retain(|(number, _)| *number != self.number);
     }
 }

@@ -1,8 +1,8 @@
 //! What becomes of a scene on which the grader itself failed: a judge error, and its trace put aside for whoever mends it.
 use super::{
-    execute::SceneTask,
     guard::Fault,
     result::{Failure, KeptTrace, Reason, SceneResult, Stage},
+    task::SceneTask,
     verdict::Verdict,
 };
 use std::{

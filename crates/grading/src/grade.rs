@@ -1,7 +1,7 @@
 //! The grade: what one submission got, scene by scene.
 use super::{
     config::Visibility,
-    form,
+    mirror,
     result::{BuildEnd, SceneResult},
     verdict::Verdict,
 };
@@ -18,7 +18,7 @@ pub struct Grade {
     /// The suite's name.
     pub suite: String,
     /// The rule books that were asked; verdicts and points are by the official one.
-    #[serde(with = "form::rules")]
+    #[serde(with = "mirror::rules")]
     pub rules: Rules,
     /// The worst verdict of all scenes.
     pub verdict: Verdict,

@@ -1,13 +1,12 @@
 //! Grades one submission: the unit of which everything that grades consists.
 //!
 //! A single submission, a class and an autograder all go through a `Grading`, scene by scene: whoever has several jobs
-//! shares the scenes out among them ([`batch`]). A result is kept before it is told; what is found is not run
+//! shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what is found is not run
 //! again. A panic in the work on one scene is a judge error of that scene.
 use super::{
-    batch::{self, Event, GradeFault},
+    cancellation::Cancellation,
     cards::Cards,
-    execute::{Cancellation, Runner, SceneTask},
-    grade::Grade,
+    execute::Runner,
     guard::guarded,
     key::Key,
     patience,
@@ -15,6 +14,7 @@ use super::{
     result::{Failure, LeftOut, Reason, SceneResult},
     results::{KeepError, Results},
     staging::{self, Staged, StagingError},
+    task::SceneTask,
     verdict::Verdict,
 };
 use fosssim_judge::Rules;
@@ -80,20 +80,6 @@ pub struct Grader<'a> {
 }
 
 impl Grader<'_> {
-    /// Grades one submission. Its number in events is 0. After a cancellation the scenes that were not run say so.
-    ///
-    /// Without `results` nothing is looked up or kept. The fault is what went wrong besides, beside a whole grade.
-    pub fn grade_submission(
-        &self,
-        submission: &Submission,
-        results: Option<&dyn Results>,
-        cancellation: &Cancellation,
-        events: &mut dyn FnMut(Event<'_>),
-    ) -> (Option<Grade>, Option<GradeFault>) {
-        let graded = batch::run(self, std::slice::from_ref(submission), results, cancellation, events);
-        (graded.grades.into_iter().next(), graded.fault)
-    }
-
     /// Against recordings there is nothing but the original's rules: the fair ones follow the submission.
     const fn effective_rules(&self) -> Rules {
         if self.options.recorded { Rules::Parity } else { self.plan.rules }

@@ -11,7 +11,7 @@ impl Key {
     /// command, the way of judging). What judges is always part of it.
     #[must_use]
     pub fn of(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
-        Self::by(judge(), program, scene, words)
+        Self::by(this_build(), program, scene, words)
     }
 
     /// The key of a run that this build judges.
@@ -28,9 +28,10 @@ impl Key {
 }
 
 /// The digest of this very program: two builds of one version may judge differently. Its version where that can't be read.
-fn judge() -> &'static str {
-    static JUDGE: OnceLock<String> = OnceLock::new();
-    JUDGE.get_or_init(|| {
+#[must_use]
+pub fn this_build() -> &'static str {
+    static BUILD: OnceLock<String> = OnceLock::new();
+    BUILD.get_or_init(|| {
         let mut hasher = blake3::Hasher::new();
         let digested = File::open("/proc/self/exe").and_then(|file| hasher.update_reader(file).map(|_| ()));
         digested.map_or_else(|_| env!("CARGO_PKG_VERSION").to_owned(), |()| hasher.finalize().to_hex().to_string())
@@ -49,7 +50,7 @@ mod tests {
         assert_ne!(Key::of(&blake3::hash(b"x"), b"scene", &[]), Key::of(&program, b"scene", &[]));
         // Two builds of one version are two judges.
         assert_ne!(Key::by("one build", &program, b"scene", &[]), Key::by("another", &program, b"scene", &[]));
-        assert_eq!(Key::by(judge(), &program, b"scene", &[]), Key::of(&program, b"scene", &[]));
-        assert_eq!(judge().len(), 64, "a digest, and no version");
+        assert_eq!(Key::by(this_build(), &program, b"scene", &[]), Key::of(&program, b"scene", &[]));
+        assert_eq!(this_build().len(), 64, "a digest, and no version");
     }
 }

@@ -3,7 +3,9 @@
 //! The only place that knows both traces and programs. Yields a [`Grade`]; it writes no markup, speaks no HTTP and
 //! parses no arguments.
 
+mod assignments;
 pub mod batch;
+mod cancellation;
 pub mod cards;
 #[cfg(test)]
 mod cast;
@@ -19,6 +21,7 @@ pub mod headroom;
 mod hints;
 mod key;
 pub mod library;
+mod mirror;
 pub mod patience;
 pub mod plan;
 pub mod recording;
@@ -27,16 +30,19 @@ pub mod results;
 pub mod score;
 mod shape;
 mod staging;
+mod task;
 mod temporary;
 pub mod told;
 pub mod upload;
 mod verdict;
 
+pub use cancellation::Cancellation;
 pub use conclude::{Run, conclude};
-pub use execute::{Cancellation, Runner, SceneTask};
+pub use execute::Runner;
 pub use grade::{Build, Grade, GroupGrade, SceneGrade, Unfit};
 pub use grader::{Grader, Submission};
 pub use guard::{Fault, guarded};
-pub use key::Key;
+pub use key::{Key, this_build};
 pub use result::{Reason, SceneResult};
+pub use task::SceneTask;
 pub use verdict::Verdict;

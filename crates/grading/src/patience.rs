@@ -3,8 +3,8 @@
 //! Pure functions of what is known so far, in the suite's order. More knowledge can only move the end forward, so what is
 //! decided while scenes still run holds, and at the end the same scenes are left out whatever the number of jobs.
 use super::{
-    execute::SceneTask,
     result::{LeftOut, Reason, SceneResult},
+    task::SceneTask,
     verdict::Verdict,
 };
 use std::time::Duration;

@@ -1,16 +1,14 @@
 //! A suite with its scenes looked up: what a grading really runs.
 use super::{
+    assignments,
     config::{self, BuildStep, Hints, Patience, RunLimits, Suite, SuiteError},
-    execute::SceneTask,
     library,
     score::Stakes,
+    task::SceneTask,
 };
 use fosssim_judge::Rules;
-use fosssim_model::scene;
+use fosssim_model::{assignments::Assignment, scene};
 use std::{collections::BTreeMap, path::Path};
-
-/// The suites that come with the program: name and text.
-const BUILT_IN: [(&str, &str); 2] = [("t2m2", include_str!("t2m2.toml")), ("earlier", include_str!("earlier.toml"))];
 
 /// A suite ready to run.
 #[derive(Debug, Clone)]
@@ -83,12 +81,12 @@ impl Plan {
 /// The text of a built-in suite.
 #[must_use]
 pub fn built_in(name: &str) -> Option<&'static str> {
-    BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+    Assignment::named(name).map(assignments::suite)
 }
 
-/// The names of the built-in suites.
+/// The names of the built-in suites, which are those of the assignments.
 pub fn built_in_names() -> impl Iterator<Item = &'static str> {
-    BUILT_IN.iter().map(|(name, _)| *name)
+    Assignment::ALL.into_iter().map(Assignment::key)
 }
 
 /// Looks up the scenes of a suite; files are relative to `folder`.

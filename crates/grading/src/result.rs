@@ -1,5 +1,5 @@
 //! What happened on one scene, as values: renderers make the words of it (`fosssim_report::words`), scoring the points.
-use super::{form, told::Told, verdict::Verdict};
+use super::{mirror, told::Told, verdict::Verdict};
 use fosssim_judge::{Kind, Unreadable, fair::Cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
@@ -21,12 +21,12 @@ pub struct SceneResult {
     /// How the program ended, if it was run.
     pub ended: Option<Ended>,
     /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
-    #[serde(with = "form::cause")]
+    #[serde(with = "mirror::cause")]
     pub differs: Option<Cause>,
     /// What may be told of the trace.
     pub told: Option<Told>,
     /// Likely mistakes, the likeliest first; no more of them than the suite's hints let through.
-    #[serde(with = "form::explanations")]
+    #[serde(with = "mirror::explanations")]
     pub explanations: Vec<Explanation>,
     /// Steps without a finding, of all steps.
     pub right_steps: u32,
@@ -101,7 +101,7 @@ pub enum Wrong {
     /// Hints tell nothing.
     Untold,
     /// In its first record alone.
-    FirstRecord(#[serde(with = "form::kind")] Kind),
+    FirstRecord(#[serde(with = "mirror::kind")] Kind),
     /// In steps.
     Steps {
         /// So many of them.
@@ -109,7 +109,7 @@ pub enum Wrong {
         /// The first one.
         first: u32,
         /// What is wrong there first.
-        #[serde(with = "form::kind")]
+        #[serde(with = "mirror::kind")]
         kind: Kind,
     },
     /// Only in that its records are damaged.
@@ -128,7 +128,7 @@ pub enum BadTrace {
         /// The step it belongs to; 0 for the first record.
         step: u32,
         /// What of it.
-        #[serde(with = "form::UnreadableForm")]
+        #[serde(with = "mirror::UnreadableForm")]
         cause: Unreadable,
         /// Byte offset of the damage.
         offset: u64,
@@ -136,7 +136,7 @@ pub enum BadTrace {
         damage: String,
     },
     /// The trace's own states lead into a step without result.
-    NoResult(#[serde(with = "form::StepErrorForm")] StepError),
+    NoResult(#[serde(with = "mirror::StepErrorForm")] StepError),
     /// By the fair rules: the trace's own polynomials lead into a search without end.
     NoEnd,
     /// By the fair rules: it is damaged.

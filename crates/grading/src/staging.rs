@@ -5,8 +5,8 @@
 //! it is, or for who may read it, is the submission's own fault and not the grader's.
 //! Sources are built in a copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{
+    cancellation::Cancellation,
     config::BuildStep,
-    execute::Cancellation,
     grade::Build,
     result::{BuildEnd, Unusable},
     temporary::Temporary,

@@ -1,5 +1,5 @@
 //! What may be told of a judged trace: findings as values, cut to what the suite's hints let through ([`Hints`](crate::config::Hints)).
-use super::form;
+use super::mirror;
 use fosssim_judge::{Book, Counts, Damage, Finding, Kind, PolynomialPlace, Residuals, Ruling};
 use fosssim_model::sim::Pair;
 use serde::{Deserialize, Serialize};
@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Told {
     /// The book whose verdict counts.
-    #[serde(with = "form::BookForm")]
+    #[serde(with = "mirror::BookForm")]
     pub official: Book,
     /// What the original's rules found.
     pub parity: Account,
     /// What the fair rules found, if they were asked.
     pub fair: Option<Account>,
     /// The residuals (oracle-behaviour.md 6.3), which are values: with full hints only.
-    #[serde(with = "form::residuals")]
+    #[serde(with = "mirror::residuals")]
     pub residuals: Option<Residuals>,
     /// The first damage that reading passed over.
-    #[serde(with = "form::damage")]
+    #[serde(with = "mirror::damage")]
     pub damage: Option<Damage>,
     /// Whether bytes follow the last record.
     pub trailing_bytes: bool,
@@ -39,12 +39,12 @@ impl Told {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Account {
     /// Its verdict.
-    #[serde(with = "form::RulingForm")]
+    #[serde(with = "mirror::RulingForm")]
     pub ruling: Ruling,
     /// Steps with at least one finding.
     pub wrong_steps: u64,
     /// How often each kind of finding occurred.
-    #[serde(with = "form::counts")]
+    #[serde(with = "mirror::counts")]
     pub counts: Counts,
     /// The very first finding.
     pub first_divergence: Option<ToldFinding>,
@@ -60,13 +60,13 @@ pub enum ToldFinding {
         /// The step, from 1; 0 for the first record.
         step: u32,
         /// Its kind.
-        #[serde(with = "form::kind")]
+        #[serde(with = "mirror::kind")]
         kind: Kind,
         /// Where in the step.
         place: Place,
     },
     /// Everything.
-    Full(#[serde(with = "form::FindingForm")] Finding),
+    Full(#[serde(with = "mirror::FindingForm")] Finding),
 }
 
 impl ToldFinding {
@@ -95,9 +95,9 @@ pub enum Place {
     /// In no place that could be named.
     Step,
     /// At a pair of the scene.
-    Pair(#[serde(with = "form::PairForm")] Pair),
+    Pair(#[serde(with = "mirror::PairForm")] Pair),
     /// At a polynomial.
-    Polynomial(#[serde(with = "form::PolynomialPlaceForm")] PolynomialPlace),
+    Polynomial(#[serde(with = "mirror::PolynomialPlaceForm")] PolynomialPlace),
     /// At a particle.
     Particle(usize),
     /// At the objects with these numbers, of which the trace alone speaks.

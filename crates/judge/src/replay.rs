@@ -17,7 +17,8 @@ use super::{
 };
 use crew::Crew;
 use fosssim_model::{
-    scene::{Collision, Scene},
+    assignments::ImpulseList,
+    scene::Scene,
     sim::{RootSearch, State, StepError},
     trace::{Cause, Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
 };
@@ -189,7 +190,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 
     fn new(scene: &'a Scene, reader: Lenient<R>, fair: bool, root_search: RootSearch) -> Self {
         let layout = Layout::of(scene);
-        let logs_impulses = layout.impulses && !matches!(scene.collision, Collision::Hybrid { .. });
+        let logs_impulses = scene.collision.handling().records.impulses == ImpulseList::Responses;
         Self {
             scene,
             reader,

@@ -2,6 +2,8 @@
 
 pub mod plain;
 
+pub mod assignments;
+
 pub mod student;
 
 pub mod diagnose;

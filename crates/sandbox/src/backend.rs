@@ -2,7 +2,7 @@
 
 use std::ffi::{CString, OsString};
 use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::FileTypeExt;
@@ -14,6 +14,7 @@ use std::time::Duration;
 
 use super::bubblewrap;
 use super::fake::FakeRun;
+use super::fault::{SandboxError, lost, set_up_failed};
 use super::job::{Identity, Job, Policy};
 use super::layers::{self, Layer, LayerReport};
 use super::outcome::StartProblem;
@@ -24,85 +25,6 @@ use super::running::{Running, Supervised};
 use super::supervisor::{MODE_PROBE, MODE_RUN};
 use super::sys;
 use super::wire::{self, Event, Order, Probe, SUPERVISOR_ARGUMENT, Walls};
-
-/// Faults of ours or of the host; never the program's.
-#[derive(Debug, thiserror::Error)]
-pub enum SandboxError {
-    /// This host lacks a required wall.
-    #[error("this host cannot run programs safely:\n{missing}")]
-    Missing {
-        /// One line per missing wall, with what to do.
-        missing: String,
-    },
-    /// The supervisor could not be started.
-    #[error("cannot start the sandbox's supervisor {program}: {source}")]
-    Supervisor {
-        /// The supervisor's program.
-        program: String,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// The supervisor ended without a report.
-    #[error("the sandbox's supervisor was lost ({how}); what it ran has been ended")]
-    Lost {
-        /// What is known about its end.
-        how: String,
-    },
-    /// A step of the set-up failed.
-    #[error("the sandbox could not {stage}: {source}")]
-    SetUp {
-        /// The step.
-        stage: String,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// The working folder cannot be used.
-    #[error("the working folder {folder}: {source}")]
-    Folder {
-        /// The folder.
-        folder: String,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// A path that the program should be able to read is not there.
-    #[error("{path}, which the program is to read: {source}")]
-    Readable {
-        /// The path.
-        path: String,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// The name of the trace pipe is taken or is not a plain name.
-    #[error("the trace pipe {name}: {source}; give every run a fresh folder")]
-    Pipe {
-        /// The name.
-        name: String,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// The system refuses to execute a program that is in order.
-    #[error(
-        "{program} could not be executed: {source}; the temporary folder may be mounted noexec: name another one by TMPDIR"
-    )]
-    NotExecuted {
-        /// The program.
-        program: String,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// The program is not the one that was staged.
-    #[error("{program} was changed or removed by somebody else while it was graded")]
-    Changed {
-        /// The program.
-        program: String,
-    },
-    /// Processes could not be ended.
-    #[error("{count} processes of the program could not be ended; look for processes in state D on this host")]
-    Survivors {
-        /// How many.
-        count: u32,
-    },
-}
 
 /// The program that is started as the supervisor: one whose `main` calls [`supervisor_main`](super::supervisor_main).
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -398,15 +320,6 @@ impl Backend {
     }
 }
 
-/// A failure that the supervisor told.
-pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
-    let source = match failure.errno {
-        0 => io::Error::other("no further reason"),
-        errno => io::Error::from_raw_os_error(errno),
-    };
-    SandboxError::SetUp { stage: failure.stage, source }
-}
-
 /// The working folder in memory, and the reading end of its trace pipe.
 fn handed_over(control: &UnixStream, with_pipe: bool) -> io::Result<(OwnedFd, Option<OwnedFd>)> {
     let next = |word: u8| -> io::Result<OwnedFd> {
@@ -418,19 +331,6 @@ fn handed_over(control: &UnixStream, with_pipe: bool) -> io::Result<(OwnedFd, Op
     };
     let folder = next(wire::FOLDER)?;
     Ok((folder, with_pipe.then(|| next(wire::TRACE)).transpose()?))
-}
-
-/// What is known about a supervisor that ended without a word. The way to it is closed by now, which ends one that is merely
-/// confused.
-pub(super) fn lost(mut child: Child) -> SandboxError {
-    let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
-    let mut text = String::new();
-    if let Some(stderr) = child.stderr.take() {
-        // Its last words are a help, not a need.
-        let _ = stderr.take(2000).read_to_string(&mut text);
-    }
-    let text = text.trim();
-    SandboxError::Lost { how: if text.is_empty() { status } else { format!("{status}: {text}") } }
 }
 
 /// The order for a job, with absolute paths, to a supervisor that is this program.

@@ -4,7 +4,6 @@
 
 use std::sync::Arc;
 
-use super::backend::Supervisor;
 use super::wire::{Probe, Walls};
 
 /// One wall.
@@ -89,21 +88,6 @@ pub struct LayerReport {
     pub detail: String,
     /// What to install or enable, when it does not hold and something can be done.
     pub remedy: Option<&'static str>,
-}
-
-/// Which walls hold on this host, tried once by starting this very program as a supervisor.
-///
-/// The program must call [`supervisor_main`](super::supervisor_main) first of all. When not even the supervisor
-/// starts, every wall is reported as missing with that reason.
-#[must_use]
-pub fn doctor() -> Vec<LayerReport> {
-    match Supervisor::this_program().probe() {
-        Ok(probe) => reports(&probe),
-        Err(error) => Layer::ALL
-            .into_iter()
-            .map(|layer| LayerReport { layer, active: false, required: true, detail: error.to_string(), remedy: None })
-            .collect(),
-    }
 }
 
 /// The reports of a probe.

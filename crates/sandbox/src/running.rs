@@ -8,12 +8,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::backend::{SandboxError, lost, set_up_failed};
 use super::collect::Folder;
 use super::decide;
+use super::fault::{SandboxError, lost, set_up_failed};
 use super::layers::LayerReport;
 use super::outcome::{Captured, Outcome};
-use super::supervisor::processes;
+use super::supervisor::orphans;
 use super::wire::{self, COMMAND_CANCEL, COMMAND_TRACE_LIMIT, Event, Order};
 
 /// The way to the supervisor; gone when the run is over.
@@ -146,7 +146,7 @@ impl Running {
             Ok(answer) => answer,
             Err(_) => {
                 let error = lost(supervised.child);
-                processes::end_orphans(supervised.session, supervised.user);
+                orphans::end(supervised.session, supervised.user);
                 return Err(error);
             }
         };

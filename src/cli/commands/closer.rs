@@ -1,5 +1,6 @@
 //! What to type to look closer at a scene that is not accepted: the command that was typed, with the scene.
 use crate::{
+    assignments::Assignment,
     cli::grading::Grade as Arguments,
     suite::{Grade, SceneGrade, Submission, Verdict, config::Hints, library, plan::Plan},
 };
@@ -57,7 +58,7 @@ impl Closer<'_> {
             _ => submission.path.clone(),
         };
         let mut words = format!("fosssim-oracle grade {}", quoted(&path.to_string_lossy()));
-        if suite != "t2m2" {
+        if suite != Assignment::DEFAULT.key() {
             words += &format!(" --suite {}", quoted(suite));
         }
         if rules.is_some() {

@@ -1,6 +1,6 @@
 //! How a grading goes, on standard error: bars on a terminal, otherwise a line per finished submission.
 use crate::{
-    cli::console,
+    cli::{console, screen},
     report::grade::{no_points, one_line, score},
     suite::{Submission, batch::Event, plan::Plan},
 };
@@ -95,7 +95,7 @@ impl Drop for Display<'_> {
     fn drop(&mut self) {
         if let Some(bars) = &self.bars {
             bars.overall.finish_and_clear();
-            console::clear_bars();
+            screen::clear_bars();
         }
     }
 }

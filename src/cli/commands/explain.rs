@@ -4,6 +4,7 @@ use super::{
     pages::{self, Source},
 };
 use crate::{
+    assignments::Assignment,
     cli::{
         arguments::{Explain, ExplainFormat},
         console, exit, input,
@@ -125,7 +126,7 @@ fn program_on_probes(
     let tasks = tasks(scenes)?;
     let cancellation = cancelled_by_signals();
     let backend = backend(arguments.unsafe_no_sandbox)?;
-    let plan = load_suite("t2m2")?;
+    let plan = load_suite(Assignment::DEFAULT.key())?;
     let runner = Runner {
         backend: &backend,
         run: &plan.run,
@@ -183,7 +184,7 @@ fn settled(cases: &[Case], tasks: &[SceneTask]) -> Vec<Explanation> {
 
 fn tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     let mut tasks = Vec::new();
-    for (name, scene) in diagnose::probe_scenes() {
+    for (name, scene) in diagnose::probe_scenes(Assignment::DEFAULT) {
         let xml = scene::write(&scene).into_bytes();
         tasks.push(SceneTask { name: format!("probe {name}"), xml, scene, recording: None });
     }

@@ -2,6 +2,7 @@
 use super::{
     closer::Closer,
     display::Display,
+    ending::{exit_code, file_name},
     last_run::LastRun,
     pages::{self, Pages},
     results::{Report, Results, reports},
@@ -10,7 +11,7 @@ use super::{
     traces,
 };
 use crate::{
-    cli::{console, exit, grading::Grade as Arguments, output, selection::Selection},
+    cli::{console, exit, grading::Grade as Arguments, output, screen, selection::Selection},
     judge::Rules,
     report::{
         explain,
@@ -163,7 +164,7 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                 let first = *first.get_or_insert_with(Instant::now);
                 if signalled.is_cancelled() {
                     if first.elapsed() > Duration::from_secs(1) {
-                        console::clear_bars();
+                        screen::clear_bars();
                         std::process::exit(exit::INTERRUPTED.into());
                     }
                     return;
@@ -370,17 +371,6 @@ impl Session<'_> {
     }
 }
 
-/// How a grading ends that nobody stopped.
-pub(super) fn exit_code(grades: &[Grade]) -> u8 {
-    if grades.iter().any(Grade::is_our_fault) {
-        exit::FAULT
-    } else if grades.iter().all(|grade| grade.verdict.is_accepted()) {
-        exit::ACCEPTED
-    } else {
-        exit::NOT_ACCEPTED
-    }
-}
-
 /// What tells that a submission has changed: the newest change below it, and its size.
 fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
@@ -427,15 +417,4 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         output::write(&folder.join(format!("{}.log", file_name(&scene.scene))), &[], text.as_bytes())?;
     }
     Ok(())
-}
-
-/// A name as a file name: no separators, no leading dot, not too long, and another for every other name.
-pub(super) fn file_name(name: &str) -> String {
-    let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
-    let plain: String = name.replace('/', "_").chars().map(safe).take(100).collect();
-    let plain = plain.trim_start_matches('.').trim();
-    if !plain.is_empty() && plain == name.replace('/', "_") {
-        return plain.to_owned();
-    }
-    format!("{plain}-{}", &blake3::hash(name.as_bytes()).to_hex()[..8])
 }

@@ -1,5 +1,6 @@
 //! `check --self`: how much room the original's rules leave in scenes.
 use crate::{
+    assignments::Assignment,
     cli::{
         arguments::{Check, CheckFormat},
         console, exit, input,
@@ -12,9 +13,6 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
-
-/// The suite that is measured when no scene is named.
-const DEFAULT_SUITE: &str = "t2m2";
 
 pub(super) fn run(scenes: &[PathBuf], arguments: &Check) -> Result<u8> {
     if matches!(arguments.format, CheckFormat::Html | CheckFormat::Github) {
@@ -41,7 +39,7 @@ pub(super) fn run(scenes: &[PathBuf], arguments: &Check) -> Result<u8> {
 }
 
 fn built_in() -> Result<Vec<(String, Scene)>> {
-    let text = plan::built_in(DEFAULT_SUITE).context("the built-in suite")?;
+    let text = plan::built_in(Assignment::DEFAULT.key()).context("the built-in suite")?;
     let plan = plan::load(text, Path::new("."))?;
     Ok(plan.scenes().map(|task| (task.name.clone(), task.scene.clone())).collect())
 }

@@ -1,6 +1,6 @@
 //! `merge`: puts the shards of a grading together.
 use super::{
-    grade::exit_code,
+    ending::exit_code,
     last_run::LastRun,
     pages::Pages,
     results::{Results, reports},

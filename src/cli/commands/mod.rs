@@ -4,6 +4,7 @@ mod check;
 mod closer;
 mod detect;
 mod display;
+mod ending;
 mod explain;
 mod grade;
 mod headroom;

@@ -1,5 +1,5 @@
 //! What is drawn of judged traces, and the HTML pages that are put together of it.
-use super::grade::file_name;
+use super::ending::file_name;
 use crate::{
     cli::output,
     diagnose::Explanation,

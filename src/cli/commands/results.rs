@@ -36,7 +36,7 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
             None => (word.as_str(), None),
         };
         let Some(format) = Format::from_name(name) else {
-            let known: Vec<_> = Format::ALL.iter().map(|(_, name)| *name).collect();
+            let known: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
             bail!("no format {name}; there are {}", known.join(", "));
         };
         reports.push(Report { format, name: name.to_owned(), file });

@@ -1,7 +1,7 @@
 //! `grade --traces`: judges traces that are there already, a folder of them for each submission. Nothing is run, so that no
 //! sandbox is needed; how long a program took, and that it ended well, nobody knows.
 use super::{
-    grade::exit_code,
+    ending::exit_code,
     pages::{self, Pages},
     results::{Report, Results},
 };

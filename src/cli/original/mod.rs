@@ -5,6 +5,7 @@
 //! them or read them while they grow.
 
 mod arguments;
+mod flags;
 mod pictures;
 mod run;
 mod usage;

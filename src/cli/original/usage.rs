@@ -1,5 +1,5 @@
 //! The original's usage, version and parse-error texts, with the line breaks of its argument library.
-use super::arguments::{FLAGS, Flag};
+use super::flags::{FLAGS, Flag};
 
 const WIDTH: usize = 75;
 const TITLE: &str = "Forty One Sixty Seven Sim";

@@ -3,12 +3,13 @@
 //! Events are the interface to reports and progress displays. They arrive on the caller's thread, one after the other, and a
 //! result is kept before its event is sent. What a grading consists of is in [`grader`](super::grader).
 use super::{
-    execute::{Cancellation, SceneTask},
+    cancellation::Cancellation,
     grade::Grade,
     grader::{Grader, Grading, Progress, Shared, Submission},
     guard::{Fault, guarded},
     result::SceneResult,
     results::{KeepError, Results},
+    task::SceneTask,
     temporary,
 };
 use std::sync::{
@@ -80,6 +81,22 @@ enum Message {
     Progress(Progress),
     /// The result, and whether it was taken from an earlier run.
     Done(Box<SceneResult>, bool),
+}
+
+impl Grader<'_> {
+    /// Grades one submission. Its number in events is 0. After a cancellation the scenes that were not run say so.
+    ///
+    /// Without `results` nothing is looked up or kept. The fault is what went wrong besides, beside a whole grade.
+    pub fn grade_submission(
+        &self,
+        submission: &Submission,
+        results: Option<&dyn Results>,
+        cancellation: &Cancellation,
+        events: &mut dyn FnMut(Event<'_>),
+    ) -> (Option<Grade>, Option<GradeFault>) {
+        let graded = run(self, std::slice::from_ref(submission), results, cancellation, events);
+        (graded.grades.into_iter().next(), graded.fault)
+    }
 }
 
 /// Grades all submissions; the grades come back in the same order. After a cancellation the scenes that were not run

@@ -4,6 +4,16 @@ use crate::{
     result::{BadTrace, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, Stage as Doing, Unusable, Wrong},
     told::{Account, Place, Told, ToldFinding},
 };
+use fosssim_judge::{
+    Book, Counts, Damage, Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role, Ruling,
+    Unreadable, fair::Cause,
+};
+use fosssim_mistakes::diagnose::{Example, ExampleValue, Explanation};
+use fosssim_model::{
+    sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
+    trace::LoggedImpulse,
+};
+use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use fosssim_sandbox::{Ended, StartProblem, Stream};
 use std::{path::PathBuf, time::Duration};
 

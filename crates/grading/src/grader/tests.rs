@@ -1,7 +1,8 @@
 use super::*;
 use crate::{
-    batch::GradeFault,
+    batch::{Event, GradeFault},
     cast::{Stage, small_plan},
+    grade::Grade,
     results::{Folder, Memory},
 };
 

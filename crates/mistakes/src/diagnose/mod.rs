@@ -11,15 +11,13 @@ mod known;
 mod notation;
 pub mod outside;
 pub mod polynomial;
-mod probe;
 mod samples;
 mod stages;
 
-pub use crate::plain::formula_in;
+pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use explain::{common, explain, refuted, several};
 pub use explanation::{Example, ExampleValue, Explanation};
 pub use known::{known, shows};
-pub use probe::probe_scenes;
 
 #[cfg(test)]
 mod tests;

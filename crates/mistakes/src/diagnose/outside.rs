@@ -8,7 +8,7 @@ use fosssim_judge::{
     fair::Verdict,
     parity::{Options, judge},
 };
-use fosssim_model::{scene::Scene, sim::PairKind};
+use fosssim_model::{assignments::Assignment, scene::Scene, sim::PairKind};
 
 /// How what is told of a mistake stands to it, from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,7 +41,7 @@ pub struct Rated {
 pub fn told_of(student: Student) -> Vec<Explanation> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let (mut explained, mut right): (Vec<Vec<Explanation>>, Vec<Scene>) = (Vec::new(), Vec::new());
-    for (_, scene) in probe_scenes() {
+    for (_, scene) in probe_scenes(Assignment::DEFAULT) {
         let trace = student::trace(&scene, student).unwrap_or_else(|(bytes, _)| bytes);
         match judge(&scene, &trace[..], &options, &mut ()).fair {
             Some(fair) if fair.verdict == Verdict::Accepted => right.push(scene),

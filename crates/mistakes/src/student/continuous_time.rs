@@ -2,9 +2,10 @@
 use super::{
     catalogue::Mistake,
     detection,
-    integrators::StepFailure,
+    objects::State,
     response::respond,
-    world::{State, StepLog, World},
+    step_failure::StepFailure,
+    world::{StepLog, World},
 };
 
 /// Detects and resolves pair by pair, from `q_start` to wherever the state is by then.

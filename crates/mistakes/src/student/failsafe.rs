@@ -7,9 +7,10 @@ use fosssim_num::{
 use super::{
     catalogue::{Area, Mistake},
     mutants::{Change, Turn},
+    objects::State,
+    objects::Zone,
     rounding::single,
-    world::{State, World},
-    zones::Zone,
+    world::World,
 };
 
 /// The parts of the assignment whose mistakes are made here.

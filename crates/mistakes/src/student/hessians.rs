@@ -2,7 +2,7 @@
 use fosssim_model::scene::Force;
 use fosssim_num::vector::{at, length, over};
 
-use super::{integrators::StepFailure, world::World};
+use super::{step_failure::StepFailure, world::World};
 
 /// A 2 x 2 block, `block[row][column]`.
 type Block = [[f64; 2]; 2];

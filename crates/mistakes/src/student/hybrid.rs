@@ -2,10 +2,12 @@
 use super::{
     catalogue::{Area, Mistake},
     detection, failsafe, impulses,
-    integrators::StepFailure,
     mutants::Change,
-    world::{State, StepLog, World},
-    zones::{self, Zone},
+    objects::State,
+    objects::Zone,
+    step_failure::StepFailure,
+    world::{StepLog, World},
+    zones,
 };
 
 /// The parts of the assignment whose mistakes are made here.

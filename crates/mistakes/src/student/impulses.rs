@@ -4,10 +4,11 @@ use fosssim_num::vector::{at, length, put};
 use super::{
     catalogue::{Area, Mistake},
     detection,
-    integrators::StepFailure,
     mutants::Change,
+    objects::{Contact, State},
     response::respond,
-    world::{Contact, State, StepLog, World},
+    step_failure::StepFailure,
+    world::{StepLog, World},
 };
 
 /// Impulses larger than this are cut by the programs that cap them (length per time).

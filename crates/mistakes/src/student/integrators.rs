@@ -2,26 +2,9 @@
 use std::hint::black_box;
 
 use fosssim_model::scene::Integrator;
-use fosssim_num::{linear, rpoly::DoesNotTerminate};
+use fosssim_num::linear;
 
-use super::{forces, hessians, world::State, world::World};
-
-/// Why a step has no end.
-#[derive(Debug, thiserror::Error)]
-pub enum StepFailure {
-    /// The course's root finder would search for ever.
-    #[error("the root finder would search for ever: a polynomial is not finite")]
-    RootFinder(#[from] DoesNotTerminate),
-    /// Newton's method goes round in circles.
-    #[error("implicit-euler does not converge")]
-    Newton,
-    /// A vortex force cannot be integrated implicitly.
-    #[error("no addHessXToTotal defined for VortexForce")]
-    VortexHessian,
-    /// The guard of [`StepLog`](super::StepLog) refused a polynomial: the caller knows enough.
-    #[error("the caller refused a polynomial, so the step was left")]
-    Refused,
-}
+use super::{forces, hessians, objects::State, step_failure::StepFailure, world::World};
 
 /// Newton's method is given up after this many iterations; the course's program would go on for ever.
 const NEWTON_LIMIT: u32 = 100_000;

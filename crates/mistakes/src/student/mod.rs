@@ -12,9 +12,9 @@
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod author;
-mod catalogue;
 mod continuous_time;
 mod detection;
+mod encounter;
 mod failsafe;
 mod forces;
 mod hessians;
@@ -22,6 +22,7 @@ mod hybrid;
 mod impulses;
 mod integrators;
 pub mod mutants;
+mod objects;
 mod penalty;
 mod record;
 mod refused;
@@ -29,13 +30,17 @@ mod response;
 mod rounding;
 mod simple;
 mod step;
+mod step_failure;
 mod world;
 mod zones;
 
+pub use crate::assignments::t2m2::{Area, CATALOGUE, Kind, Mistake, Row, find};
 pub use author::Student;
-pub use catalogue::{Area, CATALOGUE, Kind, Mistake, Row, find};
-pub use integrators::StepFailure;
+pub use objects::{Contact, Object, Pair, State};
 pub use record::{Record, trace};
 pub use refused::{KNOWN_ACCUSED, KNOWN_REFUSED};
 pub use step::step;
-pub use world::{Contact, Guard, Object, Pair, State, StepLog, World};
+pub use step_failure::StepFailure;
+pub use world::{Guard, StepLog, World};
+
+use crate::assignments::t2m2::catalogue;

@@ -3,10 +3,11 @@
 use super::{
     author::Student,
     catalogue::{Area, Mistake},
-    integrators::StepFailure,
+    objects::{Contact, Object, State},
     rounding::single,
     step::step,
-    world::{Contact, Object, State, StepLog, World},
+    step_failure::StepFailure,
+    world::{StepLog, World},
 };
 use fosssim_model::scene::{Collision, Scene};
 

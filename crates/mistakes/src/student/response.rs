@@ -5,8 +5,9 @@ use fosssim_num::vector::{Vec2, at, over, unit};
 use super::{
     catalogue::{Area, Mistake},
     mutants::{Change, Share},
+    objects::{Contact, Object, State},
     rounding::single,
-    world::{Contact, Object, State, World, add, subtract},
+    world::{World, add, subtract},
 };
 
 /// The parts of the assignment whose mistakes are made here.

@@ -2,8 +2,9 @@
 use fosssim_num::vector::{Vec2, at, length, put, unit};
 
 use super::{
+    objects::{Contact, Object, Pair, State},
     response::{clamped, restitution},
-    world::{Contact, Object, Pair, State, StepLog, World, add},
+    world::{StepLog, World, add},
 };
 
 /// Handles all pairs in order; each sees the velocities that the pairs before it left.

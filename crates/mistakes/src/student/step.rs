@@ -1,10 +1,11 @@
 //! One step with its records.
 use super::{
     catalogue::{Area, Mistake},
-    continuous_time, hybrid,
-    integrators::{self, StepFailure},
+    continuous_time, hybrid, integrators,
+    objects::State,
     simple,
-    world::{State, StepLog, World},
+    step_failure::StepFailure,
+    world::{StepLog, World},
 };
 use fosssim_model::scene::Collision;
 

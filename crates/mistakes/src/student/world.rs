@@ -5,7 +5,12 @@ use fosssim_num::{
     vector::{Vec2, at, put},
 };
 
-use super::{author::Student, catalogue::Mistake, mutants::Change};
+use super::{
+    author::Student,
+    catalogue::Mistake,
+    mutants::Change,
+    objects::{Contact, Object, Pair, State},
+};
 
 /// Everything that stays as it is during a run.
 pub struct World {
@@ -17,46 +22,6 @@ pub struct World {
     pub masses: Vec<f64>,
     /// The pairs of one detection pass, in order (collisions.md 1).
     pub pairs: Vec<Pair>,
-}
-
-/// Positions and velocities, `x0, y0, x1, y1, ...` each.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct State {
-    /// Positions.
-    pub x: Vec<f64>,
-    /// Velocities.
-    pub v: Vec<f64>,
-}
-
-/// A particle and what it may collide with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pair {
-    /// The particle's index.
-    pub particle: usize,
-    /// The other object.
-    pub object: Object,
-}
-
-/// What a particle may collide with, by its index among its kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Object {
-    /// Another particle.
-    Particle(usize),
-    /// An edge.
-    Edge(usize),
-    /// A half-plane.
-    HalfPlane(usize),
-}
-
-/// A collision that detection found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
-    /// Who collides.
-    pub pair: Pair,
-    /// The shortest vector from the particle to the object at the time of impact, not normalised.
-    pub n: Vec2,
-    /// The time of impact as a fraction of the step.
-    pub time: f64,
 }
 
 /// What a step leaves for the trace.

@@ -5,20 +5,12 @@ use super::{
     author::Student,
     catalogue::{Area, Mistake},
     mutants::Change,
-    world::{Contact, Object, World},
+    objects::{Contact, Object, Zone},
+    world::World,
 };
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::ImpactZones];
-
-/// Particles to be moved together.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Zone {
-    /// Their indices.
-    pub particles: BTreeSet<usize>,
-    /// Whether one of them hits a half-plane.
-    pub half_plane: bool,
-}
 
 /// The zone of one contact.
 pub fn zone_of(world: &World, contact: &Contact) -> Zone {

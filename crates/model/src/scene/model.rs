@@ -1,4 +1,5 @@
 //! The scene as the simulator needs it: plain values, every index valid when it comes from the strict reader.
+use crate::assignments::{Assignment, CollisionType, Handling};
 use fosssim_num::vector::Vec2;
 
 /// A scene: what is simulated, for how long, by which method, with which collision handling.
@@ -41,6 +42,12 @@ impl Scene {
         } else {
             0
         }
+    }
+
+    /// The assignment that it belongs to, which its collision type tells.
+    #[must_use]
+    pub const fn assignment(&self) -> Assignment {
+        Assignment::of(self.collision.kind())
     }
 }
 
@@ -92,6 +99,30 @@ pub enum Collision {
         /// `thickness` of the penalty force.
         thickness: f64,
     },
+}
+
+impl Collision {
+    /// Its type, without the numbers.
+    #[must_use]
+    pub const fn kind(&self) -> CollisionType {
+        match self {
+            Self::None => CollisionType::None,
+            Self::Simple { .. } => CollisionType::Simple,
+            Self::Penalty { .. } => CollisionType::Penalty,
+            Self::ContinuousTime { .. } => CollisionType::ContinuousTime,
+            Self::Hybrid { .. } => CollisionType::Hybrid,
+        }
+    }
+
+    /// What its assignment asks of a program.
+    ///
+    /// # Panics
+    /// Never: a test holds every type to be handled by its assignment.
+    #[must_use]
+    pub const fn handling(&self) -> &'static Handling {
+        let kind = self.kind();
+        Assignment::of(kind).definition().handling(kind).expect("an assignment handles what it brings")
+    }
 }
 
 /// A particle: a disc with a mass.

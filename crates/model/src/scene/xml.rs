@@ -6,6 +6,7 @@ use super::fields::{Count, Fields};
 use super::model::{Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport};
 use super::problem::{Finding, Report};
 use super::tag::Tag;
+use crate::assignments::CollisionType;
 
 /// The elements that objects were read from, so that later checks can point to them.
 pub(super) struct Parts<'d, 't> {
@@ -266,37 +267,24 @@ fn integrator(fields: &mut AnyFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
 }
 
 fn collision(fields: &mut AnyFields<'_, '_, '_>) -> Option<Collision> {
-    #[derive(Clone, Copy, PartialEq)]
-    enum Kind {
-        None,
-        Simple,
-        Penalty,
-        ContinuousTime,
-        Hybrid,
-    }
-    let types = [
-        ("none", Kind::None),
-        ("simple", Kind::Simple),
-        ("penalty", Kind::Penalty),
-        ("continuous-time", Kind::ContinuousTime),
-        ("hybrid", Kind::Hybrid),
-    ];
+    let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
     if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
         fields.odd("COR", "a coefficient of restitution lies between 0 and 1");
     }
     let kind = fields.choice("type", &types)?;
     let used: &[&str] = match kind {
-        Kind::None | Kind::Simple | Kind::ContinuousTime => &[],
-        Kind::Penalty => &["k", "thickness"],
-        Kind::Hybrid => &["maxiters", "k", "thickness"],
+        CollisionType::None | CollisionType::Simple | CollisionType::ContinuousTime => &[],
+        CollisionType::Penalty => &["k", "thickness"],
+        CollisionType::Hybrid => &["maxiters", "k", "thickness"],
     };
     for name in ["maxiters", "k", "thickness"] {
         if fields.has(name) && !used.contains(&name) {
             fields.warning(name, "has no effect", "this type of collision handling does not use it");
         }
     }
-    let (default_stiffness, default_thickness) = if kind == Kind::Hybrid { (10.0, 0.1) } else { (100.0, 0.01) };
+    let (default_stiffness, default_thickness) =
+        if kind == CollisionType::Hybrid { (10.0, 0.1) } else { (100.0, 0.01) };
     let mut force = || {
         let (stiffness, thickness) =
             (fields.scalar_or("k", default_stiffness), fields.scalar_or("thickness", default_thickness));
@@ -306,14 +294,14 @@ fn collision(fields: &mut AnyFields<'_, '_, '_>) -> Option<Collision> {
         Some((stiffness, thickness))
     };
     match kind {
-        Kind::None => restitution.map(|_| Collision::None),
-        Kind::Simple => Some(Collision::Simple { restitution: restitution? }),
-        Kind::ContinuousTime => Some(Collision::ContinuousTime { restitution: restitution? }),
-        Kind::Penalty => {
+        CollisionType::None => restitution.map(|_| Collision::None),
+        CollisionType::Simple => Some(Collision::Simple { restitution: restitution? }),
+        CollisionType::ContinuousTime => Some(Collision::ContinuousTime { restitution: restitution? }),
+        CollisionType::Penalty => {
             let (stiffness, thickness) = force()?;
             restitution.map(|_| Collision::Penalty { stiffness, thickness })
         }
-        Kind::Hybrid => {
+        CollisionType::Hybrid => {
             let force = force();
             let max_iterations = max_iterations(fields);
             let (stiffness, thickness) = force?;

@@ -10,15 +10,24 @@ mod bodies;
 mod collision;
 mod forces;
 mod integrators;
+mod matrix;
 mod observer;
+mod pair;
 mod pairs;
 mod polynomial_bytes;
 #[cfg(test)]
 mod samples;
+mod search;
 mod simulation;
+mod state;
+mod step_error;
 
 pub use collision::{PairMotion, PointMotion};
-pub use observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Resume, Stage, Time, Wanted, Zone};
-pub use pairs::{ByKind, Pairs, pairs};
+pub use observer::{Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Time, Wanted, Zone};
+pub use pair::{ByKind, Pair, PairKind};
+pub use pairs::{Pairs, pairs};
 pub use polynomial_bytes::PolynomialBytes;
-pub use simulation::{RootSearch, SearchCounts, Simulation, State, StepError};
+pub use search::{RootSearch, SearchCounts};
+pub use simulation::Simulation;
+pub use state::State;
+pub use step_error::StepError;

@@ -1,5 +1,5 @@
 //! What the simulator tells while it computes: every detection call, pass, impulse and zone.
-use super::{polynomial_bytes::PolynomialBytes, simulation::State};
+use super::{pair::Pair, polynomial_bytes::PolynomialBytes, state::State};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
 /// Hears what happens inside a step. Every method does nothing by default.
@@ -168,49 +168,6 @@ pub enum Resume {
     Own,
     /// The state that the observer left.
     Synchronised,
-}
-
-/// The kind of a pair; the numbers are those of the trace format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum PairKind {
-    /// Two particles (0).
-    ParticleParticle,
-    /// A particle and an edge (1).
-    ParticleEdge,
-    /// A particle and a half-plane (2).
-    ParticleHalfPlane,
-}
-
-impl PairKind {
-    /// How many polynomials a detection call of this kind logs: 2, 4, 2.
-    #[must_use]
-    pub const fn polynomials(self) -> usize {
-        match self {
-            Self::ParticleEdge => 4,
-            Self::ParticleParticle | Self::ParticleHalfPlane => 2,
-        }
-    }
-
-    /// The number that a trace writes.
-    #[must_use]
-    pub const fn code(self) -> i32 {
-        match self {
-            Self::ParticleParticle => 0,
-            Self::ParticleEdge => 1,
-            Self::ParticleHalfPlane => 2,
-        }
-    }
-}
-
-/// Two objects that detection looks at: a particle, and a particle, edge or half-plane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Pair {
-    /// What the second object is.
-    pub kind: PairKind,
-    /// Index of the particle.
-    pub first: u32,
-    /// Index of the second object among its kind.
-    pub second: u32,
 }
 
 /// One detection pass over all pairs.

@@ -3,117 +3,9 @@
 //!
 //! This is the only enumeration of a pass. The passes themselves go through the same loops with values of their own at each
 //! level; a test holds them to this order.
-use super::observer::{Pair, PairKind};
+use super::pair::{ByKind, Pair, PairKind};
 use crate::scene::Scene;
-use std::{
-    borrow::Cow,
-    ops::{Index, IndexMut},
-};
-
-impl PairKind {
-    /// So many polynomials a detection call logs at most.
-    pub const MOST_POLYNOMIALS: usize = 4;
-
-    /// All kinds, in the order in which a pass looks at a particle's pairs, and of the trace's numbers.
-    pub const ALL: [Self; 3] = [Self::ParticleParticle, Self::ParticleEdge, Self::ParticleHalfPlane];
-
-    /// Its place in [`PairKind::ALL`].
-    #[inline]
-    #[must_use]
-    pub const fn index(self) -> usize {
-        self as usize
-    }
-
-    /// The kind that a trace writes as this number; none for numbers of a damaged trace.
-    #[must_use]
-    pub fn from_code(code: i32) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.code() == code)
-    }
-
-    /// Its name: `particle-edge`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ParticleParticle => "particle-particle",
-            Self::ParticleEdge => "particle-edge",
-            Self::ParticleHalfPlane => "particle-half-plane",
-        }
-    }
-
-    /// Its name on command lines and in keys: `pe`.
-    #[must_use]
-    pub const fn short(self) -> &'static str {
-        match self {
-            Self::ParticleParticle => "pp",
-            Self::ParticleEdge => "pe",
-            Self::ParticleHalfPlane => "ph",
-        }
-    }
-
-    /// What the second object is: `edge`.
-    #[must_use]
-    pub const fn second(self) -> &'static str {
-        match self {
-            Self::ParticleParticle => "particle",
-            Self::ParticleEdge => "edge",
-            Self::ParticleHalfPlane => "half-plane",
-        }
-    }
-}
-
-/// A value for each kind of pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ByKind<T>([T; PairKind::ALL.len()]);
-
-impl<T> ByKind<T> {
-    /// The values that a function gives.
-    #[must_use]
-    pub fn from_fn(value: impl FnMut(PairKind) -> T) -> Self {
-        Self(PairKind::ALL.map(value))
-    }
-
-    /// Kinds and values, in the order of [`PairKind::ALL`].
-    pub fn iter(&self) -> impl Iterator<Item = (PairKind, &T)> {
-        PairKind::ALL.into_iter().zip(&self.0)
-    }
-
-    /// The values, in the order of [`PairKind::ALL`].
-    pub fn values(&self) -> impl Iterator<Item = &T> {
-        self.0.iter()
-    }
-
-    /// The values, to be changed.
-    pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
-        self.0.iter_mut()
-    }
-
-    /// The values themselves.
-    pub fn into_values(self) -> impl Iterator<Item = T> {
-        self.0.into_iter()
-    }
-}
-
-impl<T> From<[T; PairKind::ALL.len()]> for ByKind<T> {
-    fn from(values: [T; PairKind::ALL.len()]) -> Self {
-        Self(values)
-    }
-}
-
-impl<T> Index<PairKind> for ByKind<T> {
-    type Output = T;
-
-    #[inline]
-    fn index(&self, kind: PairKind) -> &T {
-        &self.0[kind.index()]
-    }
-}
-
-impl<T> IndexMut<PairKind> for ByKind<T> {
-    #[inline]
-    fn index_mut(&mut self, kind: PairKind) -> &mut T {
-        &mut self.0[kind.index()]
-    }
-}
+use std::borrow::Cow;
 
 /// The pairs of one pass over a scene.
 #[derive(Debug, Clone)]
@@ -272,7 +164,7 @@ mod tests {
         let scene = scene("<collision type=\"continuous-time\"/>");
         let pairs = pairs(&scene);
         // Ten pairs of discs, fifteen less four of discs and edges, ten of discs and half-planes.
-        assert_eq!(pairs.counts(), ByKind([10, 6, 10]));
+        assert_eq!(pairs.counts(), ByKind::from([10, 6, 10]));
         assert_eq!(pairs.polynomials(), 2 * 10 + 4 * 6 + 2 * 10);
         let mut index = 0;
         for pass in 0..3 {

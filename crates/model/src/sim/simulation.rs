@@ -4,111 +4,12 @@ use super::{
     collision::Handler,
     forces::Forces,
     integrators::{DoesNotConverge, Stepper},
-    observer::{Observer, Pair},
+    observer::Observer,
+    search::{RootSearch, SearchCounts},
+    state::State,
+    step_error::StepError,
 };
 use crate::scene::Scene;
-
-/// Positions and velocities in trace order (`x0, y0, x1, y1, ...`), 2N each.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct State {
-    /// Positions.
-    pub positions: Vec<f64>,
-    /// Velocities.
-    pub velocities: Vec<f64>,
-}
-
-/// Whether a certificate may stand in for a root search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum RootSearch {
-    /// Search only where no certificate excludes an impact. The traces are the same.
-    #[default]
-    WhereNeeded,
-    /// Always search.
-    Always,
-    /// Search always, ask the certificate too, and count where they disagree.
-    Audit,
-}
-
-/// Counts of the root searches so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct SearchCounts {
-    /// Detection calls.
-    pub calls: u64,
-    /// Calls whose roots were searched.
-    pub searched: u64,
-    /// Calls excluded by a certificate.
-    pub excluded: u64,
-    /// Audit only: a certificate excluded an impact that the root finder found. Must stay zero.
-    pub disagreements: u64,
-    /// Steps of root searches that led to no zero ([`Zeros::fruitless`](fosssim_num::rpoly::Zeros::fruitless)).
-    pub fruitless: u64,
-}
-
-impl SearchCounts {
-    /// What these calls cost, counted in calls that a certificate excludes. It is the same on every machine.
-    #[must_use]
-    pub const fn work(&self) -> u64 {
-        self.calls + SEARCH_WORK * self.searched + self.fruitless
-    }
-}
-
-impl std::ops::AddAssign for SearchCounts {
-    fn add_assign(&mut self, other: Self) {
-        self.calls += other.calls;
-        self.searched += other.searched;
-        self.excluded += other.excluded;
-        self.disagreements += other.disagreements;
-        self.fruitless += other.fruitless;
-    }
-}
-
-/// What was counted since `before`.
-impl std::ops::Sub for SearchCounts {
-    type Output = Self;
-    fn sub(self, before: Self) -> Self {
-        Self {
-            calls: self.calls - before.calls,
-            searched: self.searched - before.searched,
-            excluded: self.excluded - before.excluded,
-            disagreements: self.disagreements - before.disagreements,
-            fruitless: self.fruitless - before.fruitless,
-        }
-    }
-}
-
-/// A root search takes as long as so many detection calls without one.
-const SEARCH_WORK: u64 = 16;
-
-/// Why a step has no result. The original hangs or goes on with garbage here.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum StepError {
-    /// The root search of a pair would never end: its polynomials hold values that are not finite.
-    #[error("step {step}: the root search of this pair does not terminate")]
-    RootSearch {
-        /// The step, from 1.
-        step: u32,
-        /// The pair.
-        pair: Pair,
-    },
-    /// Newton's method of implicit-euler does not converge (or cycles).
-    #[error("step {step}: Newton's method does not converge")]
-    Newton {
-        /// The step, from 1.
-        step: u32,
-    },
-    /// A vortex force has no Hessian, which implicit integrators need (scene-format.md 6).
-    #[error("step {step}: vortexforce has no Hessian, so it can't be used with an implicit integrator")]
-    VortexHessian {
-        /// The step, from 1.
-        step: u32,
-    },
-    /// More work than was allowed ([`Simulation::limit_work`]).
-    #[error("step {step}: from these states collision handling takes far longer than in a run of the scene")]
-    Work {
-        /// The step, from 1.
-        step: u32,
-    },
-}
 
 /// The reference simulator of one scene.
 #[derive(Debug, Clone)]
@@ -220,7 +121,7 @@ mod tests {
     use crate::{
         scene::{Collision, Force, Integrator, Particle},
         sim::{
-            Decision, Detection, Impulse, PairKind, Pass, Resume, Time, Zone,
+            Decision, Detection, Impulse, Pair, PairKind, Pass, Resume, Time, Zone,
             samples::{edge, fixed, half_plane, particle, scene},
         },
     };

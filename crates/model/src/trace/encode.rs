@@ -11,6 +11,21 @@ pub(crate) const IMPULSE_BYTES: usize = 36;
 /// Bytes of the largest polynomial that the simulator logs.
 const POLYNOMIAL_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 
+/// A list in encoded form: how many entries, and their bytes.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Encoded {
+    pub(crate) count: usize,
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Encoded {
+    /// Empties the list and keeps its memory.
+    pub(crate) fn clear(&mut self) {
+        self.count = 0;
+        self.bytes.clear();
+    }
+}
+
 /// Appends `values` one after the other.
 #[inline]
 pub(crate) fn numbers(out: &mut Vec<u8>, values: &[f64]) {

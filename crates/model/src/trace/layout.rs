@@ -1,5 +1,5 @@
 //! Which blocks a record of a given scene has, and how many records there are.
-use crate::scene::{Collision, Scene};
+use crate::{assignments::ImpulseList, scene::Scene};
 
 /// Everything about a trace's shape that the scene decides (trace-format.md 1, 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,11 +18,8 @@ impl Layout {
     /// The layout of this scene's traces.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        let (impulses, polynomials) = match scene.collision {
-            Collision::None | Collision::Penalty { .. } => (false, false),
-            Collision::Simple { .. } => (true, false),
-            Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => (true, true),
-        };
+        let records = scene.collision.handling().records;
+        let (impulses, polynomials) = (records.impulses != ImpulseList::Absent, records.polynomials);
         Self { particles: scene.particles.len(), impulses, polynomials, steps: scene.steps() }
     }
 

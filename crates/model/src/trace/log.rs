@@ -1,5 +1,8 @@
 //! What a step writes to the trace: its lists, and when which of them is part of a record (trace-format.md 2).
-use super::{encode, frame::LoggedImpulse, writer::Encoded};
+use super::{
+    encode::{self, Encoded},
+    frame::LoggedImpulse,
+};
 use crate::sim::{Detection, Impulse, Pass, PolynomialBytes, Stage};
 
 /// The lists of a step so far, as a trace holds them.

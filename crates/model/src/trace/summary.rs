@@ -11,7 +11,7 @@ use super::{
     layout::Layout,
 };
 use crate::{
-    scene::{Collision, Scene},
+    scene::Scene,
     sim::{Pair, Pairs, pairs},
 };
 use sha2::{Digest, Sha256};
@@ -129,7 +129,7 @@ impl Summary {
         let layout = Layout::of(scene);
         let per_pass = polynomials_per_pass(scene);
         let mut summary = Self {
-            collision: name(&scene.collision),
+            collision: scene.collision.kind().name(),
             layout,
             edges: scene.edges.len(),
             half_planes: scene.half_planes.len(),
@@ -223,16 +223,6 @@ fn polynomials_per_pass(scene: &Scene) -> u64 {
         return 0;
     }
     pairs(scene).polynomials() as u64
-}
-
-fn name(collision: &Collision) -> &'static str {
-    match collision {
-        Collision::None => "none",
-        Collision::Simple { .. } => "simple",
-        Collision::Penalty { .. } => "penalty",
-        Collision::ContinuousTime { .. } => "continuous-time",
-        Collision::Hybrid { .. } => "hybrid",
-    }
 }
 
 /// Gathers the digests of steps into groups of equal length.

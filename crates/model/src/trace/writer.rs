@@ -125,21 +125,6 @@ impl<W: Write> Writer<W> {
     }
 }
 
-/// A list in encoded form: how many entries, and their bytes.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Encoded {
-    pub(crate) count: usize,
-    pub(crate) bytes: Vec<u8>,
-}
-
-impl Encoded {
-    /// Empties the list and keeps its memory.
-    pub(crate) fn clear(&mut self) {
-        self.count = 0;
-        self.bytes.clear();
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,6 +7,7 @@ mod closer;
 mod divergence;
 mod fair;
 mod fair_view;
+mod first;
 mod plots;
 mod steps;
 mod text;
@@ -86,8 +87,8 @@ impl Check<'_> {
         let title = format!("{}: {}", self.trace, self.verdict());
         if !self.accepted() {
             let place = self.outcome.stop.as_ref().map(|stop| stopped(stop, self.outcome));
-            let first = text::first(self).map(|first| first.to_string());
-            let likely = explain::sentence(self.explanations).filter(|_| !text::is_other_scene(self));
+            let first = first::first(self).map(|first| first.to_string());
+            let likely = explain::sentence(self.explanations).filter(|_| !first::is_other_scene(self));
             let words: Vec<String> = [Some(text::headline(self)), place, first, likely].into_iter().flatten().collect();
             text += &annotation("error", &title, &words.join("; "));
         }
@@ -141,7 +142,7 @@ impl Check<'_> {
                 .iter()
                 .map(|first| CountedView { count: account.counts.get(first.kind()), first: finding(first) })
                 .collect(),
-            advice: text::first(self).map_or(&[], text::advice),
+            advice: first::first(self).map_or(&[], text::advice),
             commands: closer::commands(self),
             notes: text::notes(self),
             explanations: self.explanations.iter().map(ExplanationView::from).collect(),

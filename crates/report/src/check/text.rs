@@ -7,10 +7,11 @@ use super::{
         style::{Look, Style},
         table::{Align, Cell, Table},
     },
-    Check, closer, divergence, fair, steps,
+    Check, closer, divergence, fair,
+    first::{first, is_other_scene},
+    steps,
 };
 use fosssim_judge::{Account, Book, Detail, Finding, Outcome, Overall, Ruling, Stop, Unreadable, share};
-use fosssim_mistakes::diagnose::Explanation;
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let outcome = check.outcome;
@@ -46,18 +47,6 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         parts.push(format!("{}\n{commands}", style.paint(Look::Strong, "Look closer")));
     }
     parts.join("\n")
-}
-
-/// Where the trace is another scene's, nothing that differs is a mistake.
-pub(super) fn is_other_scene(check: &Check<'_>) -> bool {
-    check.explanations.iter().any(Explanation::is_other_scene)
-}
-
-/// The first finding that is worth a look: of the official book, or of the other one where the official has nothing.
-pub(super) fn first<'a>(check: &Check<'a>) -> Option<&'a Finding> {
-    let other = check.outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
-    let first = check.outcome.account(check.book()).first_divergence.or(other);
-    first.filter(|_| !is_other_scene(check))
 }
 
 /// What the program is likely to get wrong, before general advice is of use.

@@ -9,89 +9,122 @@ mod github;
 mod gradescope;
 mod json;
 mod junit;
+mod phrases;
 mod prairielearn;
 mod text;
 
-use crate::{
-    number::counted,
-    page::{Graded, Reader},
-    words,
-};
+use crate::page::{Graded, Reader};
 use fosssim_grading::{
-    Grade, GroupGrade, SceneGrade, SceneResult, Verdict,
+    Grade, SceneResult,
     config::{Credit, Visibility},
     score::{self, Stakes},
 };
 use fosssim_judge::Rules;
-use fosssim_mistakes::diagnose::Explanation;
 
-/// The formats, in the order in which help lists them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+/// Whether a format's document holds the grades of several submissions, and how it comes about then.
+macro_rules! takes {
+    (several) => {
+        true
+    };
+    (one) => {
+        false
+    };
+    (several $render:expr, $grades:expr) => {
+        $render($grades)
+    };
+    (one $render:expr, $grades:expr) => {
+        $grades.first().map($render).unwrap_or_default()
+    };
+}
+
+/// The formats, one line each: name on the command line, whether one document takes several grades, and who writes it.
+macro_rules! formats {
+    ($($(#[$doc:meta])* $format:ident, $name:literal, $takes:ident $render:expr;)*) => {
+        /// The formats, in the order in which help lists them.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Format {
+            $($(#[$doc])* $format,)*
+        }
+
+        impl Format {
+            /// All formats.
+            pub const ALL: &'static [Self] = &[$(Self::$format,)*];
+
+            /// The name under which the command line knows it.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$format => $name,)*
+                }
+            }
+
+            /// Whether one document holds the grades of several submissions.
+            #[must_use]
+            pub const fn takes_several(self) -> bool {
+                match self {
+                    $(Self::$format => takes!($takes),)*
+                }
+            }
+
+            /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
+            #[must_use]
+            pub fn render(self, grades: &[Grade]) -> String {
+                match self {
+                    $(Self::$format => takes!($takes $render, grades),)*
+                }
+            }
+        }
+    };
+}
+
+formats! {
     /// For people.
-    Text,
+    Text, "text", several without_colours;
     /// Our own, versioned (`schemas/grade.schema.json`).
-    Json,
+    Json, "json", several json::render;
     /// JUnit XML (`schemas/junit.xsd`).
-    Junit,
+    Junit, "junit", several junit::render;
     /// Gradescope's results.json (`schemas/gradescope.schema.json`).
-    Gradescope,
+    Gradescope, "gradescope", one gradescope::render;
     /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
-    Prairielearn,
+    Prairielearn, "prairielearn", one prairielearn::render;
     /// GitHub Actions annotations.
-    Github,
+    Github, "github", several github::annotations;
     /// A Markdown summary, for GitHub's step summary.
-    Markdown,
+    Markdown, "markdown", several github::summary;
     /// One row per scene, for spreadsheets.
-    Csv,
+    Csv, "csv", several csv_table::scenes;
     /// One file to look at ([`page::Graded`](crate::page::Graded)); without cards here, because these lie on a disk.
-    Html,
+    Html, "html", one page;
 }
 
 impl Format {
-    /// All formats with the names under which the command line knows them.
-    pub const ALL: [(Self, &'static str); 9] = [
-        (Self::Text, "text"),
-        (Self::Json, "json"),
-        (Self::Junit, "junit"),
-        (Self::Gradescope, "gradescope"),
-        (Self::Prairielearn, "prairielearn"),
-        (Self::Github, "github"),
-        (Self::Markdown, "markdown"),
-        (Self::Csv, "csv"),
-        (Self::Html, "html"),
-    ];
-
     /// The format with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|(_, known)| *known == name).map(|(format, _)| format)
+        Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
-    /// Whether one document holds the grades of several submissions.
+    /// The names of these formats, as a sentence lists them: `text, json or csv`.
     #[must_use]
-    pub const fn takes_several(self) -> bool {
-        !matches!(self, Self::Gradescope | Self::Prairielearn | Self::Html)
-    }
-
-    /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
-    #[must_use]
-    pub fn render(self, grades: &[Grade]) -> String {
-        match self {
-            Self::Text => text::Text::default().render(grades),
-            Self::Json => json::render(grades),
-            Self::Junit => junit::render(grades),
-            Self::Gradescope => grades.first().map(gradescope::render).unwrap_or_default(),
-            Self::Prairielearn => grades.first().map(prairielearn::render).unwrap_or_default(),
-            Self::Github => github::annotations(grades),
-            Self::Markdown => github::summary(grades),
-            Self::Csv => csv_table::scenes(grades),
-            Self::Html => {
-                let page = |grade| Graded { grade, card: &|_| None, class: None, reader: Reader::Staff }.html();
-                grades.first().map(page).unwrap_or_default()
-            }
+    pub fn names(wanted: impl Fn(Self) -> bool) -> String {
+        let wanted = Self::ALL.iter().copied().filter(|format| wanted(*format));
+        let names: Vec<&str> = wanted.map(Self::name).collect();
+        match names.split_last() {
+            Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+            _ => names.concat(),
         }
     }
+}
+
+/// Lines for people, without colours.
+fn without_colours(grades: &[Grade]) -> String {
+    text::Text::default().render(grades)
+}
+
+/// A submission's page.
+fn page(grade: &Grade) -> String {
+    Graded { grade, card: &|_| None, class: None, reader: Reader::Staff }.html()
 }
 
 pub use class::class;
@@ -99,109 +132,9 @@ pub(crate) use class::{hardest, head as class_head};
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use github::annotation;
 pub use json::line as json_line;
+use phrases::wrong_first;
+pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, plain, points, reached};
 pub use text::{Advice, Shown, Text, changes, score, table as text_table};
-
-/// Somebody else's words without control characters: escape codes, bells and NULs become visible, line breaks and
-/// tabs stay, characters that XML 1.0 forbids and those that nobody sees are replaced.
-#[must_use]
-pub fn plain(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\n' | '\t' => plain.push(c),
-            '\r' => {}
-            '\u{fffe}' | '\u{ffff}' => plain.push('\u{fffd}'),
-            // Marks that change the direction of the text could show a report's words in another order, and what has no
-            // width makes two names look alike.
-            '\u{ad}'
-            | '\u{61c}'
-            | '\u{180e}'
-            | '\u{200b}'..='\u{200f}'
-            | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}'
-            | '\u{feff}'
-            | '\u{fff9}'..='\u{fffb}'
-            | '\u{e0000}'..='\u{e007f}' => plain.push('\u{fffd}'),
-            c if c.is_control() => plain.push_str(&format!("\\x{:02x}", u32::from(c))),
-            c => plain.push(c),
-        }
-    }
-    plain
-}
-
-/// The likely mistakes, the one that explains most wrong scenes first, and how many scenes each explains.
-#[must_use]
-pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
-    grade.likely_mistakes()
-}
-
-/// What stands above all scenes in a report for one reader: what is wrong with the submission itself, or what its likely
-/// mistakes are.
-#[must_use]
-pub fn head_lines(grade: &Grade) -> Vec<String> {
-    if let Some(unfit) = words::unfit(grade) {
-        return vec![unfit];
-    }
-    let wrong = |scene: &&SceneGrade| matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
-    let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
-    let line = |(number, (mistake, explained)): (usize, (Explanation, usize))| {
-        let rank = if number == 0 { "most likely mistake" } else { "also likely" };
-        format!("{rank}: {} (explains {explained} of {wrong})", mistake.what)
-    };
-    likely_mistakes(grade).into_iter().enumerate().map(line).collect()
-}
-
-/// The scenes of some groups, those that are not accepted first.
-fn wrong_first<'a>(groups: impl Iterator<Item = &'a GroupGrade>) -> Vec<&'a SceneGrade> {
-    let mut scenes: Vec<&SceneGrade> = groups.flat_map(|group| &group.scenes).collect();
-    scenes.sort_by_key(|scene| scene.verdict.is_accepted());
-    scenes
-}
-
-/// The sentence about a scene that the two rule books judge differently.
-#[must_use]
-pub fn difference(scene: &SceneGrade) -> Option<String> {
-    scene.differs.map(|cause| {
-        let verdicts = if cause.original_fails() {
-            "the original fails it, the fair rules accept it"
-        } else {
-            "the original passes it, the fair rules reject it"
-        };
-        format!("the rule books differ: {verdicts}: {cause}")
-    })
-}
-
-/// [`plain`] on one line.
-#[must_use]
-pub fn one_line(text: &str) -> String {
-    plain(text).replace(['\n', '\t'], " ")
-}
-
-/// Points without needless digits: `12.5`, `10`.
-#[must_use]
-pub fn points(value: f64) -> String {
-    let text = format!("{value:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-/// Points that may be missing: where the grader failed or was stopped nobody has a zero.
-#[must_use]
-pub fn reached(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), points)
-}
-
-/// Why a grade has no points.
-#[must_use]
-pub fn no_points(grade: &Grade) -> Option<String> {
-    if grade.points.is_some() {
-        None
-    } else if grade.is_our_fault() {
-        Some("no points: the grader failed, which is not the submission's fault".to_owned())
-    } else {
-        let (missing, all) = (grade.count(Verdict::NotRun), grade.scenes().count());
-        Some(format!("no points yet: {missing} of {} not run", counted(all as u64, "scene")))
-    }
-}
 
 /// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at hand,
 /// and not when a whole class's reports are written.
@@ -224,25 +157,10 @@ pub fn rehearse(result: &SceneResult) {
         wall: result.wall,
     };
     let grades = [grade];
-    for (format, _) in Format::ALL {
+    for format in Format::ALL {
         drop(format.render(&grades));
     }
     drop(csv_of_submissions(&grades));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn control_characters_become_visible() {
-        assert_eq!(plain("a\u{1b}[31mb\0\u{7}\r\nc\td\u{202e}e"), "a\\x1b[31mb\\x00\\x07\nc\td\u{fffd}e");
-        for hidden in "\u{61c}\u{2069}\u{200b}\u{feff}\u{2028}\u{ad}\u{e0041}".chars() {
-            assert_eq!(plain(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
-        }
-        assert_eq!(one_line("a\nb"), "a b");
-        assert_eq!((points(10.0), points(2.5), points(0.0)), ("10".into(), "2.5".into(), "0".into()));
-    }
 }
 
 #[cfg(test)]

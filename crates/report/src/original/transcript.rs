@@ -5,7 +5,7 @@ use fosssim_judge::{
     Outcome, Residuals, Stop, Unreadable,
     parity::{Progress, Remark},
 };
-use fosssim_model::scene::{Collision, Integrator, Scene};
+use fosssim_model::scene::{Integrator, Scene};
 use std::io::{self, Write};
 
 /// What the original shows above a run.
@@ -122,12 +122,13 @@ impl<'a, W: Write> Transcript<'a, W> {
 
     fn banner(&mut self) {
         self.write(format!("{GREEN}{}{PLAIN}\n\n", BANNER.join("\n")).as_bytes());
-        self.entry("FOSSSim Version", b"Fall 2010 v.A");
+        let scene = self.heading.scene;
+        self.entry("FOSSSim Version", scene.assignment().definition().version.as_bytes());
         self.entry("Build type", b"Release");
         self.entry("Vectorization", b"Enabled");
         self.entry("Scene", self.heading.scene_name);
-        self.entry("Integrator", integrator_name(self.heading.scene.integrator).as_bytes());
-        self.entry("Collision Handling", collision_name(&self.heading.scene.collision).as_bytes());
+        self.entry("Integrator", integrator_name(scene.integrator).as_bytes());
+        self.entry("Collision Handling", scene.collision.handling().heading.as_bytes());
         self.entry("Description", self.heading.description);
         match self.heading.task {
             Task::Run => {}
@@ -208,21 +209,14 @@ const fn integrator_name(integrator: Integrator) -> &'static str {
     }
 }
 
-/// The collision handling's printed name (oracle-behaviour.md 3).
-const fn collision_name(collision: &Collision) -> &'static str {
-    match collision {
-        Collision::None | Collision::Penalty { .. } => "Collisions disabled",
-        Collision::Simple { .. } => "Simple Collision Handling",
-        Collision::ContinuousTime { .. } => "Continuous-Time Collision Handling",
-        Collision::Hybrid { .. } => "Hybrid Collision Handling",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use fosssim_judge::{Counts, Kind, Overall};
-    use fosssim_model::sim::{Impulse, Pair, PairKind, SearchCounts};
+    use fosssim_model::{
+        scene::Collision,
+        sim::{Impulse, Pair, PairKind, SearchCounts},
+    };
     use fosssim_num::vector::Vec2;
 
     fn scene(steps: u32) -> Scene {

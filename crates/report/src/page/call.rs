@@ -1,5 +1,8 @@
 //! A detection call on a page: curves, intervals, coefficients.
-use super::{case::number, data::key, markup::text};
+use super::{
+    data::key,
+    markup::{number, text},
+};
 use crate::detect::Detect;
 use fosssim_evidence::{Call, Logged};
 use fosssim_judge::{

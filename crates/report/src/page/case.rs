@@ -3,7 +3,7 @@ use super::{Case, call, data, markup::text, packed::Precision, strip};
 use crate::{
     check::{divergence_text, headline},
     explain,
-    number::{count, general},
+    number::count,
 };
 use fosssim_evidence::{Evidence, Focus};
 use fosssim_grading::config::Hints;
@@ -195,9 +195,4 @@ fn findings(account: &Account<'_>) -> String {
         );
     }
     out + "</tbody></table></div>\n"
-}
-
-/// A number in a table.
-pub(super) fn number(value: f64) -> String {
-    text(&general(value))
 }

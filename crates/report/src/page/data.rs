@@ -7,7 +7,7 @@ use fosssim_evidence::{CloseUp, Evidence, PassUp, Track};
 use fosssim_grading::config::Hints;
 use fosssim_judge::PassWords;
 use fosssim_model::{
-    scene::{self, Collision, Scene},
+    scene::{self, Scene},
     sim::{Impulse, Pair, State},
     trace::LoggedImpulse,
 };
@@ -53,7 +53,7 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
         "scene": markup::visible(case.check.scene),
         "traceName": case.has_trace.then(|| markup::visible(case.check.trace)),
         "full": is_full,
-        "collision": kind(case.scene.collision),
+        "collision": case.scene.collision.kind().name(),
         "collisionTag": collision,
         "integrator": integrator,
         "forces": forces,
@@ -100,16 +100,6 @@ impl Tags {
             collision: line("<collision"),
             forces: lines().filter(is_force).map(str::to_owned).collect(),
         }
-    }
-}
-
-const fn kind(collision: Collision) -> &'static str {
-    match collision {
-        Collision::None => "none",
-        Collision::Simple { .. } => "simple",
-        Collision::Penalty { .. } => "penalty",
-        Collision::ContinuousTime { .. } => "continuous-time",
-        Collision::Hybrid { .. } => "hybrid",
     }
 }
 

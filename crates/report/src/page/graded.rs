@@ -4,7 +4,7 @@ use super::{
     case::mistakes,
     document,
     markup::text,
-    room::{self, Motion, Room},
+    room::{self, Motion, OUTPUTS, Room},
     script,
 };
 use crate::{
@@ -17,9 +17,8 @@ use fosssim_mistakes::diagnose::Explanation;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// So many characters of what a program printed are shown of a scene, and so many bytes of the page go to all scenes'.
+/// So many characters of what a program printed are shown of a scene.
 const OUTPUT: usize = 2_000;
-pub(super) const OUTPUTS: usize = 200_000;
 
 /// Whom a page is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,4 +1,5 @@
 //! Hostile text in HTML: it stays text.
+use crate::number::general;
 use std::fmt::Write;
 
 /// Text in which what can't be seen, or turns the direction of writing, is written out as its code point.
@@ -40,6 +41,11 @@ fn is_hidden(c: char) -> bool {
 /// JSON as it may stand in a data block: nothing in it ends the element.
 pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+/// A number in a table.
+pub(super) fn number(value: f64) -> String {
+    text(&general(value))
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! What of each scene's card has room on a page.
-use super::{Card, graded::OUTPUTS, script};
+use super::{Card, script};
 
 /// A page is to stay below so many bytes: it is mailed, and opened on old machines.
 pub const BUDGET: usize = 2_950_000;
+
+/// So many bytes of a page go to what programs printed, of all scenes together.
+pub(super) const OUTPUTS: usize = 200_000;
 
 /// So much of it may go to pictures and tables before the first motion has room.
 const STILL: usize = BUDGET / 3 * 2;

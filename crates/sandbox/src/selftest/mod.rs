@@ -18,8 +18,9 @@ use include_dir::{Dir, include_dir};
 
 use self::attack::{Attack, Need};
 use self::decoy::Decoy;
-use super::backend::{Backend, SandboxError};
+use super::backend::Backend;
 use super::collect::{self, CollectError};
+use super::fault::SandboxError;
 use super::job::{Job, Limits};
 use super::layers::Layer;
 use super::outcome::{Ended, Outcome};

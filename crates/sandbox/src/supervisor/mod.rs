@@ -12,6 +12,7 @@ mod holdings;
 mod locks;
 mod modes;
 mod namespaces;
+pub(super) mod orphans;
 mod probe;
 pub(super) mod processes;
 mod run;

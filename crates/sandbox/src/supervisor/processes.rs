@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-use super::slot;
 use crate::sys;
 
 /// One line of `/proc/PID/stat`, as far as it matters.
@@ -145,32 +144,14 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
     }
 }
 
-/// Ends what a lost supervisor may have left: the processes of its child's session and those of the child's own user. A
-/// process namespace ends all of its processes by itself, and its sessions are not ours to name.
-pub(crate) fn end_orphans(session: Option<i32>, user: Option<u32>) {
-    const ROUNDS: u32 = 1000;
-    // With the supervisor its hold on the user is gone, and another run may have it by now.
-    let slot = user.and_then(slot::retake);
-    let user = slot.as_ref().map(|slot| slot.user);
-    for _ in 0..ROUNDS {
-        let victims = stop_then_kill(|| {
-            let mut victims: Vec<i32> = all()
-                .filter_map(read)
-                .filter(|stat| Some(stat.session) == session && stat.is_alive())
-                .map(|stat| stat.pid)
-                .collect();
-            victims.extend(user.into_iter().flat_map(of_user));
-            victims
-        });
-        if victims.is_empty() {
-            return;
-        }
-        std::thread::sleep(Duration::from_millis(1));
-    }
+/// The living processes of a session.
+pub(super) fn of_session(session: i32) -> Vec<i32> {
+    let members = all().filter_map(read).filter(|stat| stat.session == session && stat.is_alive());
+    members.map(|stat| stat.pid).collect()
 }
 
 /// Stops the victims until no new one appears, then kills all of them. The answer is whom it found.
-fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
+pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
     const ROUNDS: u32 = 100;
     let mut stopped = BTreeSet::new();
     for _ in 0..ROUNDS {

@@ -1,7 +1,9 @@
 //! Administrators.
 use super::{
-    House, NewSecret, TokenInfo, identity,
-    person::{Account, token_info},
+    House, NewSecret, TokenInfo,
+    account::Account,
+    identity,
+    person::token_info,
     view::{self, Course, Deed, Event, Queue},
 };
 use crate::{

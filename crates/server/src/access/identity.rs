@@ -8,7 +8,7 @@ use crate::{
 use sha2::{Digest as _, Sha256};
 use std::fmt;
 
-use super::person::Account;
+use super::account::Account;
 
 /// How long a session lasts after it was last seen.
 const SESSION: i64 = 14 * 24 * 3600 * 1000;

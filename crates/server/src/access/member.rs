@@ -1,7 +1,7 @@
 //! A member of a course: a student, or staff who tries something out. They see their own submissions; staff sees all.
 use super::{
     House,
-    person::Account,
+    account::Account,
     view::{self, Assignment, Course, Event, History, Submission},
 };
 use crate::{

@@ -3,6 +3,7 @@
 //! submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. A handler says whom it
 //! serves by the type it takes, and one that forgets to has nothing to read from.
 
+mod account;
 mod admin;
 mod example;
 mod identity;
@@ -20,11 +21,12 @@ mod throttle;
 mod view;
 mod visitor;
 
+pub use account::Account;
 pub use admin::Admin;
 pub use identity::{NewSecret, Session};
 pub use member::Member;
 pub use password::Passwords;
-pub use person::{Account, CourseOf, Person, TokenInfo};
+pub use person::{CourseOf, Person, TokenInfo};
 pub use regrade::{Change, Regrade, RegradeState};
 pub use remote::{Claimed, Remote};
 pub use request::{Secrets, cookie_name};

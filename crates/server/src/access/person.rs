@@ -1,5 +1,5 @@
 //! Somebody who is signed in.
-use super::{House, NewSecret, identity, view::Course};
+use super::{House, NewSecret, account::Account, identity, view::Course};
 use crate::{
     db::{DbError, Row},
     problem::Problem,
@@ -7,31 +7,6 @@ use crate::{
 };
 use serde::Serialize;
 use utoipa::ToSchema;
-
-/// Somebody's account.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
-pub struct Account {
-    /// Its number.
-    #[serde(skip)]
-    pub(crate) id: i64,
-    /// What it is called in addresses and tables.
-    pub login: String,
-    /// What its owner is called.
-    pub name: String,
-    /// Whether it may do everything.
-    pub is_admin: bool,
-}
-
-impl Account {
-    pub(super) fn read(row: &Row) -> Result<Self, DbError> {
-        Ok(Self {
-            id: row.int("id")?,
-            login: row.text("login")?,
-            name: row.text("name")?,
-            is_admin: row.flag("is_admin")?,
-        })
-    }
-}
 
 /// A course, and what somebody is in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]

@@ -1,5 +1,5 @@
 //! Who asks, told from a request.
-use super::{Admin, House, Member, Person, Remote, Staff, Visitor, identity, person::Account};
+use super::{Admin, House, Member, Person, Remote, Staff, Visitor, account::Account, identity};
 use crate::{problem::Problem, values};
 use axum::{
     extract::{FromRequestParts, RawPathParams},

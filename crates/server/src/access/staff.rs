@@ -1,7 +1,8 @@
 //! The staff of a course.
 use super::{
-    Member, NewSecret, Settings, identity,
-    person::Account,
+    Member, NewSecret, Settings,
+    account::Account,
+    identity,
     view::{self, Assignment, Deed, Event, Queue, Submission},
 };
 use crate::{

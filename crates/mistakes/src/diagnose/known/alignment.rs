@@ -1,8 +1,8 @@
 //! Records that are missing throughout: then every later record stands for another one, and no step looks right.
 use super::{
-    candidates::resimulate,
     compare::{Logged, ROUND_OFF, StepRecords, first_difference},
     explain,
+    resimulate::resimulate,
     scan::Scan,
 };
 use crate::{

@@ -1,9 +1,10 @@
 //! Tries the rows of the catalogue on the kept steps.
 use super::{
-    compare::{Logged, ROUND_OFF, StepRecords, first_difference, same_polynomial},
+    compare::{ROUND_OFF, first_difference, same_polynomial},
+    resimulate::{Correct, resimulate},
     scan::{Sample, Scan},
 };
-use crate::student::{Area, CATALOGUE, Kind, Mistake, Record, Row, State, StepLog, Student, World, step};
+use crate::student::{Area, CATALOGUE, Kind, Mistake, Row, StepLog, World};
 use fosssim_model::scene::Scene;
 use std::{cell::Cell, collections::BTreeSet};
 
@@ -15,26 +16,6 @@ const PARTIAL: usize = 16;
 const WORK: u64 = 1_500_000;
 /// What a step costs besides its polynomials, in polynomials.
 const STEP_WORK: u64 = 10;
-
-/// What a submission does right.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Correct {
-    /// It uses the particle-edge approach that the course supplies.
-    Supplied,
-    /// It has put that right.
-    RightApproach,
-}
-
-impl Correct {
-    /// Such a program with a mistake.
-    pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
-        let student = Student::new(mistake);
-        match self {
-            Self::Supplied => student,
-            Self::RightApproach => student.with_right_approach(),
-        }
-    }
-}
 
 /// A row, and how many of the wrong steps it reproduces.
 #[derive(Debug, Clone, Copy)]
@@ -176,21 +157,4 @@ impl<'a> Candidates<'a> {
         self.work.set(self.work.get() + asked.get());
         records.is_some_and(|records| first_difference(&records, &sample.records, &ROUND_OFF).is_none())
     }
-}
-
-/// The records that a program writes in a step from this state; `None` when it fails or writes another number of them.
-pub(super) fn resimulate(
-    world: &World,
-    before: &fosssim_model::sim::State,
-    mut log: StepLog<'_>,
-) -> Option<StepRecords> {
-    let mut state = State { x: before.positions.clone(), v: before.velocities.clone() };
-    let mut records: Vec<Logged> = Vec::new();
-    step(world, &mut state, &mut log, &mut |state, log| {
-        records.push(Record::new(world.student, &world.scene.collision, state, log).into());
-    })
-    .ok()?;
-    let end = records.pop()?;
-    let mid = records.pop();
-    records.is_empty().then_some(StepRecords { mid, end })
 }

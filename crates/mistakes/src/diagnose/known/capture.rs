@@ -1,6 +1,7 @@
 //! What the reference computes in one step, kept in the form in which a trace holds it.
 use super::compare::{Logged, StepRecords};
 use fosssim_model::{
+    assignments::ImpulseList,
     scene::Collision,
     sim::{Decision, Detection, Impulse, Observer, Pair, Pass, Resume, Stage, State, Zone},
     trace::PolynomialLog,
@@ -24,9 +25,9 @@ pub(in crate::diagnose) struct Capture {
 impl Capture {
     /// For scenes of this collision type.
     pub(in crate::diagnose) fn new(collision: &Collision) -> Self {
-        let has_mid = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
-        let logs_impulses = !matches!(collision, Collision::Hybrid { .. });
-        Self { logs_impulses, has_mid, ..Self::default() }
+        let records = collision.handling().records;
+        let logs_impulses = records.impulses != ImpulseList::Empty;
+        Self { logs_impulses, has_mid: records.polynomials, ..Self::default() }
     }
 
     /// Where a polynomial belongs: pair, pass, number within the pair; `None` when the reference has no such one.

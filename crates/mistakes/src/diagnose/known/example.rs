@@ -1,8 +1,8 @@
 //! The first place at which a wrong step differs from the reference.
 use super::{
-    candidates::{Correct, resimulate},
     capture::Capture,
     compare::{Difference, ROUND_OFF, same_impulse},
+    resimulate::{Correct, resimulate},
     scan::Sample,
 };
 use crate::{

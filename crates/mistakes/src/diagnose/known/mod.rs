@@ -15,6 +15,7 @@ mod compare;
 mod example;
 mod refute;
 mod remedy;
+mod resimulate;
 mod scan;
 mod several;
 
@@ -28,8 +29,9 @@ pub(super) use several::is_empty_stage;
 
 use super::Explanation;
 use crate::student::{Kind, Mistake, Row, find};
-use candidates::{Candidates, Correct, Score};
+use candidates::{Candidates, Score};
 use fosssim_model::{scene::Scene, trace::Layout};
+use resimulate::Correct;
 use scan::Scan;
 use several::Several;
 use std::io::Read;

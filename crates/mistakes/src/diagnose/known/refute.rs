@@ -1,8 +1,8 @@
 //! Whether a mistake would be seen on a scene: where a program was right all the same, it does not make it.
 use super::{
-    candidates::resimulate,
     capture::Capture,
     compare::{PLAIN, first_difference, same_polynomial},
+    resimulate::resimulate,
 };
 use crate::student::{StepLog, Student, World, find};
 use fosssim_model::{

@@ -1,8 +1,8 @@
 //! Reads a trace once, finds its wrong steps, and keeps some of them, as diverse as possible.
 use super::{
-    candidates::{Correct, resimulate},
     capture::Capture,
     compare::{Difference, Logged, ROUND_OFF, SINGLE_PRECISION, StepRecords, first_difference, same_polynomial},
+    resimulate::{Correct, resimulate},
 };
 use crate::student::{StepLog, World};
 use fosssim_judge::budget::Budget;

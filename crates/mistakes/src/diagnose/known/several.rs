@@ -3,9 +3,9 @@
 //! A row is worth adding when it carries the simulation of the wrong steps further before it parts from what was logged.
 //! Only a set that reproduces everything, right steps included, and of which no row can be left out, explains anything.
 use super::{
-    candidates::{Correct, resimulate},
     compare::{Difference, ROUND_OFF, first_difference, same_polynomial},
     plausibility,
+    resimulate::{Correct, resimulate},
     scan::{Sample, Scan},
 };
 use crate::student::{Area, CATALOGUE, Kind, Mistake, Object, Row, StepLog, Student, World};

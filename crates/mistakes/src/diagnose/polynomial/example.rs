@@ -1,8 +1,6 @@
 //! The sample that shows a mistake best: wrong, with inputs that are quickly written down, early.
-use super::{
-    sample::{Body, Motion},
-    study::{Case, Study},
-};
+use super::study::{Case, Study};
+use crate::assignments::t2m2::{Body, Motion};
 use crate::diagnose::{Example, ExampleValue};
 use fosssim_judge::PairWords;
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};

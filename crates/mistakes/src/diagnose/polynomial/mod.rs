@@ -11,8 +11,6 @@
 mod compare;
 mod dictionary;
 mod example;
-mod formulas;
-mod inputs;
 mod sample;
 mod slips;
 mod sparse;
@@ -23,13 +21,18 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-pub use sample::{Body, Motion, Sample};
+pub use crate::assignments::t2m2::{Body, Motion};
+pub use sample::Sample;
 
 use super::{Explanation, notation};
-use crate::plain::formula_in;
+use crate::{
+    assignments::t2m2::{
+        Subject,
+        exchanges::{EXCHANGES, Exchange},
+    },
+    plain::formula_in,
+};
 use fosssim_model::sim::PairKind;
-use inputs::EXCHANGES;
-use sample::Subject;
 use std::collections::BTreeMap;
 use study::{Candidate, Study};
 
@@ -149,7 +152,7 @@ fn candidates(study: &Study) -> Vec<Candidate> {
 
 fn exchanged_inputs(study: &Study) -> Vec<Candidate> {
     let formula = &study.formulas()[0];
-    let of = |exchange: &inputs::Exchange| {
+    let of = |exchange: &Exchange| {
         let (reproduced, scaled) = study.count(|case| {
             let mut inputs = case.inputs;
             (exchange.apply)(&mut inputs);

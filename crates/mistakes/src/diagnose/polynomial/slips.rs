@@ -1,66 +1,11 @@
 //! Right formulas with one wrong letter: scaled, of the wrong sign, or another dot product.
-use super::{
+use super::study::{Candidate, Study};
+use crate::assignments::t2m2::{
+    Inputs,
     formulas::{Formula, Letter},
-    sample::Inputs,
-    study::{Candidate, Study},
+    ingredients::{Ingredient, ingredients},
 };
-use fosssim_model::sim::PairKind;
-use fosssim_num::bounded::{Bounded, Bounded2};
-
-/// A vector that a student may have put into a dot product.
-struct Ingredient {
-    name: &'static str,
-    value: fn(&Inputs) -> Bounded2,
-    cost: f64,
-}
-
-const fn ingredient(name: &'static str, cost: f64, value: fn(&Inputs) -> Bounded2) -> Ingredient {
-    Ingredient { name, value, cost }
-}
-
-const PARTICLES: &[Ingredient] = &[
-    ingredient("x21", 0.0, Inputs::x21),
-    ingredient("d21", 0.0, Inputs::d21),
-    ingredient("x1", 0.5, |inputs| inputs.x[0]),
-    ingredient("x2", 0.5, |inputs| inputs.x[1]),
-    ingredient("d1", 0.5, |inputs| inputs.d[0]),
-    ingredient("d2", 0.5, |inputs| inputs.d[1]),
-    ingredient("(x21+d21)", 0.8, |inputs| inputs.x21() + inputs.d21()),
-];
-
-const EDGE: &[Ingredient] = &[
-    ingredient("x21", 0.0, Inputs::x21),
-    ingredient("d21", 0.0, Inputs::d21),
-    ingredient("x32", 0.0, Inputs::x32),
-    ingredient("d32", 0.0, Inputs::d32),
-    ingredient("x13", 0.2, Inputs::x13),
-    ingredient("d13", 0.2, Inputs::d13),
-    ingredient("x1", 0.5, |inputs| inputs.x[0]),
-    ingredient("x2", 0.5, |inputs| inputs.x[1]),
-    ingredient("x3", 0.5, |inputs| inputs.x[2]),
-    ingredient("d1", 0.5, |inputs| inputs.d[0]),
-    ingredient("d2", 0.5, |inputs| inputs.d[1]),
-    ingredient("d3", 0.5, |inputs| inputs.d[2]),
-    ingredient("(x21+d21)", 0.8, |inputs| inputs.x21() + inputs.d21()),
-    ingredient("(x32+d32)", 0.8, |inputs| inputs.x32() + inputs.d32()),
-];
-
-const HALF_PLANE: &[Ingredient] = &[
-    ingredient("dx", 0.0, |inputs| inputs.d[0]),
-    ingredient("n", 0.0, Inputs::normal),
-    ingredient("(p-x)", 0.0, Inputs::x21),
-    ingredient("x", 0.5, |inputs| inputs.x[0]),
-    ingredient("p", 0.5, |inputs| inputs.x[1]),
-    ingredient("(p-x-dx)", 0.8, |inputs| inputs.x21() - inputs.d[0]),
-];
-
-const fn ingredients(kind: PairKind) -> &'static [Ingredient] {
-    match kind {
-        PairKind::ParticleParticle => PARTICLES,
-        PairKind::ParticleEdge => EDGE,
-        PairKind::ParticleHalfPlane => HALF_PLANE,
-    }
-}
+use fosssim_num::bounded::Bounded;
 
 /// What stands for a letter.
 enum Stand<'a> {

@@ -1,10 +1,9 @@
 //! Guesses about the whole list of coefficients: reversed, negated, cut, another polynomial's, not a number.
 use super::{
     compare::{expected_at, logged_at, matches},
-    formulas::readings,
-    sample::Subject,
     study::{Candidate, Case, Study, median, ratio},
 };
+use crate::assignments::t2m2::{Subject, formulas::readings};
 use fosssim_num::{
     bounded::Bounded,
     tolerances::{FAIR_UNITS, LEADING_COEFFICIENT},

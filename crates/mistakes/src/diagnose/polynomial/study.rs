@@ -1,8 +1,11 @@
 //! All samples of one polynomial of one kind of pair, and how well a guess reproduces them.
 use super::{
     compare::{coefficient_matches, expected_at, fitted_scale, is_right, is_sure, logged_at, matches, scale_fitted_to},
+    sample::Sample,
+};
+use crate::assignments::t2m2::{
+    Inputs, Subject,
     formulas::{Formula, readings},
-    sample::{Inputs, Sample, Subject},
 };
 use fosssim_num::{bounded::Bounded, tolerances::LEADING_COEFFICIENT};
 

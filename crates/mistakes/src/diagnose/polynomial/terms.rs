@@ -2,10 +2,10 @@
 use super::{
     compare::{coefficient_matches, expected_at, logged_at},
     dictionary::Dictionary,
-    formulas::Formula,
     sparse::{Columns, Support},
     study::{Candidate, Case, Study, median, spread},
 };
+use crate::assignments::t2m2::formulas::Formula;
 use fosssim_num::bounded::Bounded;
 
 /// A fit looks at so many wrong samples, and half as many right ones.

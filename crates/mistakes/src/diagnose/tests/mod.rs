@@ -5,6 +5,9 @@ use super::{
     probe_scenes, several,
 };
 use crate::student::{self, Area, CATALOGUE, Kind, Row, Student, mutants::mutants};
+use fosssim_model::assignments::Assignment;
+
+mod probes;
 
 /// What is said of a program that makes several mistakes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +85,7 @@ fn does_the_same(program: &[&Row], told: &[Explanation]) -> bool {
     let traces = |rows: &[&Row]| -> Vec<Vec<u8>> {
         let student = rows.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
         let bytes = |scene| student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes);
-        probe_scenes().iter().map(|(_, scene)| bytes(scene)).collect()
+        probe_scenes(Assignment::T2M2).iter().map(|(_, scene)| bytes(scene)).collect()
     };
     traces(&rows) == traces(program)
 }
@@ -136,7 +139,7 @@ fn of_unknown_mistakes_the_place_is_told_and_none_is_taken_for_another() {
 /// What is said of a mutant's trace of one probe scene.
 fn said_on(id: &str, probe: &str) -> Explanation {
     let mutant = mutants().find(|mutant| mutant.id == id).expect("a mutant");
-    let (_, scene) = probe_scenes().into_iter().find(|(name, _)| name == probe).expect("a probe scene");
+    let (_, scene) = probe_scenes(Assignment::T2M2).into_iter().find(|(name, _)| name == probe).expect("a probe scene");
     let trace = student::trace(&scene, Student::default().with_mutant(mutant)).expect("it comes to an end");
     explain(&scene, &trace).into_iter().next().expect("an explanation")
 }

@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use fosssim_num::vector::Vec2;
 
-use super::Body;
+use crate::student::encounter::Body;
 
 /// What a program computes with.
 pub trait Number:

@@ -5,8 +5,8 @@ use super::trimmed;
 use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
+    objects::Object,
     rounding::single,
-    world::Object,
 };
 
 /// The parts of the assignment whose mistakes are made here.

@@ -10,10 +10,12 @@ use fosssim_num::{
 use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
-    integrators::StepFailure,
+    encounter::{Body, Encounter, alpha},
     mutants::Change,
+    objects::{Contact, Object, Pair},
     rounding::single,
-    world::{Contact, Object, Pair, StepLog, World},
+    step_failure::StepFailure,
+    world::{StepLog, World},
 };
 
 mod arithmetic;
@@ -29,45 +31,6 @@ mod quintic;
 mod wide;
 
 use frame::Frame;
-pub use particle_edge::alpha;
-
-/// Something round on its way through the step: it moves from `start` by `displacement`, evenly.
-#[derive(Clone, Copy)]
-pub struct Body {
-    /// Where its centre is at the start of the step.
-    pub start: Vec2,
-    /// How far it goes within the step.
-    pub displacement: Vec2,
-    /// Its radius.
-    pub radius: f64,
-}
-
-impl Body {
-    /// What moves from `start` to `end`.
-    fn new(start: Vec2, end: Vec2, radius: f64) -> Self {
-        Self { start, displacement: end - start, radius }
-    }
-
-    /// Where its centre is at time `t`, a fraction of the step.
-    pub fn at(&self, t: f64) -> Vec2 {
-        self.start + t * self.displacement
-    }
-
-    /// Where its centre is at the end of the step.
-    pub fn end(&self) -> Vec2 {
-        self.at(1.0)
-    }
-}
-
-/// The two objects of a pair, ready for the formulas.
-pub enum Encounter {
-    /// Two particles.
-    Particles(Body, Body),
-    /// A particle, the edge's two endpoints, and the edge's radius.
-    Edge([Body; 3], f64),
-    /// A particle, and the half-plane's point and normal.
-    HalfPlane(Body, Vec2, Vec2),
-}
 
 impl Encounter {
     fn new(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
@@ -118,7 +81,7 @@ impl Encounter {
             Self::Particles(one, two) => one.displacement - two.displacement,
             Self::Edge(bodies, _) => {
                 let [one, two, three] = bodies.map(|body| body.displacement);
-                one - two - particle_edge::alpha(bodies, t) * (three - two)
+                one - two - alpha(bodies, t) * (three - two)
             }
             Self::HalfPlane(one, ..) => one.displacement,
         };
@@ -246,14 +209,10 @@ fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
         (Some(Mistake::DecisionOverlapAtStart), _) => {
             time == 0.0 && length(encounter.contact_vector(student, 0.0)) < encounter.reach()
         }
-        (Some(Mistake::DecisionAlphaAtStart), Encounter::Edge(bodies, _)) => {
-            !(0.0..=1.0).contains(&particle_edge::alpha(bodies, 0.0))
-        }
-        (Some(Mistake::DecisionAlphaAtEnd), Encounter::Edge(bodies, _)) => {
-            !(0.0..=1.0).contains(&particle_edge::alpha(bodies, 1.0))
-        }
+        (Some(Mistake::DecisionAlphaAtStart), Encounter::Edge(bodies, _)) => !(0.0..=1.0).contains(&alpha(bodies, 0.0)),
+        (Some(Mistake::DecisionAlphaAtEnd), Encounter::Edge(bodies, _)) => !(0.0..=1.0).contains(&alpha(bodies, 1.0)),
         (Some(Mistake::DecisionAlphaMargin), Encounter::Edge(bodies, _)) => {
-            !(0.05..=0.95).contains(&particle_edge::alpha(bodies, time))
+            !(0.05..=0.95).contains(&alpha(bodies, time))
         }
         (Some(Mistake::DecisionApproachMargin), _) => encounter.closing(time) <= 1e-6,
         (Some(Mistake::DecisionHalfPlaneOneSided), Encounter::HalfPlane(one, point, normal)) => {

@@ -3,7 +3,7 @@
 //! Where a polynomial is zero but for round-off, that makes numbers of ordinary size of it.
 use fosssim_num::vector::Vec2;
 
-use super::Encounter;
+use crate::student::encounter::Encounter;
 use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},

@@ -2,7 +2,6 @@
 use fosssim_num::vector::Vec2;
 
 use super::{
-    Body,
     arithmetic::{self, Fused},
     basis, factorised, quintic,
     wide::Wide,
@@ -10,6 +9,7 @@ use super::{
 use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
+    encounter::{Body, alpha},
 };
 
 /// The parts of the assignment whose mistakes are made in the polynomials.
@@ -226,13 +226,6 @@ fn alpha_below_one(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f64
         Some(Mistake::FactorisedAll) => vec![i - c, 2.0 * h - b, g - a],
         _ => vec![d13.dot(&d23), d13.dot(&x23) + x13.dot(&d23), x13.dot(&x23)],
     }
-}
-
-/// The parameter of the closest point on the infinite line at time `t`: 0 at the first endpoint, 1 at the second.
-pub fn alpha([one, two, three]: &[Body; 3], t: f64) -> f64 {
-    let to_particle = one.start + t * one.displacement - two.start - t * two.displacement;
-    let along = three.start + t * three.displacement - two.start - t * two.displacement;
-    to_particle.dot(&along) / along.dot(&along)
 }
 
 /// From the particle to the closest point of the line at time `t`.

@@ -4,7 +4,7 @@ use fosssim_num::vector::Vec2;
 use super::{Change, Mutant, row};
 use crate::student::{
     catalogue::Area,
-    detection::{Body, Encounter},
+    encounter::{Body, Encounter},
 };
 
 const PP: &str = "particle-particle";

@@ -5,7 +5,7 @@ use fosssim_num::{
 };
 
 use super::{Change, Mutant, row};
-use crate::student::{catalogue::Area, detection::Encounter, world::Object};
+use crate::student::{catalogue::Area, encounter::Encounter, objects::Object};
 
 pub(super) const MUTANTS: &[Mutant] = &[
     row(
@@ -69,7 +69,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "only the middle half of an edge is struck",
         &["missed", "not counted"],
         Change::Counts(|encounter, time| {
-            let inside = |bodies| (0.25..=0.75).contains(&crate::student::detection::alpha(bodies, time));
+            let inside = |bodies| (0.25..=0.75).contains(&crate::student::encounter::alpha(bodies, time));
             time <= 1.0 && !matches!(encounter, Encounter::Edge(bodies, _) if !inside(bodies))
         }),
     ),
@@ -112,7 +112,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         &["direction"],
         Change::Vector(|encounter, time, n| match encounter {
             Encounter::Edge(bodies, _) => {
-                let end = if crate::student::detection::alpha(bodies, time) < 0.5 { &bodies[1] } else { &bodies[2] };
+                let end = if crate::student::encounter::alpha(bodies, time) < 0.5 { &bodies[1] } else { &bodies[2] };
                 end.at(time) - bodies[0].at(time)
             }
             _ => n,

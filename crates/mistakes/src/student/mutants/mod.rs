@@ -10,9 +10,9 @@ use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
 use super::{
     catalogue::Area,
-    detection::Encounter,
-    world::{Contact, Pair, State},
-    zones::Zone,
+    encounter::Encounter,
+    objects::Zone,
+    objects::{Contact, Pair, State},
 };
 
 /// A mistake outside of the catalogue.

@@ -1,6 +1,6 @@
 //! Wrong responses, loops, zones and failsafes.
 use super::{Change, Mutant, Share, row};
-use crate::student::{catalogue::Area, world::Object};
+use crate::student::{catalogue::Area, objects::Object};
 
 const PP: &str = "particle-particle";
 const PE: &str = "particle-edge";

@@ -4,8 +4,10 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Impulse, Observer, PairKind, Pass, Stage},
-        simulation::{State, StepError},
+        observer::{Impulse, Observer, Pass, Stage},
+        pair::PairKind,
+        state::State,
+        step_error::StepError,
     },
     particle_edge, particle_half_plane, particle_particle,
     pass::{Detector, Reaction},

@@ -4,7 +4,8 @@ use super::{
     super::{
         bodies::Bodies,
         observer::{Impulse, Observer, Pass, Resume, Stage, Zone},
-        simulation::{State, StepError},
+        state::State,
+        step_error::StepError,
     },
     continuous_time::respond,
     failsafe,

@@ -7,6 +7,7 @@ mod blocks;
 mod continuous_time;
 mod failsafe;
 mod hybrid;
+mod impact;
 mod motion;
 mod particle_edge;
 mod particle_half_plane;
@@ -20,7 +21,9 @@ mod zones;
 use super::{
     bodies::Bodies,
     observer::Observer,
-    simulation::{RootSearch, SearchCounts, State, StepError},
+    search::{RootSearch, SearchCounts},
+    state::State,
+    step_error::StepError,
 };
 use crate::scene::{Collision, Scene};
 use hybrid::HybridScratch;

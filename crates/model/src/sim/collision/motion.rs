@@ -5,7 +5,7 @@ use super::{
 };
 use crate::{
     scene::Scene,
-    sim::observer::{Pair, PairKind},
+    sim::pair::{Pair, PairKind},
 };
 use fosssim_num::{
     lanes::Plane,

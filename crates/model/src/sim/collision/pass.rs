@@ -6,17 +6,18 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Time, Wanted},
-        simulation::{RootSearch, SearchCounts, StepError},
+        observer::{Decision, Detection, Impulse, Observer, Pass, Time, Wanted},
+        pair::{Pair, PairKind, pair},
+        search::{RootSearch, SearchCounts},
+        step_error::StepError,
     },
     blocks::{Blocks, Place, Setting},
+    impact::time_of_impact,
     particle_edge::{self, EdgeMotions},
     particle_half_plane, particle_particle,
     two::{Two, two},
 };
 use fosssim_num::{
-    certificate::excludes_unit_interval,
-    first_time::first_time_counted,
     polynomial::Polynomial,
     vector::{Vec2, at, put},
 };
@@ -318,35 +319,6 @@ impl Detector {
     }
 }
 
-/// The time of impact as far as it has to be known.
-///
-/// # Errors
-/// [`StepError::RootSearch`]
-#[inline]
-pub(super) fn time_of_impact(
-    search: RootSearch,
-    counts: &mut SearchCounts,
-    step: u32,
-    pair: Pair,
-    polynomials: &[Polynomial],
-) -> Result<Time, StepError> {
-    counts.calls += 1;
-    let excluded = search != RootSearch::Always && excludes_unit_interval(polynomials);
-    if excluded {
-        counts.excluded += 1;
-        if search == RootSearch::WhereNeeded {
-            return Ok(Time::Excluded);
-        }
-    }
-    counts.searched += 1;
-    let time =
-        first_time_counted(polynomials, &mut counts.fruitless).map_err(|_| StepError::RootSearch { step, pair })?;
-    if excluded && time <= 1.0 {
-        counts.disagreements += 1;
-    }
-    Ok(Time::Found(time))
-}
-
 /// What a pass is about: the scene, the way of the step, who listens and who answers hits.
 struct Way<'a, O, R> {
     bodies: &'a Bodies,
@@ -372,11 +344,4 @@ fn motions(bodies: &Bodies, block: usize, q_start: &[f64], displacements: &[f64]
     let of =
         |array: &[f64], end: usize| two(both(block, |edge| at(array, bodies.edges[edge][end]), bodies.edges.len()));
     EdgeMotions::new(of(q_start, 0), of(displacements, 0), of(q_start, 1), of(displacements, 1))
-}
-
-/// Names a pair.
-#[inline]
-pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
-    #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
-    Pair { kind, first: first as u32, second: second as u32 }
 }

@@ -4,11 +4,11 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Decision, Detection, Impulse, Observer, Pair, PairKind, Pass, Stage, Time},
-        simulation::State,
+        observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time},
+        pair::{Pair, PairKind, pair},
+        state::State,
     },
     particle_edge, particle_half_plane, particle_particle,
-    pass::pair,
     response::{Law, Response},
 };
 use fosssim_num::vector::Vec2;

@@ -4,7 +4,8 @@
 //! connected components, in the order of the first list entry of each; here a union-find computes it in nearly linear time.
 use super::super::{
     bodies::Bodies,
-    observer::{Impulse, PairKind, Zone},
+    observer::{Impulse, Zone},
+    pair::PairKind,
 };
 
 /// Disjoint zones in order; their particles ascending, in one array.
@@ -174,7 +175,7 @@ impl Builder {
 mod tests {
     use super::*;
     use crate::sim::{
-        observer::Pair,
+        pair::Pair,
         samples::{Numbers, edge, particle, scene},
     };
     use fosssim_num::vector::Vec2;

@@ -1,5 +1,5 @@
 //! Linear drag (simulation.md 3, dragdamping): a force `-b v` on every particle.
-use crate::sim::integrators::Matrix;
+use crate::sim::matrix::Matrix;
 
 /// Adds `b v`.
 pub(super) fn add_gradient(coefficient: f64, v: &[f64], gradient: &mut [f64]) {

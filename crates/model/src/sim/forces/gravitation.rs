@@ -1,6 +1,6 @@
 //! Newtonian attraction of two particles (simulation.md 3, gravitationalforce).
 use super::{add, subtract};
-use crate::sim::integrators::{Block, Matrix};
+use crate::sim::matrix::{Block, Matrix};
 use fosssim_num::vector::{at, length, over};
 
 /// Adds `G m m' / r^2` along the line from the first to the second (NaN when they coincide).

@@ -11,7 +11,7 @@ mod penalty;
 mod spring;
 mod vortex;
 
-use super::{bodies::Bodies, integrators::Matrix};
+use super::{bodies::Bodies, matrix::Matrix};
 use crate::scene::{Collision, Force, Scene};
 use fosssim_num::vector::{Vec2, at, put};
 use penalty::Penalty;

@@ -1,6 +1,6 @@
 //! The damped spring on an edge (simulation.md 3, springforce).
 use super::{add, subtract};
-use crate::sim::integrators::{Block, Matrix};
+use crate::sim::matrix::{Block, Matrix};
 use fosssim_num::vector::{Vec2, at, length, over};
 
 /// The spring's length and its direction from the first to the second endpoint (NaN when they coincide).

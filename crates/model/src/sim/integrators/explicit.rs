@@ -1,6 +1,6 @@
 //! explicit-euler (simulation.md 4): the positions move with the old velocities.
 use super::{add_scaled, add_scaled_accelerations};
-use crate::sim::{bodies::Bodies, simulation::State};
+use crate::sim::{bodies::Bodies, state::State};
 
 /// `x += h v`, then `v += h F / m`.
 pub(super) fn advance(bodies: &Bodies, h: f64, force: &[f64], state: &mut State) {

@@ -2,8 +2,8 @@
 //!
 //! The original iterates without limit and hangs when Newton's method does not converge; here the step ends with
 //! [`DoesNotConverge`] instead.
-use super::{DoesNotConverge, ImplicitScratch};
-use crate::sim::{bodies::Bodies, forces::Forces, simulation::State};
+use super::{DoesNotConverge, ImplicitScratch, system::assemble};
+use crate::sim::{bodies::Bodies, forces::Forces, state::State};
 use fosssim_num::{
     linear,
     tolerances::{NEWTON_ITERATIONS, NEWTON_UPDATE},
@@ -51,7 +51,7 @@ pub(super) fn advance(
             rhs[k] += -(bodies.masses[k / 2] * dv[k]);
         }
         bodies.zero_fixed(rhs);
-        matrix.assemble(bodies, forces, h, x, v);
+        assemble(matrix, bodies, forces, h, x, v);
         linear::solve(matrix.entries_mut(), rhs, workspace);
         for k in 0..entries {
             dv[k] += rhs[k];

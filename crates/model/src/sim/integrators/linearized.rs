@@ -1,6 +1,6 @@
 //! linearized-implicit-euler (simulation.md 4): one linear solve per step.
-use super::{ImplicitScratch, add_scaled};
-use crate::sim::{bodies::Bodies, forces::Forces, simulation::State};
+use super::{ImplicitScratch, add_scaled, system::assemble};
+use crate::sim::{bodies::Bodies, forces::Forces, state::State};
 use fosssim_num::linear;
 
 /// Solves `A d = -h g` at `(x + h v, v)`, then `v += d`, `x += h v`. `minus_one` is an opaque -1.
@@ -27,7 +27,7 @@ pub(super) fn advance(
         *entry *= h;
     }
     bodies.zero_fixed(rhs);
-    matrix.assemble(bodies, forces, h, x, v);
+    assemble(matrix, bodies, forces, h, x, v);
     linear::solve(matrix.entries_mut(), rhs, workspace);
     for (velocity, d) in state.velocities.iter_mut().zip(rhs.iter()) {
         *velocity += d;

@@ -8,10 +8,9 @@ mod linearized;
 mod symplectic;
 mod system;
 
-use super::{bodies::Bodies, forces::Forces, simulation::State};
+use super::{bodies::Bodies, forces::Forces, matrix::Matrix, state::State};
 use crate::scene::{Integrator, Scene};
 use fosssim_num::linear::Workspace;
-pub(super) use system::{Block, Matrix};
 
 /// The update's norm stays above the bound after too many iterations, or the iterates repeat.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! forward-backward-euler, also called symplectic-euler (simulation.md 4): the positions move with the new velocities.
 use super::{add_scaled, add_scaled_accelerations};
-use crate::sim::{bodies::Bodies, simulation::State};
+use crate::sim::{bodies::Bodies, state::State};
 
 /// `v += h F / m`, then `x += h v`.
 pub(super) fn advance(bodies: &Bodies, h: f64, force: &[f64], state: &mut State) {

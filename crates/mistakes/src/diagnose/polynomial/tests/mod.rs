@@ -2,6 +2,7 @@
 mod catalogue;
 
 use super::*;
+use crate::assignments::t2m2::{Inputs, formulas};
 use fosssim_model::sim::Pair;
 use fosssim_num::{polynomial::trim, vector::Vec2};
 
@@ -206,7 +207,7 @@ fn the_tables_are_the_formulas_of_the_fair_rules() {
     for kind in PairKind::ALL {
         for _ in 0..200 {
             let motion = numbers.motion(kind);
-            let (judged, inputs) = (motion.judged().polynomials(), sample::Inputs::new(&motion));
+            let (judged, inputs) = (motion.judged().polynomials(), Inputs::new(&motion));
             for (number, &subject) in Subject::of(kind).iter().enumerate() {
                 for (form, formula) in formulas::readings(subject).iter().enumerate() {
                     let is_other = subject == Subject::EdgeApproach && form == 1;

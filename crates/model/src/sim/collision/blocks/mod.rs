@@ -12,10 +12,8 @@ mod rows;
 mod settle;
 
 use super::super::{
-    bodies::Bodies,
-    observer::{Impulse, PairKind},
-    polynomial_bytes::PolynomialBytes,
-    simulation::{SearchCounts, StepError},
+    bodies::Bodies, observer::Impulse, pair::PairKind, polynomial_bytes::PolynomialBytes, search::SearchCounts,
+    step_error::StepError,
 };
 use fosssim_num::lanes::Instructions;
 use group::Group;

@@ -5,9 +5,11 @@ use super::{
     settle::{Output, decide},
 };
 use crate::sim::{
-    observer::{Impulse, Pair, PairKind},
+    observer::Impulse,
+    pair::{Pair, PairKind, pair},
     polynomial_bytes::PolynomialBytes,
-    simulation::{SearchCounts, StepError},
+    search::SearchCounts,
+    step_error::StepError,
 };
 use fosssim_num::lanes::{Lanes, MOST_LANES, Simd, Work};
 
@@ -181,7 +183,7 @@ impl Numbers<'_> {
             output.write_whole::<COEFFICIENTS, COUNT, BYTES>(&coefficients, lengths);
             return Ok(None);
         }
-        let open = (known != TRIMMED).then_some((setting, counts, super::super::pass::pair(kind, first, second)));
+        let open = (known != TRIMMED).then_some((setting, counts, pair(kind, first, second)));
         let hit = match kind {
             PairKind::ParticleEdge => of_edge(&coefficients, open, output),
             PairKind::ParticleParticle | PairKind::ParticleHalfPlane => of_two(&coefficients, open, output),

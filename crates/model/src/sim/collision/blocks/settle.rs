@@ -1,11 +1,13 @@
 //! Decides about single pairs whose coefficients are known, and writes their polynomials.
 use super::{
-    super::{particle_edge, particle_half_plane, particle_particle, pass::time_of_impact},
+    super::{impact::time_of_impact, particle_edge, particle_half_plane, particle_particle},
     Setting,
 };
 use crate::sim::{
-    observer::{Impulse, Pair, PairKind, Time},
-    simulation::{RootSearch, SearchCounts, StepError},
+    observer::{Impulse, Time},
+    pair::{Pair, PairKind},
+    search::{RootSearch, SearchCounts},
+    step_error::StepError,
 };
 use fosssim_num::{
     polynomial::Polynomial,

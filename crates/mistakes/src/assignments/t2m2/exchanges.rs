@@ -1,10 +1,10 @@
 //! Right formulas of wrong inputs: positions at the end of the step, a displacement forgotten, radii squared apart.
-use super::sample::Inputs;
+use super::Inputs;
 use fosssim_model::sim::PairKind;
 use fosssim_num::bounded::{Bounded, Bounded2};
 
 /// One thing that stands for another.
-pub(super) struct Exchange {
+pub(crate) struct Exchange {
     /// The explanation's key.
     pub key: &'static str,
     /// The explanation's sentence, without its full stop.
@@ -67,7 +67,7 @@ const fn exchange(
 }
 
 /// All of them.
-pub(super) const EXCHANGES: &[Exchange] = &[
+pub(crate) const EXCHANGES: &[Exchange] = &[
     exchange(
         "end-positions",
         &[PP, PE, PH],

@@ -2,7 +2,7 @@
 //!
 //! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
 //! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
-//! a mistake is made asks [`Student::makes`](super::Student::makes).
+//! a mistake is made asks [`Student::makes`](crate::student::Student::makes).
 /// What is to be thought of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {

@@ -3,11 +3,11 @@
 //! What is right is said by the fair rules' formulas (`judge::fair::formulas`), and a test holds these tables to them. As
 //! data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of the
 //! quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
-use super::sample::{Inputs, Subject};
-use fosssim_num::bounded::{Bounded, Bounded2};
+use super::{Inputs, Subject};
+use fosssim_num::bounded::Bounded;
 
 /// A quantity of a formula.
-pub(super) struct Letter {
+pub(crate) struct Letter {
     /// How a message calls it.
     pub name: &'static str,
     /// What it is, in the assignment's notation; empty where the name says it.
@@ -19,7 +19,7 @@ pub(super) struct Letter {
 }
 
 /// `weight` times the product of `letters` (indices into the formula's) in the coefficient of `t^power`.
-pub(super) struct Term {
+pub(crate) struct Term {
     /// The power of t.
     pub power: usize,
     /// The factor in front.
@@ -29,7 +29,7 @@ pub(super) struct Term {
 }
 
 /// One way to write a polynomial down.
-pub(super) struct Formula {
+pub(crate) struct Formula {
     /// The quantities in it.
     pub letters: &'static [Letter],
     /// Its terms.
@@ -61,7 +61,7 @@ impl Formula {
 }
 
 /// The product of the letters with these indices.
-pub(super) fn product(values: &[Bounded], letters: &[usize]) -> Bounded {
+pub(crate) fn product(values: &[Bounded], letters: &[usize]) -> Bounded {
     match letters {
         [] => Bounded::exact(1.0),
         [first, rest @ ..] => rest.iter().fold(values[*first], |product, &letter| product * values[letter]),
@@ -69,7 +69,7 @@ pub(super) fn product(values: &[Bounded], letters: &[usize]) -> Bounded {
 }
 
 /// The ways to write one polynomial down, all of them right, the assignment's first.
-pub(super) fn readings(subject: Subject) -> &'static [Formula] {
+pub(crate) fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
         Subject::ParticleOverlap => PARTICLE_OVERLAP,
         Subject::ParticleApproach => PARTICLE_APPROACH,
@@ -79,44 +79,6 @@ pub(super) fn readings(subject: Subject) -> &'static [Formula] {
         Subject::EdgeApproach => &QUINTICS,
         Subject::HalfPlaneOverlap => HALF_PLANE_OVERLAP,
         Subject::HalfPlaneApproach => HALF_PLANE_APPROACH,
-    }
-}
-
-/// Differences that the formulas are made of. `12` is "1 minus 2"; 1 is the particle, 2 and 3 the edge's endpoints.
-impl Inputs {
-    pub fn x12(&self) -> Bounded2 {
-        self.x[0] - self.x[1]
-    }
-    pub fn x21(&self) -> Bounded2 {
-        self.x[1] - self.x[0]
-    }
-    pub fn x32(&self) -> Bounded2 {
-        self.x[2] - self.x[1]
-    }
-    pub fn x13(&self) -> Bounded2 {
-        self.x[0] - self.x[2]
-    }
-    pub fn x23(&self) -> Bounded2 {
-        self.x[1] - self.x[2]
-    }
-    pub fn d12(&self) -> Bounded2 {
-        self.d[0] - self.d[1]
-    }
-    pub fn d21(&self) -> Bounded2 {
-        self.d[1] - self.d[0]
-    }
-    pub fn d32(&self) -> Bounded2 {
-        self.d[2] - self.d[1]
-    }
-    pub fn d13(&self) -> Bounded2 {
-        self.d[0] - self.d[2]
-    }
-    pub fn d23(&self) -> Bounded2 {
-        self.d[1] - self.d[2]
-    }
-    /// The normal of the half-plane.
-    pub fn normal(&self) -> Bounded2 {
-        self.x[2]
     }
 }
 

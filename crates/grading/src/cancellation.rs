@@ -1,0 +1,55 @@
+//! Stopping a grading from outside.
+use fosssim_sandbox::Canceller;
+use std::sync::{
+    Mutex, MutexGuard, PoisonError,
+    atomic::{AtomicBool, AtomicU64, Ordering},
+};
+
+/// Stops a grading from outside, for example on Ctrl-C: no new run begins, and every run at work is ended.
+#[derive(Debug, Default)]
+pub struct Cancellation {
+    cancelled: AtomicBool,
+    next: AtomicU64,
+    running: Mutex<Vec<(u64, Canceller)>>,
+}
+
+impl Cancellation {
+    /// Stops everything, now and later.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::SeqCst);
+        for (_, canceller) in self.lock().iter() {
+            canceller.cancel();
+        }
+    }
+
+    /// Whether grading has been stopped.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::SeqCst)
+    }
+
+    /// Adds a run for as long as the result lives. A run that begins after the stop is ended at once.
+    pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
+        let number = self.next.fetch_add(1, Ordering::Relaxed);
+        self.lock().push((number, canceller.clone()));
+        if self.is_cancelled() {
+            canceller.cancel();
+        }
+        Registered { cancellation: self, number }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<(u64, Canceller)>> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+struct Registered<'a> {
+    cancellation: &'a Cancellation,
+    number: u64,
+}
+
+impl Drop for Registered<'_> {
+    fn drop(&mut self) {
+        self.cancellation.lock().retain(|(number, _)| *number != self.number);
+    }
+}

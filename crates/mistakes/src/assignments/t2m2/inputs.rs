@@ -1,0 +1,81 @@
+//! What goes into the formulas of a detection.
+use super::motion::{Motion, way};
+use fosssim_judge::fair::formulas::Way;
+use fosssim_model::sim::PairKind;
+use fosssim_num::{
+    bounded::{Bounded, Bounded2},
+    vector::Vec2,
+};
+
+/// The numbers that go into the formulas, with error bounds, ready to be exchanged by an explanation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Inputs {
+    /// Start positions of the particle and the other one or two points; of a half-plane its point and its normal.
+    pub x: [Bounded2; 3],
+    /// Displacements likewise; a half-plane has none.
+    pub d: [Bounded2; 3],
+    /// The radius of the particle and that of the other object (0 for a half-plane).
+    pub radii: [Bounded; 2],
+    /// What stands for the square of the sum of the radii.
+    pub square: Bounded,
+    /// What stands for the squared length of the normal; 0 without one.
+    pub normal_square: Bounded,
+}
+
+impl Inputs {
+    /// The inputs as they are.
+    pub fn new(motion: &Motion) -> Self {
+        let still = |point: Vec2| Way { start: Bounded2::exact(point), shift: Bounded2::default() };
+        let (ways, radii) = match *motion {
+            Motion::Particles { bodies: [one, two], radii } => ([way(&one), way(&two), still(Vec2::zeros())], radii),
+            Motion::Edge { bodies, radii } => (bodies.each_ref().map(way), radii),
+            Motion::HalfPlane { body, radius, point, normal } => {
+                ([way(&body), still(point), still(normal)], [radius, 0.0])
+            }
+        };
+        let radii = radii.map(Bounded::exact);
+        let reach = radii[0] + radii[1];
+        let (x, d) = (ways.map(|way| way.start), ways.map(|way| way.shift));
+        let normal_square =
+            if motion.kind() == PairKind::ParticleHalfPlane { x[2].dot(x[2]) } else { Bounded::default() };
+        Self { x, d, radii, square: reach * reach, normal_square }
+    }
+}
+
+/// Differences that the formulas are made of. `12` is "1 minus 2"; 1 is the particle, 2 and 3 the edge's endpoints.
+impl Inputs {
+    pub fn x12(&self) -> Bounded2 {
+        self.x[0] - self.x[1]
+    }
+    pub fn x21(&self) -> Bounded2 {
+        self.x[1] - self.x[0]
+    }
+    pub fn x32(&self) -> Bounded2 {
+        self.x[2] - self.x[1]
+    }
+    pub fn x13(&self) -> Bounded2 {
+        self.x[0] - self.x[2]
+    }
+    pub fn x23(&self) -> Bounded2 {
+        self.x[1] - self.x[2]
+    }
+    pub fn d12(&self) -> Bounded2 {
+        self.d[0] - self.d[1]
+    }
+    pub fn d21(&self) -> Bounded2 {
+        self.d[1] - self.d[0]
+    }
+    pub fn d32(&self) -> Bounded2 {
+        self.d[2] - self.d[1]
+    }
+    pub fn d13(&self) -> Bounded2 {
+        self.d[0] - self.d[2]
+    }
+    pub fn d23(&self) -> Bounded2 {
+        self.d[1] - self.d[2]
+    }
+    /// The normal of the half-plane.
+    pub fn normal(&self) -> Bounded2 {
+        self.x[2]
+    }
+}

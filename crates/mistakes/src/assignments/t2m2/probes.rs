@@ -1,0 +1,50 @@
+//! Probe scenes: small scenes that make every part of a program's work visible.
+//!
+//! Ordinary scenes hide mistakes: edges stand still, normals have length 1, nothing touches at the very end of a step.
+//! When the program itself is at hand it can be run on these instead. Each is about one part of the assignment; groups
+//! of bodies that have nothing to do with one another stand far apart in one scene, so that few runs show much.
+//!
+//! Where particles start and how far they go in a step are integers or small dyadic fractions, and the step is half a second, in
+//! the large ones a quarter. So the first step's polynomials have coefficients that can be checked by hand; in the `drift`
+//! scenes those of every step have, because particles that are fixed and move are never pushed from their way
+//! (simulation.md 1). Gaps and displacements of the narrow ones are a half and about four of a millionth: whatever a program adds to
+//! a time or to the approach as a margin shows.
+//!
+//! This runs nothing and never judges. The scenes are the same every time.
+use fosssim_model::scene::{self, Scene};
+
+/// Names and texts: polynomials first, then contacts and responses, the impulse rounds, zones.
+const PROBES: [(&str, &str); 20] = [
+    ("drift-of-particles", include_str!("probes/drift-of-particles.xml")),
+    ("drift-of-edges", include_str!("probes/drift-of-edges.xml")),
+    ("slanted-half-planes", include_str!("probes/slanted-half-planes.xml")),
+    ("particles-meet", include_str!("probes/particles-meet.xml")),
+    ("edges-struck", include_str!("probes/edges-struck.xml")),
+    ("struck-while-falling", include_str!("probes/struck-while-falling.xml")),
+    ("ends-of-edges", include_str!("probes/ends-of-edges.xml")),
+    ("contact-at-start-and-end", include_str!("probes/contact-at-start-and-end.xml")),
+    ("just-after-the-end", include_str!("probes/just-after-the-end.xml")),
+    ("barely-closing", include_str!("probes/barely-closing.xml")),
+    ("rounds-enough", include_str!("probes/rounds-enough.xml")),
+    ("rounds-exactly-enough", include_str!("probes/rounds-exactly-enough.xml")),
+    ("rounds-run-out", include_str!("probes/rounds-run-out.xml")),
+    ("one-round-only", include_str!("probes/one-round-only.xml")),
+    ("zones-of-all-kinds", include_str!("probes/zones-of-all-kinds.xml")),
+    ("zones-that-grow", include_str!("probes/zones-that-grow.xml")),
+    ("zones-reach-a-half-plane", include_str!("probes/zones-reach-a-half-plane.xml")),
+    ("zones-of-fractional-masses", include_str!("probes/zones-of-fractional-masses.xml")),
+    ("zones-collect-rows", include_str!("probes/zones-collect-rows.xml")),
+    ("zones-turn-little-and-far", include_str!("probes/zones-turn-little-and-far.xml")),
+];
+
+/// The scenes. Each is sound for [`scene::read`] and for the original's reader, and reads back unchanged.
+///
+/// # Panics
+/// When one is not sound; a test reads them all.
+pub(crate) fn scenes() -> Vec<(String, Scene)> {
+    let read = |(name, text): (&str, &str)| {
+        let loaded = scene::read(name, text.as_bytes()).unwrap_or_else(|problems| panic!("{name}: {problems}"));
+        (name.to_owned(), loaded.scene)
+    };
+    PROBES.into_iter().map(read).collect()
+}

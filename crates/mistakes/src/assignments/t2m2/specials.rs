@@ -1,0 +1,84 @@
+//! Misunderstandings that have a formula of their own.
+use super::{Inputs, Subject};
+use fosssim_num::bounded::{Bounded, Bounded2};
+
+/// A wrong polynomial, highest power first.
+pub(crate) struct Special {
+    /// The polynomial that it is about.
+    pub subject: Subject,
+    /// The explanation's key.
+    pub key: &'static str,
+    /// The explanation's sentence, without its full stop.
+    pub sentence: &'static str,
+    /// The exact form.
+    pub detail: &'static str,
+    /// Its coefficients.
+    pub polynomial: fn(&Inputs) -> Vec<Bounded>,
+}
+
+/// All of them.
+pub(crate) const SPECIALS: &[Special] = &[
+    Special {
+        subject: Subject::EdgeApproach,
+        key: "constant-alpha",
+        sentence: "alpha is taken for constant during the step",
+        detail: "alpha is (x12.x32)/(x32.x32) at the start of the step and does not depend on t",
+        polynomial: constant_alpha,
+    },
+    Special {
+        subject: Subject::EdgeOverlap,
+        key: "radius-unscaled",
+        sentence: "The radii are not multiplied by the edge's squared length when the denominator is cleared",
+        detail: "R^2 stands for R^2 (x32 + t d32).(x32 + t d32)",
+        polynomial: |inputs| {
+            let square = |one: Bounded2, two: Bounded2| one.dot(two);
+            let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
+            let (a, b, c) = (w0.dot(e0), w0.dot(e1) + w1.dot(e0), w1.dot(e1));
+            let (d, e, f) = (square(w0, w0), square(w0, w1), square(w1, w1));
+            let (g, h, i) = (square(e0, e0), square(e0, e1), square(e1, e1));
+            vec![
+                c * c - f * i,
+                2.0 * (b * c) - 2.0 * (e * i) - 2.0 * (f * h),
+                2.0 * (a * c) + b * b - d * i - f * g - 4.0 * (e * h),
+                2.0 * (a * b) - 2.0 * (d * h) - 2.0 * (e * g),
+                a * a - d * g + inputs.square,
+            ]
+        },
+    },
+    Special {
+        subject: Subject::AlphaHigh,
+        key: "one-unscaled",
+        sentence: "The whole in alpha < 1 is not multiplied by the edge's squared length when the denominator is cleared",
+        detail: "1 stands for (x32 + t d32).(x32 + t d32)",
+        polynomial: |inputs| {
+            let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
+            vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), Bounded::exact(1.0) - w0.dot(e0)]
+        },
+    },
+    Special {
+        subject: Subject::HalfPlaneApproach,
+        key: "no-speed-factor",
+        sentence: "The approach does not take the side of the half-plane into account: it is right on one side only",
+        detail: "the factor (dx.n) is missing",
+        polynomial: |inputs| {
+            let n = inputs.normal();
+            vec![-inputs.d[0].dot(n), inputs.x21().dot(n)]
+        },
+    },
+    Special {
+        subject: Subject::HalfPlaneApproach,
+        key: "speed-only",
+        sentence: "The approach looks at the velocity alone, not at the side of the half-plane",
+        detail: "the polynomial is (dx.n), a constant",
+        polynomial: |inputs| vec![inputs.d[0].dot(inputs.normal())],
+    },
+];
+
+/// The approach of the particle and the point of the edge that was closest at the start.
+fn constant_alpha(inputs: &Inputs) -> Vec<Bounded> {
+    let along = inputs.x32();
+    let alpha = inputs.x12().dot(along) / along.dot(along);
+    let closing = inputs.d12() - alpha * inputs.d32();
+    let n = alpha * along - inputs.x12();
+    vec![-closing.dot(closing), closing.dot(n)]
+}

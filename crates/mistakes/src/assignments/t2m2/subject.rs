@@ -1,0 +1,71 @@
+//! The polynomials of a detection.
+use fosssim_model::sim::PairKind;
+
+/// What a polynomial of a detection says (collisions.md 2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Subject {
+    /// Two particles overlap.
+    ParticleOverlap,
+    /// Two particles approach each other.
+    ParticleApproach,
+    /// A particle overlaps an edge's line.
+    EdgeOverlap,
+    /// The closest point lies behind the edge's first end.
+    AlphaLow,
+    /// The closest point lies before the edge's second end.
+    AlphaHigh,
+    /// A particle and an edge approach each other.
+    EdgeApproach,
+    /// A particle overlaps a half-plane's boundary.
+    HalfPlaneOverlap,
+    /// A particle and a half-plane approach each other.
+    HalfPlaneApproach,
+}
+
+impl Subject {
+    /// The polynomials of one kind of pair, in the order of the trace.
+    #[must_use]
+    pub const fn of(kind: PairKind) -> &'static [Self] {
+        match kind {
+            PairKind::ParticleParticle => &[Self::ParticleOverlap, Self::ParticleApproach],
+            PairKind::ParticleEdge => &[Self::EdgeOverlap, Self::AlphaLow, Self::AlphaHigh, Self::EdgeApproach],
+            PairKind::ParticleHalfPlane => &[Self::HalfPlaneOverlap, Self::HalfPlaneApproach],
+        }
+    }
+
+    /// The kind of pair that it belongs to.
+    #[must_use]
+    pub const fn kind(self) -> PairKind {
+        match self {
+            Self::ParticleOverlap | Self::ParticleApproach => PairKind::ParticleParticle,
+            Self::EdgeOverlap | Self::AlphaLow | Self::AlphaHigh | Self::EdgeApproach => PairKind::ParticleEdge,
+            Self::HalfPlaneOverlap | Self::HalfPlaneApproach => PairKind::ParticleHalfPlane,
+        }
+    }
+
+    /// The degree of its polynomial.
+    #[must_use]
+    pub const fn degree(self) -> usize {
+        match self {
+            Self::ParticleApproach | Self::HalfPlaneApproach => 1,
+            Self::ParticleOverlap | Self::AlphaLow | Self::AlphaHigh | Self::HalfPlaneOverlap => 2,
+            Self::EdgeOverlap => 4,
+            Self::EdgeApproach => 5,
+        }
+    }
+
+    /// Its name in a message, such as `particle-edge alpha > 0`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ParticleOverlap => "particle-particle overlap",
+            Self::ParticleApproach => "particle-particle approach",
+            Self::EdgeOverlap => "particle-edge overlap",
+            Self::AlphaLow => "particle-edge alpha > 0",
+            Self::AlphaHigh => "particle-edge alpha < 1",
+            Self::EdgeApproach => "particle-edge approach",
+            Self::HalfPlaneOverlap => "particle-half-plane overlap",
+            Self::HalfPlaneApproach => "particle-half-plane approach",
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Steps of a student's program, from a submission's own state.
+use super::compare::{Logged, StepRecords};
+use crate::student::{Mistake, Record, State, StepLog, Student, World, step};
+
+/// What a submission does right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Correct {
+    /// It uses the particle-edge approach that the course supplies.
+    Supplied,
+    /// It has put that right.
+    RightApproach,
+}
+
+impl Correct {
+    /// Such a program with a mistake.
+    pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
+        let student = Student::new(mistake);
+        match self {
+            Self::Supplied => student,
+            Self::RightApproach => student.with_right_approach(),
+        }
+    }
+}
+
+/// The records that a program writes in a step from this state; `None` when it fails or writes another number of them.
+pub(super) fn resimulate(
+    world: &World,
+    before: &fosssim_model::sim::State,
+    mut log: StepLog<'_>,
+) -> Option<StepRecords> {
+    let mut state = State { x: before.positions.clone(), v: before.velocities.clone() };
+    let mut records: Vec<Logged> = Vec::new();
+    step(world, &mut state, &mut log, &mut |state, log| {
+        records.push(Record::new(world.student, &world.scene.collision, state, log).into());
+    })
+    .ok()?;
+    let end = records.pop()?;
+    let mid = records.pop();
+    records.is_empty().then_some(StepRecords { mid, end })
+}

@@ -1,0 +1,52 @@
+//! What moves, what collides, and what is moved together.
+use fosssim_num::vector::Vec2;
+use std::collections::BTreeSet;
+
+/// Positions and velocities, `x0, y0, x1, y1, ...` each.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct State {
+    /// Positions.
+    pub x: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+}
+
+/// A particle and what it may collide with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pair {
+    /// The particle's index.
+    pub particle: usize,
+    /// The other object.
+    pub object: Object,
+}
+
+/// What a particle may collide with, by its index among its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Object {
+    /// Another particle.
+    Particle(usize),
+    /// An edge.
+    Edge(usize),
+    /// A half-plane.
+    HalfPlane(usize),
+}
+
+/// A collision that detection found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Who collides.
+    pub pair: Pair,
+    /// The shortest vector from the particle to the object at the time of impact, not normalised.
+    pub n: Vec2,
+    /// The time of impact as a fraction of the step.
+    pub time: f64,
+}
+
+/// Particles to be moved together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Zone {
+    /// Their indices.
+    pub particles: BTreeSet<usize>,
+    /// Whether one of them hits a half-plane.
+    pub half_plane: bool,
+}

@@ -1,0 +1,19 @@
+//! Why a step of a student's program has no end.
+use fosssim_num::rpoly::DoesNotTerminate;
+
+/// Why a step has no end.
+#[derive(Debug, thiserror::Error)]
+pub enum StepFailure {
+    /// The course's root finder would search for ever.
+    #[error("the root finder would search for ever: a polynomial is not finite")]
+    RootFinder(#[from] DoesNotTerminate),
+    /// Newton's method goes round in circles.
+    #[error("implicit-euler does not converge")]
+    Newton,
+    /// A vortex force cannot be integrated implicitly.
+    #[error("no addHessXToTotal defined for VortexForce")]
+    VortexHessian,
+    /// The guard of [`StepLog`](super::StepLog) refused a polynomial: the caller knows enough.
+    #[error("the caller refused a polynomial, so the step was left")]
+    Refused,
+}

@@ -1,0 +1,159 @@
+//! The course's assignments: what each one has programs detect, log and drop.
+//!
+//! A [`Definition`] says it as data, one file per assignment here. What else is bound to an assignment - suites, the catalogue
+//! of mistakes, formulas, probe scenes - stands in a folder `assignments/<key>` of the room that has such a thing. Readers of
+//! traces, simulator and judge ask the assignment of a scene, which its collision type tells ([`Assignment::of`]). It knows
+//! nothing of scenes, states and files.
+#![forbid(unsafe_code)]
+
+mod collision_type;
+mod earlier;
+mod pair_kind;
+mod t2m2;
+
+pub use collision_type::CollisionType;
+pub use pair_kind::PairKind;
+
+/// An assignment of the course.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Assignment {
+    /// Theme 1 and Theme 2, Milestone 1: forces, integrators, simple and penalty collisions. Their scenes and traces are read
+    /// alike, so that they are one (scene-format.md 8).
+    Earlier,
+    /// Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
+    T2M2,
+}
+
+impl Assignment {
+    /// All of them, the latest first.
+    pub const ALL: [Self; 2] = [Self::T2M2, Self::Earlier];
+
+    /// The one that is meant where none is named.
+    pub const DEFAULT: Self = Self::T2M2;
+
+    /// Everything that it asks for.
+    #[must_use]
+    pub const fn definition(self) -> &'static Definition {
+        match self {
+            Self::Earlier => &earlier::DEFINITION,
+            Self::T2M2 => &t2m2::DEFINITION,
+        }
+    }
+
+    /// The assignment that brought this collision type into the course.
+    #[must_use]
+    pub const fn of(collision: CollisionType) -> Self {
+        match collision {
+            CollisionType::None | CollisionType::Simple | CollisionType::Penalty => Self::Earlier,
+            CollisionType::ContinuousTime | CollisionType::Hybrid => Self::T2M2,
+        }
+    }
+
+    /// Its key: the name of its suite and of its folder in every room that has one.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        self.definition().key
+    }
+
+    /// The assignment with this key.
+    #[must_use]
+    pub fn named(key: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|assignment| assignment.key() == key)
+    }
+}
+
+/// What an assignment asks for.
+#[derive(Debug)]
+pub struct Definition {
+    /// Its key, a word for command lines and folders.
+    pub key: &'static str,
+    /// Its name in the course.
+    pub title: &'static str,
+    /// The collision types that it brings, and what a program does for each.
+    pub handlings: &'static [Handling],
+    /// The kinds of pairs whose polynomials its detections log, in the order in which a pass looks at a particle's pairs;
+    /// [`PairKind::polynomials`] says how many each logs.
+    pub pairs: &'static [PairKind],
+    /// What is dropped of polynomials.
+    pub dropping: Dropping,
+    /// The version that the original program shows above a run.
+    pub version: &'static str,
+}
+
+impl Definition {
+    /// How it handles a collision type; none where another assignment brings it.
+    #[must_use]
+    pub const fn handling(&self, collision: CollisionType) -> Option<&Handling> {
+        let mut index = 0;
+        while index < self.handlings.len() {
+            if self.handlings[index].collision as u8 == collision as u8 {
+                return Some(&self.handlings[index]);
+            }
+            index += 1;
+        }
+        None
+    }
+}
+
+/// What a program does for a collision type.
+#[derive(Debug)]
+pub struct Handling {
+    /// The collision type.
+    pub collision: CollisionType,
+    /// What its records hold.
+    pub records: Records,
+    /// How the original calls it above a run (oracle-behaviour.md 3).
+    pub heading: &'static str,
+}
+
+/// What the records of a step hold besides positions and velocities (trace-format.md 1, 2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Records {
+    /// The list of impulses.
+    pub impulses: ImpulseList,
+    /// Whether there is a list of polynomials, and a mid record in each step.
+    pub polynomials: bool,
+}
+
+/// What a record's list of impulses holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ImpulseList {
+    /// There is no such list.
+    Absent,
+    /// It is there and always empty, whatever happens in the step.
+    Empty,
+    /// The responses of the step.
+    Responses,
+}
+
+/// What is dropped of a polynomial before its zeros are searched, and when one is read from a trace.
+///
+/// Code that takes a rule for granted says so with a pattern that only this rule matches, in a constant. A second rule here
+/// then makes the compiler name each of these places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dropping {
+    /// Leading coefficients with `|c| < 1e-12` (root-finder.md 15.1, the dropping build).
+    Leading,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_collision_type_is_handled_by_the_assignment_that_brings_it_and_by_no_other() {
+        for collision in CollisionType::ALL {
+            let handles = |assignment: &Assignment| assignment.definition().handling(collision).is_some();
+            let all: Vec<Assignment> = Assignment::ALL.into_iter().filter(handles).collect();
+            assert_eq!(all, [Assignment::of(collision)], "{collision:?}");
+        }
+    }
+
+    #[test]
+    fn assignments_are_found_by_their_keys() {
+        for assignment in Assignment::ALL {
+            assert_eq!(Assignment::named(assignment.key()), Some(assignment));
+        }
+        assert_eq!(Assignment::named("t9m9"), None);
+    }
+}

@@ -1,0 +1,82 @@
+//! The kinds of pairs that detections look at (collisions.md 1).
+
+/// The kind of a pair; the numbers are those of the trace format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PairKind {
+    /// Two particles (0).
+    ParticleParticle,
+    /// A particle and an edge (1).
+    ParticleEdge,
+    /// A particle and a half-plane (2).
+    ParticleHalfPlane,
+}
+
+impl PairKind {
+    /// How many polynomials a detection call of this kind logs: 2, 4, 2.
+    #[must_use]
+    pub const fn polynomials(self) -> usize {
+        match self {
+            Self::ParticleEdge => 4,
+            Self::ParticleParticle | Self::ParticleHalfPlane => 2,
+        }
+    }
+
+    /// The number that a trace writes.
+    #[must_use]
+    pub const fn code(self) -> i32 {
+        match self {
+            Self::ParticleParticle => 0,
+            Self::ParticleEdge => 1,
+            Self::ParticleHalfPlane => 2,
+        }
+    }
+
+    /// So many polynomials a detection call logs at most.
+    pub const MOST_POLYNOMIALS: usize = 4;
+
+    /// All kinds, in the order in which a pass looks at a particle's pairs, and of the trace's numbers.
+    pub const ALL: [Self; 3] = [Self::ParticleParticle, Self::ParticleEdge, Self::ParticleHalfPlane];
+
+    /// Its place in [`PairKind::ALL`].
+    #[inline]
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The kind that a trace writes as this number; none for numbers of a damaged trace.
+    #[must_use]
+    pub fn from_code(code: i32) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.code() == code)
+    }
+
+    /// Its name: `particle-edge`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "particle-particle",
+            Self::ParticleEdge => "particle-edge",
+            Self::ParticleHalfPlane => "particle-half-plane",
+        }
+    }
+
+    /// Its name on command lines and in keys: `pe`.
+    #[must_use]
+    pub const fn short(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "pp",
+            Self::ParticleEdge => "pe",
+            Self::ParticleHalfPlane => "ph",
+        }
+    }
+
+    /// What the second object is: `edge`.
+    #[must_use]
+    pub const fn second(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "particle",
+            Self::ParticleEdge => "edge",
+            Self::ParticleHalfPlane => "half-plane",
+        }
+    }
+}

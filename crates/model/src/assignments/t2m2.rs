@@ -1,0 +1,22 @@
+//! Theme 2, Milestone 2 (trace-format.md 2, collisions.md).
+use super::{CollisionType, Definition, Dropping, Handling, ImpulseList, PairKind, Records};
+
+pub(super) const DEFINITION: Definition = Definition {
+    key: "t2m2",
+    title: "Theme 2, Milestone 2",
+    handlings: &[
+        Handling {
+            collision: CollisionType::ContinuousTime,
+            records: Records { impulses: ImpulseList::Responses, polynomials: true },
+            heading: "Continuous-Time Collision Handling",
+        },
+        Handling {
+            collision: CollisionType::Hybrid,
+            records: Records { impulses: ImpulseList::Empty, polynomials: true },
+            heading: "Hybrid Collision Handling",
+        },
+    ],
+    pairs: &PairKind::ALL,
+    dropping: Dropping::Leading,
+    version: "Fall 2010 v.A",
+};

@@ -1,0 +1,37 @@
+//! When a pair meets, as far as it has to be known.
+use super::super::{
+    observer::Time,
+    pair::Pair,
+    search::{RootSearch, SearchCounts},
+    step_error::StepError,
+};
+use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_counted, polynomial::Polynomial};
+
+/// The time of impact as far as it has to be known.
+///
+/// # Errors
+/// [`StepError::RootSearch`]
+#[inline]
+pub(super) fn time_of_impact(
+    search: RootSearch,
+    counts: &mut SearchCounts,
+    step: u32,
+    pair: Pair,
+    polynomials: &[Polynomial],
+) -> Result<Time, StepError> {
+    counts.calls += 1;
+    let excluded = search != RootSearch::Always && excludes_unit_interval(polynomials);
+    if excluded {
+        counts.excluded += 1;
+        if search == RootSearch::WhereNeeded {
+            return Ok(Time::Excluded);
+        }
+    }
+    counts.searched += 1;
+    let time =
+        first_time_counted(polynomials, &mut counts.fruitless).map_err(|_| StepError::RootSearch { step, pair })?;
+    if excluded && time <= 1.0 {
+        counts.disagreements += 1;
+    }
+    Ok(Time::Found(time))
+}

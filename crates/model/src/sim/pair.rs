@@ -1,0 +1,75 @@
+//! A pair of objects that detection looks at, and values for each kind of pair.
+pub use crate::assignments::PairKind;
+use std::ops::{Index, IndexMut};
+
+/// Two objects that detection looks at: a particle, and a particle, edge or half-plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pair {
+    /// What the second object is.
+    pub kind: PairKind,
+    /// Index of the particle.
+    pub first: u32,
+    /// Index of the second object among its kind.
+    pub second: u32,
+}
+
+/// Names a pair.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
+pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
+    Pair { kind, first: first as u32, second: second as u32 }
+}
+
+/// A value for each kind of pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ByKind<T>([T; PairKind::ALL.len()]);
+
+impl<T> ByKind<T> {
+    /// The values that a function gives.
+    #[must_use]
+    pub fn from_fn(value: impl FnMut(PairKind) -> T) -> Self {
+        Self(PairKind::ALL.map(value))
+    }
+
+    /// Kinds and values, in the order of [`PairKind::ALL`].
+    pub fn iter(&self) -> impl Iterator<Item = (PairKind, &T)> {
+        PairKind::ALL.into_iter().zip(&self.0)
+    }
+
+    /// The values, in the order of [`PairKind::ALL`].
+    pub fn values(&self) -> impl Iterator<Item = &T> {
+        self.0.iter()
+    }
+
+    /// The values, to be changed.
+    pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.0.iter_mut()
+    }
+
+    /// The values themselves.
+    pub fn into_values(self) -> impl Iterator<Item = T> {
+        self.0.into_iter()
+    }
+}
+
+impl<T> From<[T; PairKind::ALL.len()]> for ByKind<T> {
+    fn from(values: [T; PairKind::ALL.len()]) -> Self {
+        Self(values)
+    }
+}
+
+impl<T> Index<PairKind> for ByKind<T> {
+    type Output = T;
+
+    #[inline]
+    fn index(&self, kind: PairKind) -> &T {
+        &self.0[kind.index()]
+    }
+}
+
+impl<T> IndexMut<PairKind> for ByKind<T> {
+    #[inline]
+    fn index_mut(&mut self, kind: PairKind) -> &mut T {
+        &mut self.0[kind.index()]
+    }
+}

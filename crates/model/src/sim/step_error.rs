@@ -1,0 +1,33 @@
+//! Why a step has no result.
+use super::pair::Pair;
+
+/// Why a step has no result. The original hangs or goes on with garbage here.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// The root search of a pair would never end: its polynomials hold values that are not finite.
+    #[error("step {step}: the root search of this pair does not terminate")]
+    RootSearch {
+        /// The step, from 1.
+        step: u32,
+        /// The pair.
+        pair: Pair,
+    },
+    /// Newton's method of implicit-euler does not converge (or cycles).
+    #[error("step {step}: Newton's method does not converge")]
+    Newton {
+        /// The step, from 1.
+        step: u32,
+    },
+    /// A vortex force has no Hessian, which implicit integrators need (scene-format.md 6).
+    #[error("step {step}: vortexforce has no Hessian, so it can't be used with an implicit integrator")]
+    VortexHessian {
+        /// The step, from 1.
+        step: u32,
+    },
+    /// More work than was allowed ([`Simulation::limit_work`]).
+    #[error("step {step}: from these states collision handling takes far longer than in a run of the scene")]
+    Work {
+        /// The step, from 1.
+        step: u32,
+    },
+}

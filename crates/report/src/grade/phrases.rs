@@ -1,0 +1,121 @@
+//! What several formats say of a grade in the same words.
+use crate::{number::counted, words};
+use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
+use fosssim_mistakes::diagnose::Explanation;
+
+/// Somebody else's words without control characters: escape codes, bells and NULs become visible, line breaks and
+/// tabs stay, characters that XML 1.0 forbids and those that nobody sees are replaced.
+#[must_use]
+pub fn plain(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\t' => plain.push(c),
+            '\r' => {}
+            '\u{fffe}' | '\u{ffff}' => plain.push('\u{fffd}'),
+            // Marks that change the direction of the text could show a report's words in another order, and what has no
+            // width makes two names look alike.
+            '\u{ad}'
+            | '\u{61c}'
+            | '\u{180e}'
+            | '\u{200b}'..='\u{200f}'
+            | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}'
+            | '\u{feff}'
+            | '\u{fff9}'..='\u{fffb}'
+            | '\u{e0000}'..='\u{e007f}' => plain.push('\u{fffd}'),
+            c if c.is_control() => plain.push_str(&format!("\\x{:02x}", u32::from(c))),
+            c => plain.push(c),
+        }
+    }
+    plain
+}
+
+/// The likely mistakes, the one that explains most wrong scenes first, and how many scenes each explains.
+#[must_use]
+pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
+    grade.likely_mistakes()
+}
+
+/// What stands above all scenes in a report for one reader: what is wrong with the submission itself, or what its likely
+/// mistakes are.
+#[must_use]
+pub fn head_lines(grade: &Grade) -> Vec<String> {
+    if let Some(unfit) = words::unfit(grade) {
+        return vec![unfit];
+    }
+    let wrong = |scene: &&SceneGrade| matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+    let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
+    let line = |(number, (mistake, explained)): (usize, (Explanation, usize))| {
+        let rank = if number == 0 { "most likely mistake" } else { "also likely" };
+        format!("{rank}: {} (explains {explained} of {wrong})", mistake.what)
+    };
+    likely_mistakes(grade).into_iter().enumerate().map(line).collect()
+}
+
+/// The scenes of some groups, those that are not accepted first.
+pub(super) fn wrong_first<'a>(groups: impl Iterator<Item = &'a GroupGrade>) -> Vec<&'a SceneGrade> {
+    let mut scenes: Vec<&SceneGrade> = groups.flat_map(|group| &group.scenes).collect();
+    scenes.sort_by_key(|scene| scene.verdict.is_accepted());
+    scenes
+}
+
+/// The sentence about a scene that the two rule books judge differently.
+#[must_use]
+pub fn difference(scene: &SceneGrade) -> Option<String> {
+    scene.differs.map(|cause| {
+        let verdicts = if cause.original_fails() {
+            "the original fails it, the fair rules accept it"
+        } else {
+            "the original passes it, the fair rules reject it"
+        };
+        format!("the rule books differ: {verdicts}: {cause}")
+    })
+}
+
+/// [`plain`] on one line.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    plain(text).replace(['\n', '\t'], " ")
+}
+
+/// Points without needless digits: `12.5`, `10`.
+#[must_use]
+pub fn points(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Points that may be missing: where the grader failed or was stopped nobody has a zero.
+#[must_use]
+pub fn reached(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), points)
+}
+
+/// Why a grade has no points.
+#[must_use]
+pub fn no_points(grade: &Grade) -> Option<String> {
+    if grade.points.is_some() {
+        None
+    } else if grade.is_our_fault() {
+        Some("no points: the grader failed, which is not the submission's fault".to_owned())
+    } else {
+        let (missing, all) = (grade.count(Verdict::NotRun), grade.scenes().count());
+        Some(format!("no points yet: {missing} of {} not run", counted(all as u64, "scene")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_become_visible() {
+        assert_eq!(plain("a\u{1b}[31mb\0\u{7}\r\nc\td\u{202e}e"), "a\\x1b[31mb\\x00\\x07\nc\td\u{fffd}e");
+        for hidden in "\u{61c}\u{2069}\u{200b}\u{feff}\u{2028}\u{ad}\u{e0041}".chars() {
+            assert_eq!(plain(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
+        }
+        assert_eq!(one_line("a\nb"), "a b");
+        assert_eq!((points(10.0), points(2.5), points(0.0)), ("10".into(), "2.5".into(), "0".into()));
+    }
+}

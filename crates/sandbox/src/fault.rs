@@ -1,0 +1,107 @@
+//! What can go wrong that is never the program's doing.
+
+use std::io::{self, Read};
+use std::process::Child;
+
+use super::wire;
+
+/// Faults of ours or of the host; never the program's.
+#[derive(Debug, thiserror::Error)]
+pub enum SandboxError {
+    /// This host lacks a required wall.
+    #[error("this host cannot run programs safely:\n{missing}")]
+    Missing {
+        /// One line per missing wall, with what to do.
+        missing: String,
+    },
+    /// The supervisor could not be started.
+    #[error("cannot start the sandbox's supervisor {program}: {source}")]
+    Supervisor {
+        /// The supervisor's program.
+        program: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The supervisor ended without a report.
+    #[error("the sandbox's supervisor was lost ({how}); what it ran has been ended")]
+    Lost {
+        /// What is known about its end.
+        how: String,
+    },
+    /// A step of the set-up failed.
+    #[error("the sandbox could not {stage}: {source}")]
+    SetUp {
+        /// The step.
+        stage: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The working folder cannot be used.
+    #[error("the working folder {folder}: {source}")]
+    Folder {
+        /// The folder.
+        folder: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A path that the program should be able to read is not there.
+    #[error("{path}, which the program is to read: {source}")]
+    Readable {
+        /// The path.
+        path: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The name of the trace pipe is taken or is not a plain name.
+    #[error("the trace pipe {name}: {source}; give every run a fresh folder")]
+    Pipe {
+        /// The name.
+        name: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The system refuses to execute a program that is in order.
+    #[error(
+        "{program} could not be executed: {source}; the temporary folder may be mounted noexec: name another one by TMPDIR"
+    )]
+    NotExecuted {
+        /// The program.
+        program: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The program is not the one that was staged.
+    #[error("{program} was changed or removed by somebody else while it was graded")]
+    Changed {
+        /// The program.
+        program: String,
+    },
+    /// Processes could not be ended.
+    #[error("{count} processes of the program could not be ended; look for processes in state D on this host")]
+    Survivors {
+        /// How many.
+        count: u32,
+    },
+}
+
+/// A failure that the supervisor told.
+pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
+    let source = match failure.errno {
+        0 => io::Error::other("no further reason"),
+        errno => io::Error::from_raw_os_error(errno),
+    };
+    SandboxError::SetUp { stage: failure.stage, source }
+}
+
+/// What is known about a supervisor that ended without a word. The way to it is closed by now, which ends one that is merely
+/// confused.
+pub(super) fn lost(mut child: Child) -> SandboxError {
+    let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
+    let mut text = String::new();
+    if let Some(stderr) = child.stderr.take() {
+        // Its last words are a help, not a need.
+        let _ = stderr.take(2000).read_to_string(&mut text);
+    }
+    let text = text.trim();
+    SandboxError::Lost { how: if text.is_empty() { status } else { format!("{status}: {text}") } }
+}

@@ -1,0 +1,26 @@
+//! Ends what a lost supervisor may have left.
+
+use std::time::Duration;
+
+use super::processes::{of_session, of_user, stop_then_kill};
+use super::slot;
+
+/// Ends what a lost supervisor may have left: the processes of its child's session and those of the child's own user. A
+/// process namespace ends all of its processes by itself, and its sessions are not ours to name.
+pub(crate) fn end(session: Option<i32>, user: Option<u32>) {
+    const ROUNDS: u32 = 1000;
+    // With the supervisor its hold on the user is gone, and another run may have it by now.
+    let slot = user.and_then(slot::retake);
+    let user = slot.as_ref().map(|slot| slot.user);
+    for _ in 0..ROUNDS {
+        let victims = stop_then_kill(|| {
+            let mut victims = session.map(of_session).unwrap_or_default();
+            victims.extend(user.into_iter().flat_map(of_user));
+            victims
+        });
+        if victims.is_empty() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}

@@ -1,0 +1,23 @@
+//! The bars on standard error, and their removal.
+use indicatif::{MultiProgress, ProgressDrawTarget};
+use std::{
+    io::{self, Write},
+    sync::{Mutex, MutexGuard, PoisonError},
+};
+
+/// The bars on standard error.
+static ON_SCREEN: Mutex<Option<MultiProgress>> = Mutex::new(None);
+
+pub(super) fn on_screen() -> MutexGuard<'static, Option<MultiProgress>> {
+    ON_SCREEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Takes the bars away.
+pub(super) fn clear_bars() {
+    if let Some(bars) = on_screen().take() {
+        drop(bars.clear());
+        // Another thread may have drawn meanwhile; from here on none can, and what it drew is taken away.
+        bars.set_draw_target(ProgressDrawTarget::hidden());
+        drop(io::stderr().lock().write_all(b"\r\x1b[2K"));
+    }
+}
