@@ -114,7 +114,19 @@ pub struct Evidence {
 /// A trace that can't be read to its end gives evidence as far as it goes.
 pub fn gather<R: Read>(
     scene: &Scene,
-    trace: R,
+    mut trace: R,
+    rulings: &[Ruling],
+    fair: bool,
+    focus: &[Focus],
+    budget: usize,
+) -> Evidence {
+    gather_from(scene, &mut trace, rulings, fair, focus, budget)
+}
+
+/// The body of [`gather`], compiled once.
+fn gather_from(
+    scene: &Scene,
+    trace: &mut dyn Read,
     rulings: &[Ruling],
     fair: bool,
     focus: &[Focus],

@@ -61,7 +61,7 @@ impl<'a> Budget<'a> {
     ///
     /// # Errors
     /// [`StepError`]; of kind `Work`, when nothing is left.
-    pub fn step(&mut self, simulation: &mut Simulation, observer: &mut impl Observer) -> Result<(), StepError> {
+    pub fn step(&mut self, simulation: &mut Simulation, observer: &mut dyn Observer) -> Result<(), StepError> {
         if self.rest < FLOOR / 2 {
             self.widen();
         }

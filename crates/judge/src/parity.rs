@@ -95,9 +95,9 @@ pub enum Remark {
 /// on the trace's length. What follows the last record is not read, save for one byte that tells whether it is there.
 pub fn judge<R: std::io::Read + Send>(
     scene: &Scene,
-    trace: R,
+    mut trace: R,
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {
-    super::replay::judge(scene, trace, options, progress)
+    super::replay::judge(scene, &mut trace, options, progress)
 }

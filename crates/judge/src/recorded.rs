@@ -36,8 +36,18 @@ pub struct RecordingError {
 /// When the recording is damaged or cut short.
 pub fn judge<T: Read, R: Read>(
     scene: &Scene,
-    trace: T,
-    recording: R,
+    mut trace: T,
+    mut recording: R,
+    progress: &mut dyn Progress,
+) -> Result<Outcome, RecordingError> {
+    compare(scene, &mut trace, &mut recording, progress)
+}
+
+/// The body of [`judge`], compiled once.
+fn compare(
+    scene: &Scene,
+    trace: &mut dyn Read,
+    recording: &mut dyn Read,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RecordingError> {
     let layout = Layout::of(scene);

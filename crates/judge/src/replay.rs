@@ -69,9 +69,9 @@ struct Batch {
 }
 
 /// Judges a trace (the body of [`super::parity::judge`]).
-pub(super) fn judge<R: Read + Send>(
+pub(super) fn judge(
     scene: &Scene,
-    trace: R,
+    trace: &mut (dyn Read + Send),
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {

@@ -1,11 +1,140 @@
 //! Two-dimensional vectors with the original's order of operations.
 //!
-//! [`Vec2`] is nalgebra's `Vector2<f64>`: sums, differences, `scalar * vector` and `dot` (`x*x' + y*y'`) round as the
-//! specification says. **Never divide a `Vec2` by a scalar and never call its `normalize`**: nalgebra divides each
-//! component, the original multiplies by the reciprocal (`simulation.md`, conventions). Use [`over`] and [`unit`](fn@unit).
+//! [`Vec2`] has exactly the operations that the specification uses, each rounded as it says (`simulation.md`,
+//! conventions). **It has no division and no `normalize`**: the original multiplies by the reciprocal where a library
+//! would divide each component. Use [`over`] and [`unit`](fn@unit).
+
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Index, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A point or a direction in the plane, in the scene's length unit; x to the right, y up.
-pub type Vec2 = nalgebra::Vector2<f64>;
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vec2 {
+    /// To the right.
+    pub x: f64,
+    /// Up.
+    pub y: f64,
+}
+
+impl Vec2 {
+    /// The vector `(x, y)`.
+    #[inline]
+    #[must_use]
+    pub const fn new(x: f64, y: f64) -> Self {
+        Self { x, y }
+    }
+
+    /// The vector `(0, 0)`.
+    #[inline]
+    #[must_use]
+    pub const fn zeros() -> Self {
+        Self::new(0.0, 0.0)
+    }
+
+    /// The inner product, `x*x' + y*y'`: two products and a sum, each rounded.
+    #[inline]
+    #[must_use]
+    pub fn dot(&self, other: &Self) -> f64 {
+        self.x * other.x + self.y * other.y
+    }
+}
+
+impl Add for Vec2 {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y)
+    }
+}
+
+impl Sub for Vec2 {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y)
+    }
+}
+
+impl Neg for Vec2 {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y)
+    }
+}
+
+impl Mul<Vec2> for f64 {
+    type Output = Vec2;
+
+    #[inline]
+    fn mul(self, v: Vec2) -> Vec2 {
+        Vec2::new(self * v.x, self * v.y)
+    }
+}
+
+impl Mul<f64> for Vec2 {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, scalar: f64) -> Self {
+        Self::new(self.x * scalar, self.y * scalar)
+    }
+}
+
+impl AddAssign for Vec2 {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Vec2 {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign<f64> for Vec2 {
+    #[inline]
+    fn mul_assign(&mut self, scalar: f64) {
+        *self = *self * scalar;
+    }
+}
+
+impl Sum for Vec2 {
+    /// From left to right, beginning with zero.
+    fn sum<I: Iterator<Item = Self>>(vectors: I) -> Self {
+        vectors.fold(Self::zeros(), Add::add)
+    }
+}
+
+impl From<[f64; 2]> for Vec2 {
+    #[inline]
+    fn from([x, y]: [f64; 2]) -> Self {
+        Self::new(x, y)
+    }
+}
+
+impl From<Vec2> for [f64; 2] {
+    #[inline]
+    fn from(v: Vec2) -> Self {
+        [v.x, v.y]
+    }
+}
+
+impl Index<usize> for Vec2 {
+    type Output = f64;
+
+    /// `x` at 0, `y` at 1; panics at any other index.
+    #[inline]
+    fn index(&self, index: usize) -> &f64 {
+        [&self.x, &self.y][index]
+    }
+}
 
 /// `v / s` as the original evaluates it: `r = 1/s`, then `(r*v.x, r*v.y)`. `s = 0` gives infinities or NaN.
 #[inline]

@@ -1,9 +1,8 @@
 //! The difference of two texts, for every place that shows one.
 //!
-//! It stands in a crate of its own because the algorithms are generic, large and never in a hurry: they are compiled
-//! once, and not with every change of what calls them.
+//! It stands in a crate of its own so that the algorithms are compiled once, and not with every change of what calls them.
 
-use similar::TextDiff;
+use diffy::DiffOptions;
 
 /// A unified diff from `old` to `new`, line by line with one line of context, under the names of the two; empty when
 /// they are the same.
@@ -13,7 +12,12 @@ pub fn unified(old: (&str, &str), new: (&str, &str)) -> String {
     if old == new {
         return String::new();
     }
-    TextDiff::from_lines(old, new).unified_diff().context_radius(1).header(old_name, new_name).to_string()
+    DiffOptions::new()
+        .set_context_len(1)
+        .set_original_filename(old_name.to_owned())
+        .set_modified_filename(new_name.to_owned())
+        .create_patch(old, new)
+        .to_string()
 }
 
 #[cfg(test)]
@@ -24,6 +28,12 @@ mod tests {
     fn only_what_differs_is_shown_with_its_neighbours() {
         let shown = unified(("then", "a\nb\nc\nd\ne\n"), ("now", "a\nb\nc\nD\ne\n"));
         assert_eq!(shown, "--- then\n+++ now\n@@ -3,3 +3,3 @@\n c\n-d\n+D\n e\n");
+    }
+
+    #[test]
+    fn a_last_line_without_an_end_is_told_apart() {
+        let shown = unified(("then", "a\nb\n"), ("now", "a\nb"));
+        assert_eq!(shown, "--- then\n+++ now\n@@ -1,2 +1,2 @@\n a\n-b\n+b\n\\ No newline at end of file\n");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::{
     search,
 };
 use fosssim_oracle::{
-    num::vector::{Vec2, at},
+    num::vector::{Vec2, at, length, over},
     scene::{Collision, Edge, HalfPlane, Particle, Scene},
     sim::{Detection, Impulse, Observer, Pass, Resume, RootSearch, Simulation, Stage, State, Zone},
 };
@@ -16,7 +16,7 @@ fn weighted(scene: &Scene, vector: impl Fn(usize) -> Vec2) -> (Vec2, f64) {
     let mut sum = (Vec2::zeros(), 0.0);
     for (index, particle) in scene.particles.iter().enumerate() {
         sum.0 += particle.mass * vector(index);
-        sum.1 += particle.mass * vector(index).norm();
+        sum.1 += particle.mass * length(vector(index));
     }
     sum
 }
@@ -51,11 +51,11 @@ fn impulses_conserve_momentum() {
             let (start, old_size) = weighted(&scene, |index| at(&before.velocities, index));
             let (end, size) = weighted(&scene, |index| at(&seen.state.velocities, index));
             let room = 1e-14 * (size + old_size) * f64::from(seen.impulses + 1);
-            prop_assert!((end - start).norm() <= room, "{start:?} {end:?}");
+            prop_assert!(length(end - start) <= room, "{start:?} {end:?}");
             // Positions change by the step size times the change of velocity, so the centre of mass goes straight on.
             let way = |index| at(&seen.state.positions, index) - at(&before.positions, index);
             let (moved, _) = weighted(&scene, way);
-            prop_assert!((moved - start * TIME_STEP).norm() <= room * 100.0, "{moved:?}");
+            prop_assert!(length(moved - start * TIME_STEP) <= room * 100.0, "{moved:?}");
             Ok(())
         });
         assert!(impulses.get() > 300, "{} impulses", impulses.get());
@@ -78,7 +78,7 @@ fn one_contact() -> impl Strategy<Value = Scene> {
             };
             let collision = Collision::ContinuousTime { restitution };
             let drift = if fixed { Vec2::zeros() } else { Vec2::new(drift.0, drift.1) };
-            let flight = Vec2::new(to.0 - one.0, 6.0 * to.1) / TIME_STEP;
+            let flight = over(Vec2::new(to.0 - one.0, 6.0 * to.1), TIME_STEP);
             let disc = body((one.0, one.1 + 3.0), flight - Vec2::new(0.0, 6.0 / TIME_STEP), masses.0, false, 0.4);
             match kind {
                 0 => scene(1, collision, vec![disc, body(two, drift, masses.1, fixed, 0.5)]),
@@ -189,10 +189,10 @@ fn the_failsafe_moves_rigidly_and_conserves_momentum() {
                 members().map(way).sum::<Vec2>()
             };
             prop_assert!(
-                (sum(after) - sum(before)).norm() < 1e-13 * f64::from(u32::try_from(particles.len()).unwrap()) * 40.0
+                length(sum(after) - sum(before)) < 1e-13 * f64::from(u32::try_from(particles.len()).unwrap()) * 40.0
             );
             for (one, two) in members().flat_map(|one| members().map(move |two| (one, two))) {
-                let distance = |q: &[f64]| (at(q, one) - at(q, two)).norm();
+                let distance = |q: &[f64]| length(at(q, one) - at(q, two));
                 prop_assert!((distance(after) - distance(&seen.start)).abs() < 1e-14, "{one} {two}");
             }
         }

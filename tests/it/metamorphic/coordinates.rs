@@ -15,7 +15,7 @@ use fosssim_oracle::{
         bounded::Bounded,
         decision::{Certainty, decide},
         polynomial::Polynomial,
-        vector::Vec2,
+        vector::{Vec2, length},
     },
     scene::{Collision, Integrator, Scene},
     sim::{Decision, Detection, Observer, Pair, PairKind, Resume, RootSearch, Simulation, State},
@@ -165,7 +165,7 @@ impl Observer for Doubt {
         if let Decision::Hit { normal, .. } = detection.decision {
             self.hits += 1;
             // Without a direction the response is no number (collisions.md 7).
-            self.any |= !(normal.norm() > 1e-9);
+            self.any |= !(length(normal) > 1e-9);
         }
         self.any |= is_doubtful(detection.polynomials);
     }

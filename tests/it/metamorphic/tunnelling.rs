@@ -6,7 +6,7 @@ use super::{
     transform::with_ends_exchanged,
 };
 use fosssim_oracle::{
-    num::vector::{Vec2, at},
+    num::vector::{Vec2, at, length, over},
     scene::{Collision, Edge, HalfPlane, Particle, Scene},
     sim::{Decision, Detection, Observer, PairKind, RootSearch, Simulation},
 };
@@ -18,7 +18,7 @@ fn traveller(radius: f64) -> impl Strategy<Value = Particle> {
     let part = || -3.0..3.0;
     ((part(), part()), (part(), part()), 0.25..4.0).prop_map(move |((x, y), (to_x, to_y), mass): (_, (f64, f64), _)| {
         let position = Vec2::new(x, y);
-        let velocity = (Vec2::new(to_x, to_y) - position) / TIME_STEP;
+        let velocity = over(Vec2::new(to_x, to_y) - position, TIME_STEP);
         Particle { position, velocity, mass, fixed: false, radius, tag: None }
     })
 }
@@ -40,7 +40,7 @@ fn discs_do_not_pass_through_one_another() {
         let way = (two.velocity - one.velocity) * TIME_STEP;
         let nearest = (-apart.dot(&way) / way.dot(&way)).clamp(0.0, 1.0);
         let scene = scene(1, ELASTIC, vec![one, two]);
-        if apart.norm() <= 0.5 + 1e-9 || (apart + nearest * way).norm() >= 0.5 - 1e-9 {
+        if length(apart) <= 0.5 + 1e-9 || length(apart + nearest * way) >= 0.5 - 1e-9 {
             return Ok(());
         }
         met.set(met.get() + 1);
@@ -48,7 +48,7 @@ fn discs_do_not_pass_through_one_another() {
         // no further than to contact.
         let end = end_of(&scene);
         let new_way = at(&end, 1) - at(&end, 0) - apart;
-        prop_assert!(new_way.norm() > 0.0 && (new_way - way).norm() > 1e-9, "no response");
+        prop_assert!(length(new_way) > 0.0 && length(new_way - way) > 1e-9, "no response");
         let contact = first_touch(apart, way, 0.5);
         let normal = apart + contact * way;
         prop_assert!(new_way.dot(&normal) >= -1e-9 && apart.dot(&normal) > 0.0, "{new_way:?} {normal:?}");
@@ -69,7 +69,7 @@ fn discs_do_not_pass_through_half_planes() {
     let normal = (-1.0..1.0, 0.1..1.0);
     search(8000, &(traveller(0.3), (-1.0..1.0, -1.0..1.0), normal), |(disc, point, normal)| {
         let plane = HalfPlane { point: Vec2::new(point.0, point.1), normal: Vec2::new(normal.0, normal.1) * 3.0 };
-        let height = |place: Vec2| (place - plane.point).dot(&plane.normal) / plane.normal.norm();
+        let height = |place: Vec2| (place - plane.point).dot(&plane.normal) / length(plane.normal);
         let (start, free_end) = (height(disc.position), height(disc.position + disc.velocity * TIME_STEP));
         if start.abs() <= 0.3 + 1e-9 {
             return Ok(());

@@ -21,11 +21,11 @@ use std::collections::BTreeMap;
 /// A trace of another scene yields nothing but that question ([`Explanation::is_other_scene`]).
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    let (mut known, open) = known_or_open(scene, trace);
+    let (mut known, open) = known_or_open(scene, &mut &trace[..]);
     if known.iter().any(Explanation::is_other_scene) {
         return known;
     }
-    let mut polynomials = polynomial::explain(&samples::samples(scene, trace));
+    let mut polynomials = polynomial::explain(&samples::samples(scene, &mut &trace[..]));
     if known.iter().any(|one| find(&one.key).is_some_and(is_empty_stage)) {
         polynomials.retain(|one| one.key != "missing-polynomials");
     }

@@ -25,7 +25,7 @@ const MOST_RIGHT: usize = 200;
 
 /// The samples of a trace; empty for scenes without polynomials. A trace that breaks off or goes wild yields what it
 /// holds up to there.
-pub(super) fn samples(scene: &Scene, trace: impl Read) -> Vec<Sample> {
+pub(super) fn samples(scene: &Scene, trace: &mut dyn Read) -> Vec<Sample> {
     let layout = Layout::of(scene);
     if !layout.polynomials {
         return Vec::new();

@@ -10,6 +10,7 @@ use super::{
     world::{StepLog, World},
 };
 use fosssim_model::scene::{Collision, Scene};
+use fosssim_num::vector::Vec2;
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Trace];
@@ -116,7 +117,7 @@ fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
         _ => impulses.to_vec(),
     };
     if student.makes(Mistake::LogNanContacts) {
-        listed.iter_mut().for_each(|impulse| impulse.n.fill(f64::NAN));
+        listed.iter_mut().for_each(|impulse| impulse.n = Vec2::new(f64::NAN, f64::NAN));
     }
     listed
 }

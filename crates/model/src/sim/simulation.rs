@@ -76,7 +76,9 @@ impl Simulation {
     ///
     /// # Panics
     /// When the state has other lengths than 2N, or a force names something that the scene does not have.
-    pub fn step<O: Observer>(&mut self, observer: &mut O) -> Result<(), StepError> {
+    pub fn step(&mut self, mut observer: &mut dyn Observer) -> Result<(), StepError> {
+        // One copy of the step for all observers: what they are asked per pair and pass costs less than compiling more.
+        let observer = &mut observer;
         let step = self.steps_done + 1;
         observer.begin_step(step);
         if self.stepper.is_implicit() && !self.forces.have_hessians() {

@@ -89,7 +89,11 @@ pub struct Digests {
 impl Digests {
     /// Reads a whole trace, in the memory of one record and eight bytes per step. A malformed trace has digests, too:
     /// those of its sound steps and that of all its bytes.
-    pub fn of(stream: impl Read, layout: Layout) -> Self {
+    pub fn of(mut stream: impl Read, layout: Layout) -> Self {
+        Self::of_stream(&mut stream, layout)
+    }
+
+    fn of_stream(stream: &mut dyn Read, layout: Layout) -> Self {
         let mut steps = Vec::new();
         let walked = walk(stream, layout, |_, _, _| {}, |_, digest| steps.push(digest));
         let Walked { sha256, bytes, records, trailing, unread, stopped } = walked;
@@ -125,7 +129,7 @@ pub(crate) struct Walked {
 /// Reads a trace to its end; `frame` sees every record (its number, content and notes), `step` every complete step's
 /// digest.
 pub(crate) fn walk(
-    stream: impl Read,
+    stream: &mut dyn Read,
     layout: Layout,
     mut frame: impl FnMut(u64, &Frame, &[TraceError]),
     mut step: impl FnMut(u32, Short),

@@ -125,7 +125,11 @@ pub struct StepView {
 impl Summary {
     /// Summarises a trace of `scene`, in the memory of one record. A malformed trace has a summary, too: it says where
     /// reading ended.
-    pub fn of(scene: &Scene, trace: impl Read) -> Self {
+    pub fn of(scene: &Scene, mut trace: impl Read) -> Self {
+        Self::of_stream(scene, &mut trace)
+    }
+
+    fn of_stream(scene: &Scene, trace: &mut dyn Read) -> Self {
         let layout = Layout::of(scene);
         let per_pass = polynomials_per_pass(scene);
         let mut summary = Self {

@@ -4,18 +4,18 @@ use crate::{raster::Raster, size::Size};
 use std::io::{self, Write};
 
 /// An animated PNG that is being written. How many pictures it holds is said at its beginning.
-pub struct Apng<W: Write> {
-    writer: png::Writer<W>,
+pub struct Apng<'a> {
+    writer: png::Writer<&'a mut dyn Write>,
     size: Size,
     before: Vec<u8>,
 }
 
-impl<W: Write> Apng<W> {
+impl<'a> Apng<'a> {
     /// Begins a film of exactly so many pictures, played for ever.
     ///
     /// # Errors
     /// When `out` can't be written, or there is no picture.
-    pub fn new(out: W, size: Size, rate: Rate, pictures: u32) -> io::Result<Self> {
+    pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, pictures: u32) -> io::Result<Self> {
         let mut encoder = png::Encoder::new(out, size.width(), size.height());
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);

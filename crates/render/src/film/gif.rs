@@ -13,8 +13,8 @@ use std::{
 const STEPS: u8 = 8;
 
 /// A GIF that is being written.
-pub struct Gif<W: Write> {
-    encoder: gif::Encoder<W>,
+pub struct Gif<'a> {
+    encoder: gif::Encoder<&'a mut dyn Write>,
     size: Size,
     rate: Rate,
     palette: Vec<Colour>,
@@ -24,12 +24,12 @@ pub struct Gif<W: Write> {
     pictures: u64,
 }
 
-impl<W: Write> Gif<W> {
+impl<'a> Gif<'a> {
     /// Begins a film, played for ever, in these colours, the background first.
     ///
     /// # Errors
     /// When `out` can't be written, or the pictures are larger than a GIF can say.
-    pub fn new(out: W, size: Size, rate: Rate, colours: &[Colour]) -> io::Result<Self> {
+    pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, colours: &[Colour]) -> io::Result<Self> {
         let palette = palette(colours);
         let bytes: Vec<u8> = palette.iter().flat_map(|colour| colour.0).collect();
         let mut encoder = gif::Encoder::new(out, side(size.width()), side(size.height()), &bytes).map_err(error)?;

@@ -49,12 +49,12 @@ use std::io::Read;
 /// over. A trace whose first record is another scene's yields nothing but the question whether it is of this scene
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
-pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
-    known_or_open(scene, trace).0
+pub fn known(scene: &Scene, mut trace: impl Read) -> Vec<Explanation> {
+    known_or_open(scene, &mut trace).0
 }
 
 /// The same, with the kept steps where no mistake explains all of them.
-pub(super) fn known_or_open(scene: &Scene, trace: impl Read) -> (Vec<Explanation>, Option<Scan>) {
+pub(super) fn known_or_open(scene: &Scene, trace: &mut dyn Read) -> (Vec<Explanation>, Option<Scan>) {
     let mut scan = scan::scan(scene, trace);
     if let Some(missing) = alignment::missing_record(scene, &scan) {
         return (vec![missing], None);

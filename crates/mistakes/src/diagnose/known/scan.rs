@@ -104,7 +104,7 @@ impl Scan {
 const SPARE: usize = 10_000;
 
 /// Reads the trace and re-simulates its steps without a mistake.
-pub(super) fn scan(scene: &Scene, trace: impl Read) -> Scan {
+pub(super) fn scan(scene: &Scene, trace: &mut dyn Read) -> Scan {
     let mut scanner = Scanner::new(scene, trace);
     scanner.run();
     scanner.scan

@@ -196,8 +196,8 @@ impl Contacts {
         let listed: Vec<(PairKind, f64)> = self.vectors.iter().map(|(kind, ..)| (*kind, 0.0)).collect();
         let ratios: Vec<f64> = self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
         let off = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
-            let along = theirs.dot(ours) / ours.dot(ours) * ours;
-            length(theirs - along) > ALIKE * length(*theirs)
+            let along = theirs.dot(ours) / ours.dot(ours) * *ours;
+            length(*theirs - along) > ALIKE * length(*theirs)
         };
         let right_angle = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
             theirs.dot(ours).abs() <= ALIKE * length(*ours) * length(*theirs)

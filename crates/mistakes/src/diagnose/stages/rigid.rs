@@ -8,7 +8,7 @@ use fosssim_model::{
     scene::{Collision, Scene},
     sim::State,
 };
-use fosssim_num::vector::{Vec2, at, length};
+use fosssim_num::vector::{Vec2, at, length, over};
 
 /// Differences below this are round-off (relative to the size of the numbers, and 1).
 const SMALL: f64 = 1e-9;
@@ -159,7 +159,7 @@ impl Moved {
         let centre = |state: &State| {
             let sum = |weigh: &dyn Fn(usize) -> Vec2| zone.particles.iter().map(|&one| weigh(one)).sum::<Vec2>();
             let total: f64 = zone.particles.iter().map(|&one| scene.particles[one].mass).sum();
-            sum(&|one| scene.particles[one].mass * at(&state.positions, one)) / total
+            over(sum(&|one| scene.particles[one].mass * at(&state.positions, one)), total)
         };
         let [from, ours, theirs] = [start, expected, end].map(centre);
         let (should, does) = (ours - from, theirs - from);
@@ -174,7 +174,7 @@ impl Moved {
             self.turns.push(angle / right);
         }
         for &one in &zone.particles {
-            let motion = (at(&end.positions, one) - at(&start.positions, one)) / scene.time_step;
+            let motion = over(at(&end.positions, one) - at(&start.positions, one), scene.time_step);
             let velocity = at(&end.velocities, one);
             if length(motion) > SMALL {
                 let ratio = velocity.dot(&motion) / motion.dot(&motion);

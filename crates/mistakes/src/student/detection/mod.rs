@@ -216,7 +216,7 @@ fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
         }
         (Some(Mistake::DecisionApproachMargin), _) => encounter.closing(time) <= 1e-6,
         (Some(Mistake::DecisionHalfPlaneOneSided), Encounter::HalfPlane(one, point, normal)) => {
-            (one.start - point).dot(normal) < 0.0
+            (one.start - *point).dot(normal) < 0.0
         }
         _ => false,
     }

@@ -282,7 +282,7 @@ mod tests {
         for t in [0.0, 0.25, 0.5, 1.0, 2.0] {
             let value = quartic.iter().fold(0.0, |value, coefficient| value * t + coefficient);
             let n = contact_vector(Student::default(), &turning(), t);
-            assert_eq!(value > 0.0, n.dot(&n) < 9.0, "t = {t}: {value} and {n}");
+            assert_eq!(value > 0.0, n.dot(&n) < 9.0, "t = {t}: {value} and {n:?}");
         }
     }
 

@@ -1,6 +1,7 @@
 //! Wrong responses, loops, zones and failsafes.
 use super::{Change, Mutant, Share, row};
 use crate::student::{catalogue::Area, objects::Object};
+use fosssim_num::vector::Vec2;
 
 const PP: &str = "particle-particle";
 const PE: &str = "particle-edge";
@@ -268,7 +269,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
         Change::Moved(|start, turn, x, v| {
             let to = turn.centre + turn.shift;
             *x = to + 0.9 * (*x - to);
-            *v = (*x - start) / turn.h;
+            let shift = *x - start;
+            *v = Vec2::new(shift.x / turn.h, shift.y / turn.h);
         }),
     ),
     row(

@@ -148,7 +148,7 @@ fn particle_lists(motion: &Motion) -> Lists {
 
 fn half_plane_lists(motion: &Motion) -> Lists {
     let Motion::HalfPlane { body, radius, point, normal } = motion else { panic!("no half-plane") };
-    let (s, w) = (body.displacement.dot(normal), (point - body.start).dot(normal));
+    let (s, w) = (body.displacement.dot(normal), (*point - body.start).dot(normal));
     vec![vec![-s * s, 2.0 * w * s, radius * radius * normal.dot(normal) - w * w], vec![-s * s, w * s]]
 }
 
@@ -448,7 +448,7 @@ fn small_slips_in_quadratics_are_named() {
     });
     half_plane("letter", "1 stands for (dx.n)", &|motion, lists| {
         let Motion::HalfPlane { body, point, normal, .. } = motion else { panic!("no half-plane") };
-        lists[1] = vec![-1.0, (point - body.start).dot(normal)];
+        lists[1] = vec![-1.0, (*point - body.start).dot(normal)];
     });
     only(PairKind::ParticleEdge, "term-missing", "d13.x23 has weight 0, expected 1", |motion| {
         let Motion::Edge { bodies: [one, two, three], .. } = motion else { panic!("no edge") };

@@ -88,7 +88,7 @@ impl Lists {
         let vectors = bodies.points.iter().chain(&bodies.normals);
         self.has_moderate_constants = are_moderate(&bodies.radii)
             && are_moderate(&bodies.edge_radii)
-            && vectors.into_iter().all(|vector: &Vec2| are_moderate(vector.as_slice()));
+            && vectors.into_iter().all(|vector: &Vec2| are_moderate(&[vector.x, vector.y]));
     }
 
     /// Edges that end in a particle, from number `from` on.
