@@ -1,6 +1,7 @@
 //! What became of jobs: results, grades and the history of both, written in one transaction with the end of the job.
 use crate::{
     db::{DbError, Transaction},
+    lti::score,
     queue::{self, Buried, Completion, Failure, Lease, Policy, Tick},
     suspect,
     task::{JUDGE_ERROR, Outcome},
@@ -133,6 +134,9 @@ async fn bury_all(transaction: &mut Transaction, jobs: &[Buried]) -> Result<(), 
 
 async fn bury(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str) -> Result<(), DbError> {
     let row = write_result(transaction, job, attempt, &Outcome::judge_error(fault)).await?;
+    if row.submission.is_none() && score::give_up(transaction, &row.task, fault).await? {
+        return Ok(());
+    }
     note(transaction, &row, "buried", fault).await
 }
 
@@ -246,5 +250,5 @@ pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) 
             values![change.submission, old, change.result, change.by, change.campaign, change.reason],
         )
         .await?;
-    Ok(())
+    score::changed(transaction, change.submission).await
 }

@@ -3,9 +3,11 @@
 
 pub mod access;
 pub mod archive;
+pub mod calendar;
 pub mod cli;
 pub mod db;
 pub mod ledger;
+pub mod lti;
 pub mod problem;
 pub mod queue;
 pub mod retention;

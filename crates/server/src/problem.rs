@@ -85,6 +85,21 @@ impl Problem {
         )
     }
 
+    /// Somebody can't come from a learning platform so.
+    #[must_use]
+    pub fn refused_launch(detail: impl Into<String>) -> Self {
+        let remedy =
+            "go back to the platform and open it there again; if this comes again, show it to who runs this server";
+        Self::new(StatusCode::FORBIDDEN, "launch-refused", "You can't come in so", detail, remedy)
+    }
+
+    /// A learning platform did not do what it was asked.
+    #[must_use]
+    pub fn platform_failed(detail: impl Into<String>) -> Self {
+        let remedy = "try again later; if this comes again, show it to who runs this server";
+        Self::new(StatusCode::BAD_GATEWAY, "platform-failed", "The learning platform failed", detail, remedy)
+    }
+
     /// There is no such thing, or none that whoever asks may know of.
     #[must_use]
     pub fn not_found(what: &str) -> Self {

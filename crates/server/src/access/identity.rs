@@ -197,6 +197,19 @@ pub(super) async fn end_all(transaction: &mut Transaction, account: i64, tokens:
     Ok(())
 }
 
+/// Whether an account is more than a student anywhere: staff can't sign in as it, and could not before.
+pub(super) async fn is_trusted(transaction: &mut Transaction, account: i64) -> Result<bool, DbError> {
+    let row = transaction
+        .one(
+            "SELECT is_admin, (SELECT count(*) FROM member
+                WHERE member.account = account.id AND member.role = 'staff') AS staff
+             FROM account WHERE id = ?",
+            values![account],
+        )
+        .await?;
+    Ok(row.flag("is_admin")? || row.int("staff")? > 0)
+}
+
 /// Makes a token.
 pub(super) async fn new_token(
     transaction: &mut Transaction,

@@ -5,11 +5,14 @@
 
 mod account;
 mod admin;
+mod choice;
 mod example;
 mod identity;
+mod launch;
 mod member;
 mod password;
 mod person;
+mod platform;
 mod regrade;
 mod remote;
 mod request;
@@ -23,13 +26,16 @@ mod visitor;
 
 pub use account::Account;
 pub use admin::Admin;
+pub use choice::{Choice, Chosen};
 pub use identity::{NewSecret, Session};
+pub use launch::{Launched, LoginAnswer, LoginRequest};
 pub use member::Member;
 pub use password::Passwords;
 pub use person::{CourseOf, Person, TokenInfo};
+pub use platform::{RosterRead, ScoreInfo};
 pub use regrade::{Change, Regrade, RegradeState};
 pub use remote::{Claimed, Remote};
-pub use request::{Secrets, cookie_name};
+pub use request::{Secrets, browser_cookie, cookie_name};
 pub use settings::{Settings, is_file_name};
 pub use staff::{MemberInfo, Staff, Standing};
 pub use submit::{Accepted, Upload};
@@ -39,6 +45,7 @@ pub use visitor::{Metrics, Visitor};
 
 use crate::{
     db::Database,
+    lti::Lti,
     queue::{Bell, Ear, Policy},
     store::Store,
 };
@@ -72,6 +79,8 @@ pub struct Parts {
     pub throttle: Throttle,
     /// What signing in with passwords needs; nothing where that is not allowed.
     pub passwords: Option<Passwords>,
+    /// Speaks with learning platforms.
+    pub lti: Arc<Lti>,
     /// Cancelled when the server is to end: whoever waits for something to happen stops waiting.
     pub closing: CancellationToken,
 }
@@ -107,6 +116,12 @@ impl House {
     #[must_use]
     pub fn incoming(&self) -> &std::path::Path {
         &self.0.incoming
+    }
+
+    /// Whether learning platforms may be reached, and people come from them, without HTTPS.
+    #[must_use]
+    pub fn is_lti_over_http(&self) -> bool {
+        self.0.lti.over_http()
     }
 
     /// Waits until the server is to end.

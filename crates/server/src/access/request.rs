@@ -14,12 +14,20 @@ pub struct Secrets {
     pub bearer: Option<String>,
     /// From the session's cookie.
     pub session: Option<String>,
+    /// From the cookie of a browser that comes from a learning platform.
+    pub browser: Option<String>,
 }
 
 /// The session's cookie: by HTTPS one that no other host and no script can set or read.
 #[must_use]
 pub fn cookie_name(secure: bool) -> &'static str {
     if secure { "__Host-fosssim" } else { "fosssim" }
+}
+
+/// The cookie of a browser while it comes from a learning platform.
+#[must_use]
+pub fn browser_cookie(secure: bool) -> &'static str {
+    if secure { "__Host-fosssim-lti" } else { "fosssim-lti" }
 }
 
 impl Secrets {
@@ -31,15 +39,17 @@ impl Secrets {
             .and_then(|value| value.split_once(' '))
             .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
             .map(|(_, token)| token.trim().to_owned());
-        let session = headers
-            .get_all(header::COOKIE)
-            .iter()
-            .filter_map(|value| value.to_str().ok())
-            .flat_map(|value| value.split(';'))
-            .filter_map(|pair| pair.trim().split_once('='))
-            .find(|(name, _)| *name == cookie_name(secure))
-            .map(|(_, value)| value.to_owned());
-        Self { bearer, session }
+        let cookie = |wanted: &str| {
+            headers
+                .get_all(header::COOKIE)
+                .iter()
+                .filter_map(|value| value.to_str().ok())
+                .flat_map(|value| value.split(';'))
+                .filter_map(|pair| pair.trim().split_once('='))
+                .find(|(name, _)| *name == wanted)
+                .map(|(_, value)| value.to_owned())
+        };
+        Self { bearer, session: cookie(cookie_name(secure)), browser: cookie(browser_cookie(secure)) }
     }
 }
 
@@ -78,7 +88,7 @@ impl FromRequestParts<House> for Visitor {
 
     async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
         let secrets = Secrets::of(&parts.headers, house.is_secure());
-        Ok(Self { house: house.clone(), session: secrets.session })
+        Ok(Self { house: house.clone(), session: secrets.session, browser: secrets.browser })
     }
 }
 

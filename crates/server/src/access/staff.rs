@@ -102,16 +102,7 @@ impl Staff {
                 account
             }
         };
-        // Staff can sign in for none of these, and could not before: there is nothing to end.
-        let row = transaction
-            .one(
-                "SELECT is_admin, (SELECT count(*) FROM member
-                    WHERE member.account = account.id AND member.role = 'staff') AS staff
-                 FROM account WHERE id = ?",
-                values![account],
-            )
-            .await?;
-        let trusted = row.flag("is_admin")? || row.int("staff")? > 0;
+        let trusted = identity::is_trusted(&mut transaction, account).await?;
         let was = transaction
             .row("SELECT role FROM member WHERE course = ? AND account = ?", values![self.0.course, account])
             .await?;
@@ -120,7 +111,7 @@ impl Staff {
             transaction
                 .execute(
                     "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
-                     ON CONFLICT (course, account) DO UPDATE SET role = excluded.role",
+                     ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL",
                     values![self.0.course, account, role],
                 )
                 .await?;

@@ -5,6 +5,7 @@ use super::{
 };
 use crate::{
     db::Transaction,
+    lti::score,
     problem::Problem,
     queue::{self, Bell, Lane, NewJob, Turn},
     store::Artefact,
@@ -161,6 +162,7 @@ impl Member {
             payload: &payload,
         };
         queue::enqueue(transaction, &job).await?;
+        score::changed(transaction, submission).await?;
         if let Some(key) = upload.key {
             transaction
                 .execute(

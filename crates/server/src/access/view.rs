@@ -421,8 +421,8 @@ pub(super) async fn queue(transaction: &mut Transaction, house: &House) -> Resul
                 count(CASE WHEN state = 'waiting' AND campaign IS NOT NULL THEN 1 END) AS regrades,
                 count(CASE WHEN state = 'running' THEN 1 END) AS running,
                 count(CASE WHEN state = 'buried' THEN 1 END) AS buried
-             FROM job",
-            values![],
+             FROM job WHERE lane = ?",
+            values![Lane::Grading.name()],
         )
         .await?;
     let recent = i64::try_from(2 * house.0.policy.lease.as_millis()).unwrap_or(i64::MAX);

@@ -1,11 +1,12 @@
 //! Anybody.
 use super::{House, Session, identity};
-use crate::{db, problem::Problem, values};
+use crate::{db, problem::Problem, queue::Lane, values};
 
 /// Somebody who need not be signed in.
 pub struct Visitor {
     pub(super) house: House,
     pub(super) session: Option<String>,
+    pub(super) browser: Option<String>,
 }
 
 /// What may be counted without knowing anybody.
@@ -13,6 +14,8 @@ pub struct Visitor {
 pub struct Metrics {
     /// Jobs by state.
     pub jobs: Vec<(String, i64)>,
+    /// Scores for learning platforms by state.
+    pub scores: Vec<(String, i64)>,
     /// How long the oldest waiting job has waited, in milliseconds.
     pub oldest: i64,
     /// Workers that were seen lately.
@@ -32,6 +35,12 @@ impl Visitor {
     #[must_use]
     pub fn house(&self) -> &House {
         &self.house
+    }
+
+    /// What this browser showed of itself when it came from a learning platform.
+    #[must_use]
+    pub fn browser(&self) -> Option<&str> {
+        self.browser.as_deref()
     }
 
     /// Signs in by a link, which is used up.
@@ -104,14 +113,18 @@ impl Visitor {
     pub async fn metrics(&self) -> Result<Metrics, Problem> {
         let mut transaction = self.house.0.database.read().await?;
         let mut metrics = Metrics::default();
-        for row in transaction.rows("SELECT state, count(*) AS n FROM job GROUP BY state", values![]).await? {
-            metrics.jobs.push((row.text("state")?, row.int("n")?));
+        for row in
+            transaction.rows("SELECT lane, state, count(*) AS n FROM job GROUP BY lane, state", values![]).await?
+        {
+            let (state, count) = (row.text("state")?, row.int("n")?);
+            let lane = if row.text("lane")? == Lane::Grading.name() { &mut metrics.jobs } else { &mut metrics.scores };
+            lane.push((state, count));
         }
         let row = transaction
             .one(
                 "SELECT coalesce({now} - min(enqueued_at), 0) AS oldest FROM job
-                 WHERE state = 'waiting' AND campaign IS NULL",
-                values![],
+                 WHERE lane = ? AND state = 'waiting' AND campaign IS NULL",
+                values![Lane::Grading.name()],
             )
             .await?;
         metrics.oldest = row.int("oldest")?;

@@ -8,6 +8,7 @@ use super::{
 use crate::{
     access::{House, Parts, Passwords, Throttle},
     db::{self, Address, Database},
+    lti::{self, Lti, PlatformWish},
     queue::Bell,
     retention,
     store::Store,
@@ -18,6 +19,7 @@ use std::{
     io::Write as _,
     num::NonZeroUsize,
     path::{Path, PathBuf},
+    sync::Arc,
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 use tokio_util::sync::CancellationToken;
@@ -48,6 +50,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
     let policy = policy(&arguments.work);
     let patience = Duration::from_secs(arguments.patience);
+    let lti = Arc::new(Lti::new(arguments.lti_over_http));
     let house = House::new(Parts {
         database: database.clone(),
         store: store.clone(),
@@ -59,8 +62,13 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         requests_per_minute: arguments.requests_per_minute,
         throttle: Throttle::default(),
         passwords: arguments.passwords.then(Passwords::default),
+        lti: lti.clone(),
         closing: stop.clone(),
     });
+    if let Some(file) = &arguments.platforms {
+        register_platforms(&house, file).await?;
+    }
+    tokio::spawn(lti::send_scores(database.clone(), bell.clone(), policy, lti, stop.clone()));
     if arguments.keep_days > 0 {
         tokio::spawn(give_up(
             database.clone(),
@@ -110,6 +118,17 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     }
     database.close().await;
     tracing::info!("stopped");
+    Ok(())
+}
+
+/// Registers the learning platforms of a file: a table for each, by name.
+async fn register_platforms(house: &House, file: &Path) -> Result<()> {
+    let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+    let platforms: std::collections::BTreeMap<String, PlatformWish> =
+        toml::from_str(&text).with_context(|| format!("{} is not understood", file.display()))?;
+    for (name, wish) in &platforms {
+        house.set_platform(name, wish).await.map_err(|problem| anyhow!("platform {name}: {}", problem.detail))?;
+    }
     Ok(())
 }
 
@@ -182,6 +201,7 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
         requests_per_minute: 1,
         throttle: Throttle::default(),
         passwords: None,
+        lti: Arc::new(Lti::new(false)),
         closing: CancellationToken::new(),
         database: database.clone(),
     });

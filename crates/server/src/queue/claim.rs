@@ -41,3 +41,20 @@ pub async fn claim(
         failures: row.int("failures")?,
     }))
 }
+
+/// Whether something in a lane is to be looked at: a job whose turn has come, or one that somebody holds, and may have let go of.
+/// Costs a reader's transaction only.
+///
+/// # Errors
+/// What the database says.
+pub async fn is_due(transaction: &mut Transaction, lane: Lane) -> Result<bool, DbError> {
+    let row = transaction
+        .row(
+            "SELECT id FROM job WHERE lane = ? AND (
+                (state = 'waiting' AND run_after <= {now}) OR (state = 'running' AND lease_until < {now})
+             ) LIMIT 1",
+            values![lane.name()],
+        )
+        .await?;
+    Ok(row.is_some())
+}

@@ -19,6 +19,8 @@ pub enum Turn {
     Student(i64),
     /// Part of a regrade.
     Campaign(i64),
+    /// Telling a platform, by the link, of an account's work.
+    Score(i64, i64),
 }
 
 impl Turn {
@@ -27,13 +29,14 @@ impl Turn {
         match self {
             Self::Student(_) => Duration::from_secs(600),
             Self::Campaign(_) => Duration::from_secs(20),
+            Self::Score(..) => Duration::ZERO,
         }
     }
 
     /// How much later than an upload of the same moment its first job comes.
     fn delay(self) -> Duration {
         match self {
-            Self::Student(_) => Duration::ZERO,
+            Self::Student(_) | Self::Score(..) => Duration::ZERO,
             Self::Campaign(_) => Duration::from_secs(1800),
         }
     }
@@ -42,6 +45,7 @@ impl Turn {
         match self {
             Self::Student(account) => format!("student {account}"),
             Self::Campaign(campaign) => format!("campaign {campaign}"),
+            Self::Score(link, account) => format!("score {link} {account}"),
         }
     }
 }
@@ -103,4 +107,16 @@ pub async fn cancel(transaction: &mut Transaction, job: i64) -> Result<bool, DbE
         )
         .await?;
     Ok(changed > 0)
+}
+
+/// Whether a job of this turn waits, and goes on waiting until the caller's transaction ends: whoever is about to change what it
+/// is about need not enqueue another one.
+///
+/// # Errors
+/// What the database says.
+pub async fn waits(transaction: &mut Transaction, turn: Turn) -> Result<bool, DbError> {
+    let row = transaction
+        .row("SELECT id FROM job WHERE fair_key = ? AND state = 'waiting' LIMIT 1 {for update}", values![turn.key()])
+        .await?;
+    Ok(row.is_some())
 }

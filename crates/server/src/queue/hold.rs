@@ -4,6 +4,7 @@ use crate::{
     db::{DbError, Transaction},
     values,
 };
+use std::time::Duration;
 
 /// What became of a wish to finish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,6 +93,20 @@ pub async fn fail(
     lease: &Lease,
     fault: &str,
 ) -> Result<Failure, DbError> {
+    fail_for(transaction, policy, lease, fault, Duration::ZERO).await
+}
+
+/// The same, and the next try comes no sooner than `least` from now.
+///
+/// # Errors
+/// What the database says.
+pub async fn fail_for(
+    transaction: &mut Transaction,
+    policy: &Policy,
+    lease: &Lease,
+    fault: &str,
+    least: Duration,
+) -> Result<Failure, DbError> {
     let held = transaction
         .row(
             "SELECT failures FROM job
@@ -101,7 +116,7 @@ pub async fn fail(
         .await?;
     match held {
         None => Ok(Failure::Late),
-        Some(row) => lose(transaction, policy, lease.job, row.int("failures")? + 1, fault).await,
+        Some(row) => lose(transaction, policy, lease.job, row.int("failures")? + 1, fault, least).await,
     }
 }
 
@@ -112,6 +127,7 @@ pub(super) async fn lose(
     job: i64,
     failures: i64,
     fault: &str,
+    least: Duration,
 ) -> Result<Failure, DbError> {
     if failures >= i64::from(policy.max_failures) {
         transaction
@@ -129,7 +145,7 @@ pub(super) async fn lose(
             "UPDATE job SET state = 'waiting', failures = ?, run_after = {now} + ?, worker = NULL, lease_key = NULL,
                 lease_until = NULL, last_fault = ?
              WHERE id = ?",
-            values![failures, millis(policy.wait(failures)), fault, job],
+            values![failures, millis(policy.wait(failures).max(least)), fault, job],
         )
         .await?;
     Ok(Failure::Retried)

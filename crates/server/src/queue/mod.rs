@@ -15,9 +15,9 @@ mod place;
 mod tick;
 
 pub use bell::{Bell, Ear};
-pub use claim::claim;
-pub use enqueue::{NewJob, Turn, cancel, enqueue};
-pub use hold::{Completion, Failure, complete, fail, release, renew};
+pub use claim::{claim, is_due};
+pub use enqueue::{NewJob, Turn, cancel, enqueue, waits};
+pub use hold::{Completion, Failure, complete, fail, fail_for, release, renew};
 pub use place::{Place, place};
 pub use tick::{Buried, Tick, abandon, tick};
 

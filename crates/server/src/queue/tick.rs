@@ -7,6 +7,7 @@ use crate::{
     db::{DbError, Row, Transaction},
     values,
 };
+use std::time::Duration;
 
 /// What a tick found.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -83,7 +84,7 @@ async fn give_up(transaction: &mut Transaction, policy: &Policy, lost: Vec<Row>,
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
-        match lose(transaction, policy, job, row.int("failures")? + 1, fault).await? {
+        match lose(transaction, policy, job, row.int("failures")? + 1, fault, Duration::ZERO).await? {
             Failure::Buried => tick.buried.push(Buried { job, attempt, worker, fault: fault.to_owned() }),
             Failure::Retried | Failure::Late => tick.retried += 1,
         }

@@ -4,6 +4,7 @@ mod accounts;
 mod assignments;
 mod courses;
 mod operations;
+mod platforms;
 mod regrades;
 mod submissions;
 mod suspicions;
@@ -57,6 +58,11 @@ pub(super) fn routes() -> OpenApiRouter<House> {
         .routes(routes!(suspicions::suspicions))
         .routes(routes!(suspicions::dismiss))
         .routes(routes!(suspicions::tell))
+        .routes(routes!(platforms::platforms))
+        .routes(routes!(platforms::set_platform, platforms::shut_platform))
+        .routes(routes!(platforms::new_key))
+        .routes(routes!(platforms::roster))
+        .routes(routes!(platforms::scores, platforms::send_scores))
         .routes(routes!(workers::tick))
         .routes(routes!(workers::claim))
         .routes(routes!(workers::renew))

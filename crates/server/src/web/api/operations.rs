@@ -40,10 +40,15 @@ pub(super) async fn metrics(visitor: Visitor) -> Result<Response, Problem> {
     let head = |text: &mut String, name: &str, kind: &str, help: &str| {
         line(text, &format!("# HELP fosssim_{name} {help}\n# TYPE fosssim_{name} {kind}"));
     };
-    head(&mut text, "jobs", "gauge", "Jobs by state.");
-    for state in ["waiting", "running", "done", "buried", "cancelled"] {
-        let count = metrics.jobs.iter().find(|(name, _)| name == state).map_or(0, |(_, count)| *count);
-        line(&mut text, &format!("fosssim_jobs{{state=\"{state}\"}} {count}"));
+    for (name, help, counts) in [
+        ("jobs", "Gradings by state.", &metrics.jobs),
+        ("scores", "Scores for learning platforms by state.", &metrics.scores),
+    ] {
+        head(&mut text, name, "gauge", help);
+        for state in ["waiting", "running", "done", "buried", "cancelled"] {
+            let count = counts.iter().find(|(name, _)| name == state).map_or(0, |(_, count)| *count);
+            line(&mut text, &format!("fosssim_{name}{{state=\"{state}\"}} {count}"));
+        }
     }
     for (name, help, value) in [
         ("oldest_waiting_milliseconds", "How long the oldest waiting upload has waited.", metrics.oldest),

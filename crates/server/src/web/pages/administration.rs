@@ -5,6 +5,7 @@ use super::{
 };
 use crate::{
     access::{Account, Admin, Event, Queue, TokenInfo},
+    lti::Platform,
     problem::Problem,
 };
 use askama::Template;
@@ -17,6 +18,9 @@ struct AdminPage {
     frame: Frame,
     accounts: Vec<Account>,
     workers: Vec<TokenInfo>,
+    platforms: Vec<Platform>,
+    /// The addresses that platforms are told.
+    public: String,
     queue: Queue,
     events: Vec<Event>,
     link: Option<String>,
@@ -46,6 +50,8 @@ async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Res
         frame: Frame::of(admin.account()).then("/admin".to_owned(), "Administration"),
         accounts: admin.accounts().await?,
         workers: admin.worker_tokens().await?,
+        platforms: admin.platforms().await?,
+        public: admin.house().public().to_owned(),
         queue: admin.queue().await?,
         events: admin.audit(None).await?,
         link,

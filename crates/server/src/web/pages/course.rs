@@ -33,6 +33,7 @@ struct MembersPage {
     frame: Frame,
     slug: String,
     members: Vec<MemberInfo>,
+    platforms: Vec<String>,
     link: Option<(String, String)>,
 }
 
@@ -108,7 +109,13 @@ pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignm
 async fn members_page(staff: &Staff, link: Option<(String, String)>) -> Result<Html<String>, Problem> {
     let slug = staff.member().course().slug;
     let frame = Frame::course(staff.member()).then(format!("/c/{slug}/members"), "Members");
-    show(&MembersPage { frame, slug, members: staff.members().await?, link })
+    show(&MembersPage {
+        frame,
+        slug,
+        members: staff.members().await?,
+        platforms: staff.member().platforms().await?,
+        link,
+    })
 }
 
 pub(super) async fn members(staff: Staff) -> Result<Html<String>, Problem> {

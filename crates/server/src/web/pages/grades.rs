@@ -4,7 +4,7 @@ use super::{
     Frame, see, show, text,
 };
 use crate::{
-    access::{Assignment, Regrade, RegradeState, Settings, Staff, Standing, Suspicion},
+    access::{Assignment, Regrade, RegradeState, ScoreInfo, Settings, Staff, Standing, Suspicion},
     problem::Problem,
 };
 use askama::Template;
@@ -20,6 +20,7 @@ struct ClassPage {
     standings: Vec<Standing>,
     regrades: Vec<Regrade>,
     suspicions: Vec<Suspicion>,
+    scores: Vec<ScoreInfo>,
     settings: String,
 }
 
@@ -50,7 +51,8 @@ pub(super) async fn class(
     let regrades = staff.regrades(&assignment.slug).await?;
     let settings = serde_json::to_string_pretty(&assignment.settings).map_err(|_| Problem::fault())?;
     let suspicions = staff.suspicions(&assignment.slug).await?;
-    show(&ClassPage { frame, slug, assignment, standings, regrades, suspicions, settings })
+    let scores = staff.scores(&assignment.slug).await?;
+    show(&ClassPage { frame, slug, assignment, standings, regrades, suspicions, scores, settings })
 }
 
 pub(super) async fn begin(

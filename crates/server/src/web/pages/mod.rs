@@ -4,6 +4,7 @@ mod account;
 mod administration;
 mod course;
 mod grades;
+mod platform;
 mod sign_in;
 mod submission;
 mod text;
@@ -48,11 +49,23 @@ pages! {
     post "/admin/accounts" => administration::set_account,
     post "/admin/workers" => administration::new_worker,
     post "/admin/workers/{id}/revoke" => administration::revoke_worker,
+    post "/admin/platforms" => platform::set_platform,
+    post "/admin/platforms/{name}/shut" => platform::shut_platform,
+    post "/admin/platform-keys" => platform::new_key,
+    get "/lti/login" => platform::login,
+    post "/lti/login" => platform::login_by_form,
+    post "/lti/launch" => platform::launch,
+    get "/lti/keys.json" => platform::keys,
+    get "/lti/configuration.json" => platform::configuration,
+    get "/lti/choose/{secret}" => platform::choose,
+    post "/lti/choose/{secret}/course" => platform::choose_course,
+    post "/lti/choose/{secret}/assignment" => platform::choose_assignment,
     get "/c/{course}" => course::course,
     post "/c/{course}/assignments" => course::new_assignment,
     get "/c/{course}/members" => course::members,
     post "/c/{course}/members" => course::set_member,
     post "/c/{course}/members/{login}/link" => course::member_link,
+    post "/c/{course}/members/roster" => platform::read_roster,
     get "/c/{course}/audit" => course::audit,
     get "/c/{course}/queue" => course::queue,
     get "/c/{course}/a/{assignment}" => submission::assignment,
@@ -61,6 +74,7 @@ pages! {
     post "/c/{course}/a/{assignment}/settings" => course::set_settings,
     post "/c/{course}/a/{assignment}/suite" => course::set_suite,
     get "/c/{course}/a/{assignment}/class" => grades::class,
+    post "/c/{course}/a/{assignment}/scores" => platform::send_scores,
     post "/c/{course}/a/{assignment}/regrades" => grades::begin,
     get "/c/{course}/a/{assignment}/regrades/{id}" => grades::show_regrade,
     post "/c/{course}/a/{assignment}/regrades/{id}/apply" => grades::apply,

@@ -38,8 +38,8 @@ pub(super) struct Password {
     password: String,
 }
 
-/// A new session's cookie, and the way in.
-fn enter(house: &House, session: &Session) -> Response {
+/// A new session's cookie, and the way on.
+pub(super) fn enter(house: &House, session: &Session, to: &str) -> Response {
     let secure = house.is_secure();
     let cookie = format!(
         "{}={}; Path=/; HttpOnly; SameSite=Lax; Max-Age=1209600{}",
@@ -47,10 +47,10 @@ fn enter(house: &House, session: &Session) -> Response {
         session.secret(),
         if secure { "; Secure" } else { "" }
     );
-    with_cookie(&cookie, "/")
+    with_cookie(&cookie, to)
 }
 
-fn with_cookie(cookie: &str, to: &str) -> Response {
+pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     let mut response = see(to).into_response();
     if let Ok(value) = HeaderValue::from_str(cookie) {
         response.headers_mut().append(header::SET_COOKIE, value);
@@ -64,12 +64,12 @@ pub(super) async fn page(visitor: Visitor) -> Result<Html<String>, Problem> {
 
 pub(super) async fn by_password(visitor: Visitor, Fields(form): Fields<Password>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_password(form.login.trim(), &form.password).await?;
-    Ok(enter(visitor.house(), &session))
+    Ok(enter(visitor.house(), &session, "/"))
 }
 
 pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_token(form.token.trim()).await?;
-    Ok(enter(visitor.house(), &session))
+    Ok(enter(visitor.house(), &session, "/"))
 }
 
 /// Opening the link does nothing yet: mail programs open links, too.
@@ -79,7 +79,7 @@ pub(super) async fn welcome(_: Visitor) -> Result<Html<String>, Problem> {
 
 pub(super) async fn by_link(visitor: Visitor, Params(secret): Params<String>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
-    Ok(enter(visitor.house(), &session))
+    Ok(enter(visitor.house(), &session, "/"))
 }
 
 pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {

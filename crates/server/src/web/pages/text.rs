@@ -3,19 +3,7 @@ use crate::access::RegradeState;
 
 /// A moment in UTC: `2026-11-22 08:45`.
 pub(super) fn moment(milliseconds: &i64) -> String {
-    let minutes = milliseconds.div_euclid(60_000);
-    let (days, minute) = (minutes.div_euclid(1440), minutes.rem_euclid(1440));
-    // Civil dates from days, after Hinnant, "chrono-Compatible Low-Level Date Algorithms".
-    let shifted = days + 719_468;
-    let era = shifted.div_euclid(146_097);
-    let day_of_era = shifted.rem_euclid(146_097);
-    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month_from_march = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
-    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
-    let year = year_of_era + era * 400 + i64::from(month <= 2);
-    format!("{year:04}-{month:02}-{day:02} {:02}:{:02}", minute / 60, minute % 60)
+    crate::calendar::minute(*milliseconds)
 }
 
 /// Points of the most that could be had; a dash where there are none.
@@ -50,6 +38,15 @@ pub(super) fn suspicion(state: &str) -> &'static str {
     }
 }
 
+/// What a learning platform is to know.
+pub(super) fn score(score: &serde_json::Value) -> String {
+    match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
+        (Some(points), Some(most)) => format!("{points} / {most}"),
+        _ if score["gradingProgress"] == "Pending" => "being graded".to_owned(),
+        _ => "somebody has to look".to_owned(),
+    }
+}
+
 /// The beginning of a digest.
 pub(super) fn short(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
@@ -63,24 +60,5 @@ pub(super) fn state(state: &str) -> &'static str {
         "done" => "graded",
         "buried" => "the grader failed: nobody's fault here, and staff knows",
         _ => "taken out of the queue",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::moment;
-
-    #[test]
-    fn moments_are_dates() {
-        for (milliseconds, text) in [
-            (0, "1970-01-01 00:00"),
-            (951_782_400_000, "2000-02-29 00:00"),
-            (1_795_336_859_999, "2026-11-22 08:40"),
-            (4_107_542_399_999, "2100-02-28 23:59"),
-            (4_107_542_400_000, "2100-03-01 00:00"),
-            (-1, "1969-12-31 23:59"),
-        ] {
-            assert_eq!(moment(&milliseconds), text);
-        }
     }
 }

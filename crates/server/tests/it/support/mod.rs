@@ -1,4 +1,5 @@
 //! What the tests share.
 pub(crate) mod cluster;
 pub(crate) mod engines;
+pub(crate) mod platform;
 pub(crate) mod server;

@@ -5,6 +5,7 @@ mod flows;
 mod hidden;
 mod hostile;
 mod passwords;
+mod platforms;
 mod replay;
 mod roles;
 mod suspicion;

@@ -15,6 +15,16 @@ fn the_database_is_copied_before_its_tables_change() {
         // As the first version left it.
         let mut transaction = fresh.database.begin().await.expect("a transaction");
         for statement in [
+            "DROP TABLE platform_score",
+            "DROP TABLE platform_choice",
+            "DROP TABLE platform_link",
+            "DROP TABLE platform_member",
+            "DROP TABLE platform_course",
+            "DROP TABLE platform_account",
+            "DROP TABLE platform_login",
+            "DROP TABLE platform_key",
+            "DROP TABLE platform",
+            "ALTER TABLE member DROP COLUMN platform",
             "DROP TABLE wrong_scene",
             "DROP TABLE suspicion",
             "ALTER TABLE result DROP COLUMN grader",

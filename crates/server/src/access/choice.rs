@@ -1,0 +1,290 @@
+//! What staff who came from a platform chooses: which course theirs is here, and which assignment a link leads to.
+use super::{
+    Member, Person, identity,
+    launch::{self, Pending},
+    view::{self, Assignment, Course, Deed},
+};
+use crate::{
+    db::{DbError, Row, Transaction},
+    lti::{self, Role},
+    problem::Problem,
+    values,
+};
+
+/// What there is to choose.
+#[derive(Debug, Clone)]
+pub enum Choice {
+    /// The course, of those that one teaches, or a new one.
+    Course {
+        /// The platform.
+        platform: String,
+        /// What it is called there.
+        title: String,
+        /// A name for a new one.
+        slug: String,
+        /// Those that are there.
+        courses: Vec<Course>,
+    },
+    /// The assignment.
+    Assignment {
+        /// The course.
+        course: Course,
+        /// What the link is called there.
+        title: Option<String>,
+        /// Those that are there.
+        assignments: Vec<Assignment>,
+    },
+}
+
+/// What is to be done after an assignment was chosen.
+#[derive(Debug, Clone)]
+pub enum Chosen {
+    /// Go to the assignment.
+    Assignment(String),
+    /// Send this to the platform: address, origin, and token.
+    Answer {
+        /// Where.
+        address: String,
+        /// Its origin, which a page may send forms to.
+        origin: String,
+        /// What.
+        token: String,
+    },
+}
+
+/// A course of a platform that is known here.
+struct Place {
+    id: i64,
+    course: i64,
+    slug: String,
+    title: String,
+}
+
+impl Person {
+    /// What there is to choose.
+    ///
+    /// # Errors
+    /// When there is nothing of this secret for this person.
+    pub async fn choice(&self, secret: &str) -> Result<Choice, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
+        let Some(place) = place(&mut transaction, &pending).await? else {
+            let context = &pending.arrival.context;
+            let title = context.title.clone().or(context.label.clone()).unwrap_or_else(|| context.id.clone());
+            let title: String = title.chars().filter(|c| !c.is_control()).take(200).collect();
+            let slug = slug_of(context.label.as_deref().unwrap_or(&title));
+            let rows = transaction
+                .rows(
+                    "SELECT course.slug, course.title FROM course
+                     JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
+                     ORDER BY course.slug",
+                    values![self.account.id],
+                )
+                .await?;
+            let read = |row: &Row| Ok(Course { slug: row.text("slug")?, title: row.text("title")? });
+            let courses = rows.iter().map(read).collect::<Result<_, DbError>>()?;
+            return Ok(Choice::Course {
+                platform: pending.platform.name,
+                title: title.trim().to_owned(),
+                slug,
+                courses,
+            });
+        };
+        let rows = transaction
+            .rows(
+                "SELECT id, slug, title, visible, settings FROM assignment WHERE course = ? ORDER BY id",
+                values![place.course],
+            )
+            .await?;
+        Ok(Choice::Assignment {
+            course: Course { slug: place.slug, title: place.title },
+            title: pending.arrival.resource.and_then(|resource| resource.title),
+            assignments: rows.iter().map(view::read_assignment).collect::<Result<_, Problem>>()?,
+        })
+    }
+
+    /// Connects the platform's course with one of those that this person teaches, or with a new one.
+    ///
+    /// # Errors
+    /// When there is no such course, or one of the new one's name.
+    pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
+        if place(&mut transaction, &pending).await?.is_some() {
+            return Ok(());
+        }
+        let course = match known {
+            Some(slug) => transaction
+                .row(
+                    "SELECT course.id FROM course
+                     JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
+                     WHERE course.slug = ?",
+                    values![self.account.id, slug],
+                )
+                .await?
+                .ok_or_else(|| Problem::not_found("course"))?
+                .int("id")?,
+            None => self.new_course(&mut transaction, new).await?,
+        };
+        let arrival = &pending.arrival;
+        let title = arrival.context.title.as_deref().unwrap_or(&arrival.context.id);
+        let made = transaction
+            .one(
+                "INSERT INTO platform_course (platform, deployment, context, title, course, memberships, created_at)
+                 VALUES (?, ?, ?, ?, ?, ?, {now}) RETURNING id",
+                values![
+                    pending.platform.id,
+                    &arrival.deployment,
+                    &arrival.context.id,
+                    title,
+                    course,
+                    arrival.memberships.clone()
+                ],
+            )
+            .await?
+            .int("id")?;
+        // This session was begun by the platform's word, and ended all others of an account that was a student's.
+        transaction
+            .execute(
+                "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
+                 ON CONFLICT (platform_course, account) DO NOTHING",
+                values![made, self.account.id],
+            )
+            .await?;
+        transaction
+            .execute(
+                "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
+                 ON CONFLICT (course, account) DO NOTHING",
+                values![course, self.account.id, Role::Staff.name(), pending.platform.id],
+            )
+            .await?;
+        let text = format!("{} of {} is this course", arrival.context.id, pending.platform.name);
+        let deed = Deed {
+            kind: "platform",
+            actor: self.account.id,
+            course: Some(course),
+            assignment: None,
+            submission: None,
+            text: &text,
+        };
+        view::note(&mut transaction, &deed).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    async fn new_course(&self, transaction: &mut Transaction, (slug, title): (&str, &str)) -> Result<i64, Problem> {
+        identity::check_slug("a course's name", slug)?;
+        identity::check_title("a title", title)?;
+        let made = transaction
+            .row(
+                "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
+                 ON CONFLICT (slug) DO NOTHING RETURNING id",
+                values![slug, title],
+            )
+            .await?;
+        let Some(made) = made else {
+            return Err(Problem::conflict("there is a course of this name", "give it another name"));
+        };
+        Ok(made.int("id")?)
+    }
+
+    /// Makes the link lead to an assignment; of a link that the platform asks for, the answer that it waits for.
+    ///
+    /// # Errors
+    /// When this person does not teach the course, or it has no such assignment.
+    pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<Chosen, Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
+        let Some(place) = place(&mut transaction, &pending).await? else { return Err(Problem::not_found("course")) };
+        let staff = transaction
+            .row(
+                "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'",
+                values![place.course, self.account.id],
+            )
+            .await?;
+        if staff.is_none() {
+            return Err(Problem::not_allowed("this is for the course's staff"));
+        }
+        let row = transaction
+            .row(
+                "SELECT id, slug, title, visible, settings FROM assignment WHERE course = ? AND slug = ?",
+                values![place.course, slug],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::not_found("assignment")) };
+        let assignment = view::read_assignment(&row)?;
+        let arrival = &pending.arrival;
+        let text = format!("a link of {} leads to {}", pending.platform.name, assignment.slug);
+        let deed = Deed {
+            kind: "platform",
+            actor: self.account.id,
+            course: Some(place.course),
+            assignment: Some(assignment.id),
+            submission: None,
+            text: &text,
+        };
+        view::note(&mut transaction, &deed).await?;
+        let Some(wanted) = &arrival.deep_linking else {
+            let resource = arrival.resource.as_ref().ok_or_else(Problem::fault)?;
+            let link = launch::make_link(&mut transaction, place.id, &resource.id, assignment.id).await?;
+            launch::columns(&mut transaction, link, arrival).await?;
+            transaction.commit().await?;
+            return Ok(Chosen::Assignment(format!("/c/{}/a/{}", place.slug, assignment.slug)));
+        };
+        transaction.commit().await?;
+        let over_http = self.house.0.lti.over_http();
+        let Some(address) = pending.platform.service(&wanted.deep_link_return_url, over_http) else {
+            return Err(Problem::refused_launch("the platform wants the answer at a host that no administrator named"));
+        };
+        let (launch, item) = (self.house.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
+        let token =
+            lti::deep_linking_response(&self.house.0.database, &pending.platform, arrival, &launch, item).await?;
+        let origin = address.origin().ascii_serialization();
+        Ok(Chosen::Answer { address: address.into(), origin, token })
+    }
+}
+
+async fn place(transaction: &mut Transaction, pending: &Pending) -> Result<Option<Place>, DbError> {
+    let arrival = &pending.arrival;
+    let row = transaction
+        .row(
+            "SELECT platform_course.id, platform_course.course, course.slug, course.title FROM platform_course
+             JOIN course ON course.id = platform_course.course
+             WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?",
+            values![pending.platform.id, &arrival.deployment, &arrival.context.id],
+        )
+        .await?;
+    let Some(row) = row else { return Ok(None) };
+    Ok(Some(Place {
+        id: row.int("id")?,
+        course: row.int("course")?,
+        slug: row.text("slug")?,
+        title: row.text("title")?,
+    }))
+}
+
+/// A name for addresses, to begin with.
+fn slug_of(title: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    let text: String = title.chars().map(plain).take(60).collect();
+    text.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
+}
+
+impl Member {
+    /// The platforms from which people come into this course.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn platforms(&self) -> Result<Vec<String>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT DISTINCT platform.name FROM platform_course
+                 JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
+                 WHERE platform_course.course = ? ORDER BY platform.name",
+                values![self.course],
+            )
+            .await?;
+        Ok(rows.iter().map(|row| row.text("name")).collect::<Result<_, DbError>>()?)
+    }
+}

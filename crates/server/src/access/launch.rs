@@ -1,0 +1,501 @@
+//! Coming from a learning platform: the platform is asked who it is (SEC 5.1.1), answers once, and they are signed in as who they
+//! are here, in the course that belongs to theirs there.
+use super::{House, NewSecret, Session, Visitor, identity};
+use crate::{
+    db::{DbError, Row, Transaction},
+    lti::{Arrival, Message, Platform, Refused, Role, score},
+    problem::Problem,
+    values,
+};
+use std::time::Instant;
+use url::Url;
+
+/// How long a sign-in may take, in milliseconds.
+const LOGIN: i64 = 10 * 60 * 1000;
+
+/// How long staff may take to choose.
+const CHOICE: i64 = 3600 * 1000;
+
+/// Sign-ins that one platform may begin in a minute: everybody can say that they come from it.
+const LOGINS: u32 = 3000;
+
+/// What a platform sends of somebody who wants to come (LTI 4.1, SEC 5.1.1.1).
+#[derive(Debug, Clone)]
+pub struct LoginRequest {
+    /// Its issuer.
+    pub issuer: String,
+    /// What it calls this service, where it says so.
+    pub client: Option<String>,
+    /// Sent back as they are.
+    pub hint: String,
+    /// The same about the message.
+    pub message_hint: Option<String>,
+}
+
+/// What a browser is to do next.
+#[derive(Debug, Clone)]
+pub struct LoginAnswer {
+    /// Where to ask.
+    pub address: String,
+    /// What the browser is to show when it comes back.
+    pub browser: String,
+}
+
+/// Where somebody is to go, signed in.
+#[derive(Debug, Clone)]
+pub struct Launched {
+    /// Their session.
+    pub session: Session,
+    /// A path of this service.
+    pub to: String,
+}
+
+impl From<Refused> for Problem {
+    fn from(refused: Refused) -> Self {
+        Self::refused_launch(refused.to_string())
+    }
+}
+
+impl House {
+    /// Whether people may come from platforms at all: their cookies have to reach this service from another site.
+    fn check_launchable(&self) -> Result<(), Problem> {
+        if self.is_secure() || self.0.lti.over_http() {
+            return Ok(());
+        }
+        let remedy = "start the server with --public-url https://...";
+        Err(Problem::conflict("people come from learning platforms by HTTPS only", remedy))
+    }
+
+    /// The address that platforms send people to.
+    #[must_use]
+    pub fn launch_address(&self) -> String {
+        format!("{}/lti/launch", self.public())
+    }
+}
+
+impl Visitor {
+    /// The platform that somebody says they come from.
+    ///
+    /// # Errors
+    /// When nobody registered it.
+    pub async fn platform(&self, request: &LoginRequest) -> Result<Platform, Problem> {
+        self.house.check_launchable()?;
+        let mut transaction = self.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT id, name, settings FROM platform
+                 WHERE issuer = ? AND disabled_at IS NULL AND (CAST(? AS TEXT) IS NULL OR client = ?) ORDER BY id LIMIT 2",
+                values![&request.issuer, request.client.as_deref(), request.client.as_deref()],
+            )
+            .await?;
+        match rows.as_slice() {
+            [row] => Ok(Platform::read(row)?),
+            [] => Err(Problem::refused_launch("no administrator has registered this platform")),
+            _ => Err(Problem::refused_launch("the platform is registered several times, and does not say which it is")),
+        }
+    }
+
+    /// Begins a sign-in: remembers what is asked, and says where to ask it. `browser` is what this browser showed before.
+    ///
+    /// # Errors
+    /// When there are too many, or the database does not answer.
+    pub async fn begin_login(
+        &self,
+        platform: &Platform,
+        request: &LoginRequest,
+        browser: Option<&str>,
+    ) -> Result<LoginAnswer, Problem> {
+        // Accounts have numbers above zero.
+        if !self.house.0.throttle.pass(-platform.id, LOGINS, Instant::now()) {
+            return Err(Problem::too_many("too many people come from this platform at this moment"));
+        }
+        let (state, nonce) = (NewSecret::new(""), NewSecret::new(""));
+        // One word for several windows of a browser.
+        let known = browser.filter(|word| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit()));
+        let browser = known.map_or_else(|| NewSecret::new("").reveal().to_owned(), str::to_owned);
+        let settings = &platform.settings;
+        let mut address = Url::parse(&settings.login_url).map_err(|_| Problem::fault())?;
+        address
+            .query_pairs_mut()
+            .append_pair("scope", "openid")
+            .append_pair("response_type", "id_token")
+            .append_pair("response_mode", "form_post")
+            .append_pair("prompt", "none")
+            .append_pair("client_id", &settings.client_id)
+            .append_pair("redirect_uri", &self.house.launch_address())
+            .append_pair("login_hint", &request.hint)
+            .append_pair("state", state.reveal())
+            .append_pair("nonce", nonce.reveal());
+        if let Some(hint) = &request.message_hint {
+            address.query_pairs_mut().append_pair("lti_message_hint", hint);
+        }
+        let mut transaction = self.house.0.database.begin().await?;
+        transaction.execute("DELETE FROM platform_login WHERE expires_at < {now}", values![]).await?;
+        transaction
+            .execute(
+                "INSERT INTO platform_login (state, nonce, browser, platform, expires_at) VALUES (?, ?, ?, ?, {now} + ?)",
+                values![state.digest(), nonce.digest(), identity::digest(&browser), platform.id, LOGIN],
+            )
+            .await?;
+        transaction.commit().await?;
+        Ok(LoginAnswer { address: address.into(), browser })
+    }
+
+    /// Signs in whom a platform tells of, in answer to a sign-in that this browser began.
+    ///
+    /// # Errors
+    /// When the answer is none of ours, none of the platform's, or nobody may come by it.
+    pub async fn launch(&self, state: &str, token: &str, browser: Option<&str>) -> Result<Launched, Problem> {
+        let (platform, nonce) = self.use_login(state, browser).await?;
+        let message = self.house.0.lti.receive(&platform, token, &nonce).await?;
+        let Some(role) = message.role else {
+            return Err(Problem::refused_launch("the platform says that you neither learn nor teach in this course"));
+        };
+        let mut transaction = self.house.0.database.begin().await?;
+        let launched = arrive(&mut transaction, &platform, &message, role).await?;
+        transaction.commit().await?;
+        self.house.0.bell.strike();
+        Ok(launched)
+    }
+
+    /// Uses up a sign-in: which platform was asked, and the digest of the nonce.
+    async fn use_login(&self, state: &str, browser: Option<&str>) -> Result<(Platform, String), Problem> {
+        let unknown = || Problem::refused_launch("this sign-in is unknown, used, or was begun too long ago");
+        let mut transaction = self.house.0.database.read().await?;
+        let row = transaction
+            .row(
+                "SELECT platform_login.browser, platform_login.nonce, platform.id, platform.name, platform.settings
+                 FROM platform_login
+                 JOIN platform ON platform.id = platform_login.platform AND platform.disabled_at IS NULL
+                 WHERE platform_login.state = ? AND platform_login.expires_at > {now}",
+                values![identity::digest(state)],
+            )
+            .await?;
+        drop(transaction);
+        let row = row.ok_or_else(unknown)?;
+        let Some(browser) = browser else {
+            return Err(Problem::refused_launch("your browser did not send the cookie of this sign-in"));
+        };
+        // Begun in another browser: somebody wants to sign this one in as somebody else.
+        if row.text("browser")? != identity::digest(browser) {
+            return Err(Problem::refused_launch("this sign-in was begun in another browser"));
+        }
+        let mut transaction = self.house.0.database.begin().await?;
+        let used =
+            transaction.execute("DELETE FROM platform_login WHERE state = ?", values![identity::digest(state)]).await?;
+        transaction.commit().await?;
+        if used == 0 {
+            return Err(unknown());
+        }
+        Ok((Platform::read(&row)?, row.text("nonce")?))
+    }
+}
+
+/// Finds or makes the account, brings its role up to date, and says where it is to go.
+async fn arrive(
+    transaction: &mut Transaction,
+    platform: &Platform,
+    message: &Message,
+    role: Role,
+) -> Result<Launched, Problem> {
+    let arrival = &message.arrival;
+    let place = transaction
+        .row(
+            "SELECT platform_course.id, platform_course.course, course.slug FROM platform_course
+             JOIN course ON course.id = platform_course.course
+             WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?",
+            values![platform.id, &arrival.deployment, &arrival.context.id],
+        )
+        .await?;
+    let staff = role == Role::Staff;
+    let Some(place) = place else {
+        if !staff {
+            return Err(Problem::refused_launch("this course is not connected with the grading server yet"));
+        }
+        let account = account(transaction, platform, message).await?;
+        return choose(transaction, platform, arrival, account).await;
+    };
+    let account = account(transaction, platform, message).await?;
+    let (id, course, slug) = (place.int("id")?, place.int("course")?, place.text("slug")?);
+    if let Some(memberships) = &arrival.memberships {
+        transaction
+            .execute("UPDATE platform_course SET memberships = ? WHERE id = ?", values![memberships, id])
+            .await?;
+    }
+    enrol(transaction, platform.id, id, course, account, role).await?;
+    let Some(resource) = &arrival.resource else {
+        if !staff {
+            return Err(Problem::refused_launch("links are made by who teaches the course"));
+        }
+        return choose(transaction, platform, arrival, account).await;
+    };
+    let link = transaction
+        .row(
+            "SELECT platform_link.id, assignment.slug FROM platform_link
+             JOIN assignment ON assignment.id = platform_link.assignment
+             WHERE platform_link.platform_course = ? AND platform_link.resource = ?",
+            values![id, &resource.id],
+        )
+        .await?;
+    let link = match link {
+        Some(link) => Some((link.int("id")?, link.text("slug")?)),
+        None => named(transaction, id, course, arrival).await?,
+    };
+    match link {
+        Some((link, assignment)) => {
+            columns(transaction, link, arrival).await?;
+            if !staff {
+                score::arrived(transaction, link, account).await?;
+            }
+            let session = identity::begin_session(transaction, account).await?;
+            Ok(Launched { session, to: format!("/c/{slug}/a/{assignment}") })
+        }
+        None if staff => choose(transaction, platform, arrival, account).await,
+        None => Err(Problem::refused_launch("no assignment was chosen for this link yet")),
+    }
+}
+
+/// The assignment that a link names by itself: it was chosen by deep linking, or written by who made the link.
+async fn named(
+    transaction: &mut Transaction,
+    place: i64,
+    course: i64,
+    arrival: &Arrival,
+) -> Result<Option<(i64, String)>, DbError> {
+    let (Some(slug), Some(resource)) = (&arrival.assignment, &arrival.resource) else { return Ok(None) };
+    let found =
+        transaction.row("SELECT id FROM assignment WHERE course = ? AND slug = ?", values![course, slug]).await?;
+    let Some(found) = found else { return Ok(None) };
+    let link = make_link(transaction, place, &resource.id, found.int("id")?).await?;
+    Ok(Some((link, slug.clone())))
+}
+
+/// Makes a link lead to an assignment.
+pub(super) async fn make_link(
+    transaction: &mut Transaction,
+    place: i64,
+    resource: &str,
+    assignment: i64,
+) -> Result<i64, DbError> {
+    transaction
+        .one(
+            "INSERT INTO platform_link (platform_course, resource, assignment, created_at) VALUES (?, ?, ?, {now})
+             ON CONFLICT (platform_course, resource) DO UPDATE SET assignment = excluded.assignment RETURNING id",
+            values![place, resource, assignment],
+        )
+        .await?
+        .int("id")
+}
+
+/// Notes where scores of a link go, as the platform says today. A column that this service made stays.
+pub(super) async fn columns(transaction: &mut Transaction, link: i64, arrival: &Arrival) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "UPDATE platform_link SET line_item = coalesce(CAST(? AS TEXT), line_item), line_items = ? WHERE id = ?",
+            values![arrival.line_item.clone(), arrival.line_items.clone(), link],
+        )
+        .await?;
+    Ok(())
+}
+
+/// Signs staff in, and has them choose: a course, an assignment, or a link.
+async fn choose(
+    transaction: &mut Transaction,
+    platform: &Platform,
+    arrival: &Arrival,
+    account: i64,
+) -> Result<Launched, Problem> {
+    let secret = NewSecret::new("");
+    let text = serde_json::to_string(arrival).map_err(|_| Problem::fault())?;
+    transaction.execute("DELETE FROM platform_choice WHERE expires_at < {now}", values![]).await?;
+    transaction
+        .execute(
+            "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)",
+            values![secret.digest(), account, platform.id, text, CHOICE],
+        )
+        .await?;
+    // What is chosen may make a student's account that of staff.
+    if !identity::is_trusted(transaction, account).await? {
+        identity::end_all(transaction, account, true).await?;
+    }
+    let session = identity::begin_session(transaction, account).await?;
+    Ok(Launched { session, to: format!("/lti/choose/{}", secret.reveal()) })
+}
+
+async fn account(transaction: &mut Transaction, platform: &Platform, message: &Message) -> Result<i64, Problem> {
+    let person = Newcomer { subject: &message.subject, name: message.name.as_deref(), email: message.email.as_deref() };
+    let account = find_or_make(transaction, platform, person).await?;
+    let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
+    if row.maybe_int("disabled_at")?.is_some() {
+        return Err(Problem::refused_launch("your account here is shut"));
+    }
+    // Otherwise whoever runs a platform could do everything here.
+    if row.flag("is_admin")? {
+        return Err(Problem::refused_launch("you are an administrator here, and sign in here yourself"));
+    }
+    Ok(account)
+}
+
+/// Somebody as a platform tells of them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Newcomer<'a> {
+    pub(super) subject: &'a str,
+    pub(super) name: Option<&'a str>,
+    pub(super) email: Option<&'a str>,
+}
+
+/// The account of somebody, made when they are new; their name as the platform has it. Never one that is there already under the
+/// same name or address: these are words that people choose for themselves.
+pub(super) async fn find_or_make(
+    transaction: &mut Transaction,
+    platform: &Platform,
+    person: Newcomer<'_>,
+) -> Result<i64, DbError> {
+    let name = person.name.map(tidy).filter(|name| !name.is_empty());
+    let known = transaction
+        .row(
+            "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?",
+            values![&platform.settings.issuer, person.subject],
+        )
+        .await?;
+    if let Some(row) = known {
+        let account = row.int("account")?;
+        if let Some(name) = name {
+            transaction
+                .execute("UPDATE account SET name = ? WHERE id = ? AND name <> ?", values![&name, account, &name])
+                .await?;
+        }
+        return Ok(account);
+    }
+    let base = login_of(person.email.and_then(|email| email.split('@').next()).or(name.as_deref()).unwrap_or_default());
+    for number in 1.. {
+        let login = match number {
+            1 => base.clone(),
+            2..=9 => format!("{base}-{number}"),
+            _ => format!("{base}-{}", &crate::secret::random_hex()[..8]),
+        };
+        let made = transaction
+            .row(
+                "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
+                 ON CONFLICT (login) DO NOTHING RETURNING id",
+                values![&login, name.as_ref().unwrap_or(&login)],
+            )
+            .await?;
+        let Some(made) = made else { continue };
+        let account = made.int("id")?;
+        transaction
+            .execute(
+                "INSERT INTO platform_account (issuer, subject, account, created_at) VALUES (?, ?, ?, {now})",
+                values![&platform.settings.issuer, person.subject, account],
+            )
+            .await?;
+        return Ok(account);
+    }
+    Err(DbError::Other("no login is free".to_owned()))
+}
+
+/// A name as this service shows names.
+fn tidy(name: &str) -> String {
+    let plain: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    plain.trim().chars().take(200).collect::<String>().trim().to_owned()
+}
+
+/// A login from whatever somebody is called.
+fn login_of(word: &str) -> String {
+    let plain = |c: char| match c.to_ascii_lowercase() {
+        c if c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.') => Some(c),
+        c if c.is_whitespace() => Some('.'),
+        _ => None,
+    };
+    let login: String = word.chars().filter_map(plain).take(40).collect();
+    let login = login.trim_matches(['-', '.', '_']);
+    if login.is_empty() { "user".to_owned() } else { login.to_owned() }
+}
+
+/// Makes somebody a member by a platform's word, or changes what they are; what staff said here stays.
+pub(super) async fn enrol(
+    transaction: &mut Transaction,
+    platform: i64,
+    place: i64,
+    course: i64,
+    account: i64,
+    role: Role,
+) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
+             ON CONFLICT (platform_course, account) DO NOTHING",
+            values![place, account],
+        )
+        .await?;
+    let was = transaction
+        .row("SELECT role, platform FROM member WHERE course = ? AND account = ?", values![course, account])
+        .await?;
+    if let Some(was) = &was
+        && (was.maybe_int("platform")?.is_none() || was.text("role")? == role.name())
+    {
+        return Ok(());
+    }
+    // A link or session from before must not do more than it could.
+    if !identity::is_trusted(transaction, account).await? {
+        identity::end_all(transaction, account, role == Role::Staff).await?;
+    }
+    transaction
+        .execute(
+            "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
+             ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = excluded.platform",
+            values![course, account, role.name(), platform],
+        )
+        .await?;
+    let login = transaction.one("SELECT login FROM account WHERE id = ?", values![account]).await?.text("login")?;
+    let text = format!("{login} is {}, says a learning platform", role.name());
+    transaction
+        .execute(
+            "INSERT INTO event (happened_at, kind, actor, course, text) VALUES ({now}, 'member', ?, ?, ?)",
+            values![account, course, text],
+        )
+        .await?;
+    Ok(())
+}
+
+/// What staff has to choose, and for whom it is.
+pub(super) struct Pending {
+    pub(super) platform: Platform,
+    pub(super) arrival: Arrival,
+}
+
+/// What an account has to choose by this secret.
+pub(super) async fn pending(transaction: &mut Transaction, account: i64, secret: &str) -> Result<Pending, Problem> {
+    let row: Option<Row> = transaction
+        .row(
+            "SELECT platform.id, platform.name, platform.settings, platform_choice.arrival FROM platform_choice
+             JOIN platform ON platform.id = platform_choice.platform AND platform.disabled_at IS NULL
+             WHERE platform_choice.digest = ? AND platform_choice.account = ? AND platform_choice.expires_at > {now}",
+            values![identity::digest(secret), account],
+        )
+        .await?;
+    let Some(row) = row else { return Err(Problem::not_found("choice")) };
+    let arrival = serde_json::from_str(&row.text("arrival")?).map_err(|_| Problem::fault())?;
+    Ok(Pending { platform: Platform::read(&row)?, arrival })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logins_are_made_of_what_people_are_called() {
+        for (word, login) in [
+            ("Ada.Lovelace", "ada.lovelace"),
+            ("Ada Lovelace", "ada.lovelace"),
+            ("-x-", "x"),
+            ("\u{5d0}\u{5d3}\u{5d4}", "user"),
+            ("a'; DROP TABLE", "a.drop.table"),
+            ("", "user"),
+        ] {
+            assert_eq!(login_of(word), login, "{word}");
+            assert!(identity::check_slug("a login", &login_of(word)).is_ok());
+        }
+        assert_eq!(tidy(" A\nB\u{0} "), "A B");
+    }
+}

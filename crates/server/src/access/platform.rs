@@ -1,0 +1,304 @@
+//! Platforms, as administrators register them, and what staff sees and does of them.
+use super::{
+    Admin, House, Staff,
+    launch::{Newcomer, enrol, find_or_make},
+    view::{self, Deed},
+};
+use crate::{
+    db::{DbError, Row, Transaction},
+    lti::{self, Platform, PlatformWish, score},
+    problem::Problem,
+    values,
+};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use utoipa::ToSchema;
+
+/// What came of reading a roster.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ToSchema)]
+pub struct RosterRead {
+    /// Members that the platforms told of.
+    pub members: usize,
+    /// Members who left.
+    pub left: usize,
+}
+
+/// What a platform was told of somebody's work.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct ScoreInfo {
+    /// The platform.
+    pub platform: String,
+    /// Whose work.
+    pub login: String,
+    /// What it is to know.
+    #[schema(value_type = Object)]
+    pub score: Value,
+    /// When that became so, in milliseconds since 1970.
+    pub stamp: i64,
+    /// When it took it; nothing while it has not.
+    pub sent_at: Option<i64>,
+    /// Why it has not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<String>,
+}
+
+impl House {
+    /// Registers a platform, or changes it, by the word of whoever starts the server.
+    ///
+    /// # Errors
+    /// When something in it makes no sense.
+    pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
+        super::identity::check_slug("a platform's name", name)?;
+        wish.check(self.0.lti.over_http())?;
+        let mut transaction = self.0.database.begin().await?;
+        let platform = write(&mut transaction, name, wish).await?;
+        transaction.commit().await?;
+        Ok(platform)
+    }
+
+    /// The service's public keys.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn platform_keys(&self) -> Result<Value, Problem> {
+        Ok(lti::published(&self.0.database).await?)
+    }
+}
+
+async fn write(transaction: &mut Transaction, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
+    let taken = transaction
+        .row(
+            "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?",
+            values![&wish.issuer, &wish.client_id, name],
+        )
+        .await?;
+    if let Some(taken) = taken {
+        let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
+        return Err(Problem::conflict(detail, "change that one"));
+    }
+    // Accounts belong to an issuer's people: they must not become those of another.
+    let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
+    if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
+        return Err(Problem::conflict("another issuer is registered by this name", "give it another name"));
+    }
+    let text = serde_json::to_string(wish).map_err(|_| Problem::fault())?;
+    let row = transaction
+        .one(
+            "INSERT INTO platform (name, issuer, client, settings, created_at) VALUES (?, ?, ?, ?, {now})
+             ON CONFLICT (name) DO UPDATE SET client = excluded.client, settings = excluded.settings,
+                disabled_at = NULL
+             RETURNING id, name, settings",
+            values![name, &wish.issuer, &wish.client_id, text],
+        )
+        .await?;
+    Ok(Platform::read(&row)?)
+}
+
+impl Admin {
+    fn about<'a>(&self, text: &'a str) -> Deed<'a> {
+        let actor = self.account.id;
+        Deed { kind: "platform", actor, course: None, assignment: None, submission: None, text }
+    }
+
+    /// All platforms.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn platforms(&self) -> Result<Vec<Platform>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let rows = transaction
+            .rows("SELECT id, name, settings FROM platform WHERE disabled_at IS NULL ORDER BY name", values![])
+            .await?;
+        Ok(rows.iter().map(Platform::read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Registers a platform, or changes it.
+    ///
+    /// # Errors
+    /// When something in it makes no sense.
+    pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
+        super::identity::check_slug("a platform's name", name)?;
+        wish.check(self.house.0.lti.over_http())?;
+        let mut transaction = self.house.0.database.begin().await?;
+        let platform = write(&mut transaction, name, wish).await?;
+        let text = format!("{name}: {}, client {}", wish.issuer, wish.client_id);
+        view::note(&mut transaction, &self.about(&text)).await?;
+        transaction.commit().await?;
+        Ok(platform)
+    }
+
+    /// Shuts a platform: nobody comes from it any more, and nothing goes there. Accounts and courses stay.
+    ///
+    /// # Errors
+    /// When there is none of this name.
+    pub async fn shut_platform(&self, name: &str) -> Result<(), Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let shut = transaction
+            .execute("UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL", values![name])
+            .await?;
+        if shut == 0 {
+            return Err(Problem::not_found("platform"));
+        }
+        view::note(&mut transaction, &self.about(&format!("{name} is shut"))).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// Makes a new key, which signs from an hour on; the one before it is told of until the next.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn new_platform_key(&self) -> Result<(), Problem> {
+        lti::new_key(&self.house.0.database).await?;
+        let mut transaction = self.house.0.database.begin().await?;
+        view::note(&mut transaction, &self.about("a new key for learning platforms")).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+impl Staff {
+    /// Reads who is in the course from the platforms that it is connected with. Who is not told of any more leaves, unless staff
+    /// made them members; what they handed in stays.
+    ///
+    /// # Errors
+    /// When no platform tells, or one does not answer; then nothing of what it tells changes.
+    pub async fn read_roster(&self) -> Result<RosterRead, Problem> {
+        let house = &self.member().house;
+        let mut transaction = house.0.database.read().await?;
+        let places = transaction
+            .rows(
+                "SELECT platform_course.id AS place, platform_course.memberships, platform.id, platform.name,
+                    platform.settings
+                 FROM platform_course
+                 JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
+                 WHERE platform_course.course = ? AND platform_course.memberships IS NOT NULL
+                 ORDER BY platform_course.id",
+                values![self.member().course],
+            )
+            .await?;
+        drop(transaction);
+        if places.is_empty() {
+            let detail = "no learning platform tells who is in this course";
+            return Err(Problem::conflict(detail, "open an assignment from the platform once, as who teaches there"));
+        }
+        let mut read = RosterRead::default();
+        for row in &places {
+            let (place, platform) = (row.int("place")?, Platform::read(row)?);
+            let address = row.text("memberships")?;
+            let told = lti::fetch_roster(&house.0.lti.client, &house.0.database, &platform, &address).await;
+            let told = told.map_err(|fault| {
+                tracing::warn!(platform = platform.name, %fault, "a roster can't be read");
+                Problem::platform_failed(format!("{}: {fault}", platform.name))
+            })?;
+            let one = self.apply_roster(place, &platform, &told).await?;
+            read = RosterRead { members: read.members + one.members, left: read.left + one.left };
+        }
+        Ok(read)
+    }
+
+    async fn apply_roster(
+        &self,
+        place: i64,
+        platform: &Platform,
+        told: &[lti::RosterMember],
+    ) -> Result<RosterRead, Problem> {
+        let course = self.member().course;
+        let mut transaction = self.begin().await?;
+        let mut present = BTreeSet::new();
+        for person in told {
+            let Some(role) = person.role else { continue };
+            let newcomer =
+                Newcomer { subject: &person.subject, name: person.name.as_deref(), email: person.email.as_deref() };
+            let account = find_or_make(&mut transaction, platform, newcomer).await?;
+            let row =
+                transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
+            present.insert(account);
+            // Neither becomes more by a platform's word.
+            if row.flag("is_admin")? || row.maybe_int("disabled_at")?.is_some() {
+                continue;
+            }
+            enrol(&mut transaction, platform.id, place, course, account, role).await?;
+        }
+        let known = transaction
+            .rows("SELECT account FROM platform_member WHERE platform_course = ? ORDER BY account", values![place])
+            .await?;
+        let mut left = 0;
+        for row in &known {
+            let account = row.int("account")?;
+            if present.contains(&account) {
+                continue;
+            }
+            transaction
+                .execute(
+                    "DELETE FROM platform_member WHERE platform_course = ? AND account = ?",
+                    values![place, account],
+                )
+                .await?;
+            let gone = transaction
+                .execute(
+                    "DELETE FROM member WHERE course = ? AND account = ? AND platform = ?
+                        AND NOT EXISTS (SELECT 1 FROM platform_member
+                            JOIN platform_course ON platform_course.id = platform_member.platform_course
+                            WHERE platform_course.course = member.course AND platform_member.account = member.account)",
+                    values![course, account, platform.id],
+                )
+                .await?;
+            left += usize::from(gone > 0);
+        }
+        let members = present.len();
+        let text = format!("{members} members by {}, {left} left", platform.name);
+        view::note(&mut transaction, &self.deed("roster", None, &text)).await?;
+        transaction.commit().await?;
+        Ok(RosterRead { members, left })
+    }
+
+    /// What platforms were told of an assignment's scores.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn scores(&self, slug: &str) -> Result<Vec<ScoreInfo>, Problem> {
+        let mut transaction = self.member().house.0.database.read().await?;
+        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let rows = transaction
+            .rows(
+                "SELECT platform.name AS platform, account.login, platform_score.content, platform_score.stamp,
+                    platform_score.sent_at, platform_score.fault
+                 FROM platform_score
+                 JOIN platform_link ON platform_link.id = platform_score.link
+                 JOIN platform_course ON platform_course.id = platform_link.platform_course
+                 JOIN platform ON platform.id = platform_course.platform
+                 JOIN account ON account.id = platform_score.account
+                 WHERE platform_link.assignment = ? ORDER BY platform.name, account.login, platform_link.id",
+                values![assignment.id],
+            )
+            .await?;
+        let read = |row: &Row| {
+            Ok(ScoreInfo {
+                platform: row.text("platform")?,
+                login: row.text("login")?,
+                score: serde_json::from_str(&row.text("content")?).unwrap_or_default(),
+                stamp: row.int("stamp")?,
+                sent_at: row.maybe_int("sent_at")?,
+                fault: row.maybe_text("fault")?,
+            })
+        };
+        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Has all scores of an assignment sent once more, also those that platforms took; how many these are.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn send_scores(&self, slug: &str) -> Result<usize, Problem> {
+        let assignment = self.member().assignment(slug).await?;
+        let mut transaction = self.begin().await?;
+        let count = score::send_all(&mut transaction, assignment.id).await?;
+        let text = format!("{count} scores of {slug} are sent again");
+        view::note(&mut transaction, &self.deed("scores", Some(assignment.id), &text)).await?;
+        transaction.commit().await?;
+        self.member().house.0.bell.strike();
+        Ok(count)
+    }
+}

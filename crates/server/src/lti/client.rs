@@ -1,0 +1,260 @@
+//! Asking platforms: for tokens, and by these for their services. Answers are short, come soon, and lead nowhere else.
+use super::{Platform, keys};
+use crate::{
+    db::{Database, DbError},
+    secret,
+};
+use serde::Deserialize;
+use serde_json::json;
+use std::{
+    collections::HashMap,
+    fmt,
+    sync::{Mutex, PoisonError},
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+};
+use thiserror::Error;
+use ureq::Agent;
+use url::Url;
+
+/// What tokens are asked for (AGS 3.1, NRPS 2.1).
+pub(crate) mod scope {
+    pub(crate) const SCORE: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/score";
+    pub(crate) const LINE_ITEM: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/lineitem";
+    pub(crate) const MEMBERS: &str = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly";
+}
+
+/// How long a platform may take.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// The longest answer that is read.
+const ANSWER: u64 = 8 << 20;
+
+/// An assertion of ours is good for so long, in seconds.
+const ASSERTION: u64 = 300;
+
+/// Tokens are asked for anew so long before they end.
+const MARGIN: Duration = Duration::from_secs(30);
+
+/// The longest wait that a platform may ask for.
+const LONGEST_WAIT: Duration = Duration::from_secs(3600);
+
+/// Why a platform did not do what it was asked.
+#[derive(Debug, Clone, Error)]
+pub enum ServiceFault {
+    /// It is away, or has too much to do: it may be otherwise later.
+    #[error("it does not answer as it should: {why}")]
+    Away {
+        /// What it said, or what happened.
+        why: String,
+        /// When it wishes to be asked again.
+        after: Option<Duration>,
+    },
+    /// It does not want to.
+    #[error("it refuses: {0}")]
+    Refused(String),
+}
+
+impl ServiceFault {
+    fn away(why: impl fmt::Display) -> Self {
+        Self::Away { why: why.to_string(), after: None }
+    }
+}
+
+impl From<DbError> for ServiceFault {
+    fn from(error: DbError) -> Self {
+        Self::away(error)
+    }
+}
+
+/// What a platform answered.
+#[derive(Debug)]
+pub(super) struct Told {
+    pub(super) status: u16,
+    pub(super) body: Vec<u8>,
+    /// The header `Link`.
+    pub(super) link: Option<String>,
+    after: Option<Duration>,
+}
+
+impl Told {
+    /// The answer, if it is one of success.
+    pub(super) fn successful(self) -> Result<Self, ServiceFault> {
+        // The beginning of what it says, for people: one line.
+        let said: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
+        let said: String = said.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let text = format!("{} {said}", self.status);
+        match self.status {
+            200..=299 => Ok(self),
+            // Redirections are not followed: what is asked is said by who registered the platform.
+            300..=399 => Err(ServiceFault::Refused(format!("{} leads elsewhere", self.status))),
+            408 | 425 | 429 | 500.. => Err(ServiceFault::Away { why: text, after: self.after }),
+            _ => Err(ServiceFault::Refused(text)),
+        }
+    }
+}
+
+/// A request to a service.
+#[derive(Debug, Clone)]
+pub(super) struct Ask {
+    pub(super) address: String,
+    pub(super) accept: &'static str,
+    /// A body and its type: then it is a POST.
+    pub(super) body: Option<(&'static str, Vec<u8>)>,
+}
+
+/// Tokens by platform and scope, each with its end.
+type Tokens = HashMap<(i64, String), (String, Instant)>;
+
+/// Asks platforms.
+pub struct Client {
+    agent: Agent,
+    over_http: bool,
+    tokens: Mutex<Tokens>,
+}
+
+impl fmt::Debug for Client {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Client(...)")
+    }
+}
+
+#[derive(Deserialize)]
+struct Token {
+    access_token: String,
+    #[serde(default)]
+    expires_in: Option<u64>,
+}
+
+impl Client {
+    pub(super) fn new(over_http: bool) -> Self {
+        let agent = Agent::config_builder()
+            .http_status_as_error(false)
+            .max_redirects(0)
+            .https_only(!over_http)
+            .timeout_global(Some(PATIENCE))
+            .user_agent(concat!("fosssim-server/", env!("CARGO_PKG_VERSION")))
+            .build()
+            .new_agent();
+        Self { agent, over_http, tokens: Mutex::default() }
+    }
+
+    pub(super) fn over_http(&self) -> bool {
+        self.over_http
+    }
+
+    /// Reads an address of a platform.
+    pub(super) async fn get(
+        &self,
+        platform: &Platform,
+        address: &str,
+        token: Option<&str>,
+        accept: &'static str,
+    ) -> Result<Told, ServiceFault> {
+        self.send(platform, &Ask { address: address.to_owned(), accept, body: None }, token).await
+    }
+
+    async fn send(&self, platform: &Platform, ask: &Ask, token: Option<&str>) -> Result<Told, ServiceFault> {
+        let Some(url) = platform.service(&ask.address, self.over_http) else {
+            let host = Url::parse(&ask.address).ok().and_then(|url| url.host_str().map(str::to_owned));
+            let host = host.unwrap_or_else(|| "somewhere else".to_owned());
+            return Err(ServiceFault::Refused(format!(
+                "its service is on {host}, which is none of the platform's hosts: an administrator may add it"
+            )));
+        };
+        let (agent, ask) = (self.agent.clone(), ask.clone());
+        let authorization = token.map(|token| format!("Bearer {token}"));
+        let asked = tokio::task::spawn_blocking(move || blocking(&agent, &url, &ask, authorization.as_deref())).await;
+        asked.map_err(ServiceFault::away)?
+    }
+
+    /// Asks a service, with a token for this scope; once more with a new one when the platform does not know it any more.
+    pub(super) async fn call(
+        &self,
+        database: &Database,
+        platform: &Platform,
+        scope: &str,
+        ask: &Ask,
+    ) -> Result<Told, ServiceFault> {
+        let token = self.token(database, platform, scope).await?;
+        let told = self.send(platform, ask, Some(&token)).await?;
+        if told.status != 401 {
+            return told.successful();
+        }
+        self.tokens.lock().unwrap_or_else(PoisonError::into_inner).remove(&(platform.id, scope.to_owned()));
+        let token = self.token(database, platform, scope).await?;
+        self.send(platform, ask, Some(&token)).await?.successful()
+    }
+
+    /// A token for a scope, by an assertion that this service signed (SEC 4.1, RFC 7523).
+    async fn token(&self, database: &Database, platform: &Platform, scope: &str) -> Result<String, ServiceFault> {
+        let key = (platform.id, scope.to_owned());
+        if let Some((token, ends)) = self.tokens.lock().unwrap_or_else(PoisonError::into_inner).get(&key)
+            && *ends > Instant::now()
+        {
+            return Ok(token.clone());
+        }
+        let settings = &platform.settings;
+        let now = now();
+        let assertion = keys::signing(database).await?.sign(&json!({
+            "iss": settings.client_id,
+            "sub": settings.client_id,
+            "aud": settings.audience.as_ref().unwrap_or(&settings.token_url),
+            "iat": now,
+            "exp": now + ASSERTION,
+            "jti": secret::random_hex(),
+        }))?;
+        let body = url::form_urlencoded::Serializer::new(String::new())
+            .append_pair("grant_type", "client_credentials")
+            .append_pair("client_assertion_type", "urn:ietf:params:oauth:client-assertion-type:jwt-bearer")
+            .append_pair("client_assertion", &assertion)
+            .append_pair("scope", scope)
+            .finish();
+        let ask = Ask {
+            address: settings.token_url.clone(),
+            accept: "application/json",
+            body: Some(("application/x-www-form-urlencoded", body.into_bytes())),
+        };
+        let told = self.send(platform, &ask, None).await?.successful()?;
+        let token: Token = serde_json::from_slice(&told.body)
+            .map_err(|error| ServiceFault::Refused(format!("its token can't be read: {error}")))?;
+        if token.access_token.is_empty() || token.access_token.bytes().any(|c| !c.is_ascii_graphic()) {
+            return Err(ServiceFault::Refused("its token is none".to_owned()));
+        }
+        let lasts = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(MARGIN);
+        let kept = (token.access_token.clone(), Instant::now() + lasts);
+        self.tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(key, kept);
+        Ok(token.access_token)
+    }
+}
+
+/// Seconds since 1970.
+pub(super) fn now() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs())
+}
+
+fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) -> Result<Told, ServiceFault> {
+    let answer = match &ask.body {
+        None => {
+            let mut request = agent.get(url.as_str()).header("Accept", ask.accept);
+            if let Some(authorization) = authorization {
+                request = request.header("Authorization", authorization);
+            }
+            request.call()
+        }
+        Some((kind, body)) => {
+            let mut request = agent.post(url.as_str()).header("Accept", ask.accept).header("Content-Type", *kind);
+            if let Some(authorization) = authorization {
+                request = request.header("Authorization", authorization);
+            }
+            request.send(body)
+        }
+    };
+    let mut answer = answer.map_err(ServiceFault::away)?;
+    let header = |name: &str| answer.headers().get(name).and_then(|value| value.to_str().ok()).map(str::to_owned);
+    let link = header("link");
+    // In seconds; as a date it is passed over, and the queue's own patience holds.
+    let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
+    let status = answer.status().as_u16();
+    let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(ServiceFault::away)?;
+    Ok(Told { status, body, link, after: after.map(|after| after.min(LONGEST_WAIT)) })
+}

@@ -1,0 +1,116 @@
+//! The service's own keys. The first is made when somebody asks for it; a new one signs after an hour, when platforms had the time
+//! to read of it, and the one before it is told of until the next.
+use super::crypto;
+use crate::{
+    db::{Database, DbError, Row, Transaction},
+    secret, values,
+};
+use base64::{Engine as _, engine::general_purpose::URL_SAFE_NO_PAD};
+use rsa::{RsaPrivateKey, pkcs1::EncodeRsaPrivateKey, rand_core::OsRng, traits::PublicKeyParts};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// Bits of a key; what every platform takes.
+const BITS: usize = 2048;
+
+/// A new key is only told of for so long.
+const FIRST_TOLD: i64 = 3600 * 1000;
+
+/// A key of the service.
+pub(super) struct Key {
+    kid: String,
+    der: Vec<u8>,
+}
+
+impl Key {
+    /// Signs claims.
+    pub(super) fn sign(&self, claims: &impl Serialize) -> Result<String, DbError> {
+        crypto::sign(claims, &self.kid, &self.der).map_err(|error| DbError::Other(format!("a token: {error}")))
+    }
+}
+
+/// Makes a key, which is to sign from an hour on, or at once when it is the first.
+///
+/// # Errors
+/// What the database says.
+pub async fn new_key(database: &Database) -> Result<(), DbError> {
+    let made = tokio::task::spawn_blocking(make).await.map_err(|error| DbError::Other(error.to_string()))?;
+    let (private, modulus, exponent) = made?;
+    let mut transaction = database.begin().await?;
+    transaction
+        .execute(
+            "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})",
+            values![secret::random_hex(), private, modulus, exponent],
+        )
+        .await?;
+    // The new one, and the one that signs so far.
+    transaction
+        .execute(
+            "UPDATE platform_key SET retired_at = {now} WHERE retired_at IS NULL
+                AND id NOT IN (SELECT id FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC LIMIT 2)",
+            values![],
+        )
+        .await?;
+    transaction.commit().await
+}
+
+fn make() -> Result<(String, String, String), DbError> {
+    let other = |error: String| DbError::Other(format!("no key can be made: {error}"));
+    let key = RsaPrivateKey::new(&mut OsRng, BITS).map_err(|error| other(error.to_string()))?;
+    let der = key.to_pkcs1_der().map_err(|error| other(error.to_string()))?;
+    let text = |bytes: &[u8]| URL_SAFE_NO_PAD.encode(bytes);
+    Ok((text(der.as_bytes()), text(&key.n().to_bytes_be()), text(&key.e().to_bytes_be())))
+}
+
+async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
+    transaction
+        .rows(
+            "SELECT kid, private_key, modulus, exponent,
+                CAST(CASE WHEN created_at <= {now} - ? THEN 1 ELSE 0 END AS {int}) AS is_known
+             FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC",
+            values![FIRST_TOLD],
+        )
+        .await
+}
+
+/// All keys, the newest first; the first is made when there is none.
+async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
+    let found = rows(&mut database.read().await?).await?;
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    new_key(database).await?;
+    rows(&mut database.read().await?).await
+}
+
+/// The key that signs: the newest that platforms had the time to read of, or the oldest.
+pub(super) async fn signing(database: &Database) -> Result<Key, DbError> {
+    let rows = all(database).await?;
+    let mut known = None;
+    for row in &rows {
+        if row.flag("is_known")? {
+            known = Some(row);
+            break;
+        }
+    }
+    let row = known.or(rows.last()).ok_or_else(|| DbError::Other("there is no key".to_owned()))?;
+    let der = URL_SAFE_NO_PAD
+        .decode(row.text("private_key")?)
+        .map_err(|error| DbError::Other(format!("the key is damaged: {error}")))?;
+    Ok(Key { kid: row.text("kid")?, der })
+}
+
+/// What the world may know of the keys: a JSON Web Key Set (RFC 7517).
+///
+/// # Errors
+/// What the database says.
+pub async fn published(database: &Database) -> Result<Value, DbError> {
+    let mut keys = Vec::new();
+    for row in &all(database).await? {
+        keys.push(json!({
+            "kty": "RSA", "alg": "RS256", "use": "sig",
+            "kid": row.text("kid")?, "n": row.text("modulus")?, "e": row.text("exponent")?,
+        }));
+    }
+    Ok(json!({ "keys": keys }))
+}

@@ -1,0 +1,370 @@
+//! What a platform says about somebody who comes from it (LTI 5), and what of it is believed.
+use super::{
+    Platform,
+    client::{now, scope},
+    crypto::{self, LEEWAY, PublicKey},
+    keys,
+};
+use crate::db::{Database, DbError};
+use jsonwebtoken::{Algorithm, errors::ErrorKind};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+use thiserror::Error;
+
+/// A message is looked at for so long after it was made, in seconds.
+const OLDEST: u64 = 3600;
+
+/// Why a message is not believed.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Refused {
+    /// It is no signed message, or signed by another algorithm than RS256.
+    #[error("the message is not signed by RS256 with a named key")]
+    Form,
+    /// The platform has no key of this name.
+    #[error("the platform publishes no key of the name that the message is signed with")]
+    UnknownKey,
+    /// The platform's keys can't be had.
+    #[error("the platform's keys can't be read now")]
+    NoKeys,
+    /// The signature is not the platform's.
+    #[error("the message was not signed by the platform")]
+    Signature,
+    /// It is too old, or of the future.
+    #[error("the message is too old, or a clock is wrong")]
+    Time,
+    /// It is about something else than was asked for.
+    #[error("the message is not for this sign-in: {0} is another one")]
+    Foreign(&'static str),
+    /// It comes from a deployment that nobody named.
+    #[error("deployment {0} is not among those that an administrator named")]
+    Deployment(String),
+    /// Something is missing, or not understood.
+    #[error("the message is not understood: {0}")]
+    Content(String),
+}
+
+/// What somebody is in a platform's course.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Role {
+    /// A learner.
+    Student,
+    /// An instructor, a teaching assistant, or an administrator.
+    Staff,
+}
+
+impl Role {
+    /// As it stands in a course's list of members.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Student => "student",
+            Self::Staff => "staff",
+        }
+    }
+}
+
+/// Who it is and where they come from.
+#[derive(Debug, Clone)]
+pub struct Message {
+    /// The platform's name for the person, which never changes.
+    pub subject: String,
+    /// What they are in the course there; nothing for parents, guests and others.
+    pub role: Option<Role>,
+    /// What they are called, where the platform tells.
+    pub name: Option<String>,
+    /// Their address, where the platform tells; used for a login's name only.
+    pub email: Option<String>,
+    /// Where they come from.
+    pub arrival: Arrival,
+}
+
+/// Where somebody comes from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Arrival {
+    /// The deployment.
+    pub deployment: String,
+    /// The course there.
+    pub context: Context,
+    /// The link, unless one is to be made.
+    pub resource: Option<Resource>,
+    /// The assignment that the link names.
+    pub assignment: Option<String>,
+    /// The column of the grade book that belongs to the link, when scores may be sent there.
+    pub line_item: Option<String>,
+    /// Where columns can be made, when they may.
+    pub line_items: Option<String>,
+    /// Where the platform tells who is in its course.
+    pub memberships: Option<String>,
+    /// A link is to be chosen.
+    pub deep_linking: Option<DeepLinking>,
+}
+
+/// A course of a platform.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Context {
+    /// Its name for programs.
+    pub id: String,
+    /// Its name for people.
+    #[serde(default)]
+    pub title: Option<String>,
+    /// Its short name for people.
+    #[serde(default)]
+    pub label: Option<String>,
+}
+
+/// A link in a platform's course.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Resource {
+    /// Its name for programs.
+    pub id: String,
+    /// Its name for people.
+    #[serde(default)]
+    pub title: Option<String>,
+}
+
+/// What a platform wants to know when a link is to be chosen (DL 4.4.1).
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DeepLinking {
+    /// Where the answer goes.
+    pub deep_link_return_url: String,
+    /// What may be chosen.
+    #[serde(default)]
+    pub accept_types: Vec<String>,
+    /// Sent back as it is.
+    #[serde(default)]
+    pub data: Option<String>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+enum Audience {
+    One(String),
+    Many(Vec<String>),
+}
+
+#[derive(Debug, Clone, Deserialize)]
+struct Endpoint {
+    #[serde(default)]
+    scope: Vec<String>,
+    lineitem: Option<String>,
+    lineitems: Option<String>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+struct Names {
+    context_memberships_url: String,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+struct Claims {
+    sub: String,
+    aud: Audience,
+    azp: Option<String>,
+    iat: u64,
+    nonce: String,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti/claim/message_type")]
+    message_type: String,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti/claim/version")]
+    version: String,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti/claim/deployment_id")]
+    deployment: String,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti/claim/roles", default)]
+    roles: Vec<String>,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti/claim/context")]
+    context: Option<Context>,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti/claim/resource_link")]
+    resource: Option<Resource>,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti/claim/custom", default)]
+    custom: Map<String, Value>,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint")]
+    endpoint: Option<Endpoint>,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti-nrps/claim/namesroleservice")]
+    names: Option<Names>,
+    #[serde(rename = "https://purl.imsglobal.org/spec/lti-dl/claim/deep_linking_settings")]
+    deep_linking: Option<DeepLinking>,
+    name: Option<String>,
+    given_name: Option<String>,
+    family_name: Option<String>,
+    email: Option<String>,
+}
+
+/// The name of the key that a message says it is signed with.
+pub(super) fn key_of(token: &str) -> Result<String, Refused> {
+    let header = jsonwebtoken::decode_header(token).map_err(|_| Refused::Form)?;
+    if header.alg != Algorithm::RS256 {
+        return Err(Refused::Form);
+    }
+    header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Refused::Form)
+}
+
+/// What a message says that this key signed; `nonce` is the digest of the one that was sent.
+pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &str) -> Result<Message, Refused> {
+    let settings = &platform.settings;
+    let claims: Claims =
+        crypto::verify(token, key, &settings.issuer, &settings.client_id).map_err(|error| match error.kind() {
+            ErrorKind::InvalidSignature => Refused::Signature,
+            ErrorKind::ExpiredSignature | ErrorKind::ImmatureSignature => Refused::Time,
+            ErrorKind::InvalidIssuer => Refused::Foreign("the issuer"),
+            ErrorKind::InvalidAudience => Refused::Foreign("the audience"),
+            ErrorKind::InvalidAlgorithm | ErrorKind::InvalidToken | ErrorKind::InvalidAlgorithmName => Refused::Form,
+            ErrorKind::MissingRequiredClaim(name) => Refused::Content(format!("{name} is missing")),
+            _ => Refused::Content(error.to_string()),
+        })?;
+    // SEC 5.1.3, 3 to 5: of several audiences, and where it is said at all, the authorized party is this service.
+    let several = matches!(&claims.aud, Audience::Many(all) if all.len() > 1);
+    if let Audience::One(audience) = &claims.aud
+        && *audience != settings.client_id
+    {
+        return Err(Refused::Foreign("the audience"));
+    }
+    if (several && claims.azp.is_none()) || claims.azp.as_ref().is_some_and(|azp| *azp != settings.client_id) {
+        return Err(Refused::Foreign("the authorized party"));
+    }
+    let now = now();
+    if claims.iat > now + LEEWAY || claims.iat + OLDEST + LEEWAY < now {
+        return Err(Refused::Time);
+    }
+    if crate::store::Digest::of(claims.nonce.as_bytes()).as_str() != nonce {
+        return Err(Refused::Foreign("the nonce"));
+    }
+    if claims.version != "1.3.0" {
+        return Err(Refused::Content("it is of another version of LTI than 1.3.0".to_owned()));
+    }
+    if !settings.deployments.contains(&claims.deployment) {
+        return Err(Refused::Deployment(claims.deployment.chars().take(255).collect()));
+    }
+    if claims.sub.is_empty() || claims.sub.len() > 255 {
+        return Err(Refused::Content("sub is 1 to 255 characters long".to_owned()));
+    }
+    let missing = |what: &str| Refused::Content(format!("{what} is missing"));
+    let (resource, deep_linking) = match claims.message_type.as_str() {
+        "LtiResourceLinkRequest" => (Some(claims.resource.ok_or_else(|| missing("resource_link"))?), None),
+        "LtiDeepLinkingRequest" => {
+            let wanted = claims.deep_linking.ok_or_else(|| missing("deep_linking_settings"))?;
+            if !wanted.accept_types.iter().any(|kind| kind == "ltiResourceLink") {
+                return Err(Refused::Content("no link to a resource may be chosen".to_owned()));
+            }
+            (None, Some(wanted))
+        }
+        _ => return Err(Refused::Content("it is of another type than this service knows".to_owned())),
+    };
+    let context = claims.context.ok_or_else(|| missing("context"))?;
+    let is_name = |text: &str| (1..=255).contains(&text.len());
+    if !is_name(&context.id) || resource.as_ref().is_some_and(|resource| !is_name(&resource.id)) {
+        return Err(Refused::Content("the names of courses and links are 1 to 255 characters long".to_owned()));
+    }
+    let endpoint = claims.endpoint.unwrap_or(Endpoint { scope: Vec::new(), lineitem: None, lineitems: None });
+    let may = |wanted: &str| endpoint.scope.iter().any(|scope| scope == wanted);
+    let scores = may(scope::SCORE);
+    let columns = scores && may(scope::LINE_ITEM);
+    let spoken = [claims.given_name, claims.family_name].into_iter().flatten().collect::<Vec<_>>().join(" ");
+    Ok(Message {
+        subject: claims.sub,
+        role: role_of(&claims.roles),
+        name: claims.name.or(Some(spoken)).filter(|name| !name.trim().is_empty()),
+        email: claims.email,
+        arrival: Arrival {
+            deployment: claims.deployment,
+            context,
+            resource,
+            assignment: claims.custom.get("assignment").and_then(Value::as_str).map(str::to_owned),
+            line_item: endpoint.lineitem.filter(|_| scores),
+            line_items: endpoint.lineitems.filter(|_| columns),
+            memberships: claims.names.map(|names| names.context_memberships_url),
+            deep_linking,
+        },
+    })
+}
+
+/// What somebody is in the course by the platform's roles (LTI A.2.3). What they are in the institution or system says nothing
+/// of the course, unless they administer all of it and nothing else is said.
+pub(crate) fn role_of(roles: &[String]) -> Option<Role> {
+    const COURSE: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
+    // The simple names are deprecated, and still sent.
+    let in_course = |role: &str| -> Option<String> {
+        let rest = role.strip_prefix(COURSE)?;
+        // A principal role, or a part of one: #Instructor, /Instructor#TeachingAssistant.
+        match rest.strip_prefix('/') {
+            Some(part) => part.split('#').next().map(str::to_owned),
+            None => rest.strip_prefix('#').map(str::to_owned),
+        }
+    };
+    let named: Vec<String> =
+        roles.iter().filter_map(|role| if role.contains('/') { in_course(role) } else { Some(role.clone()) }).collect();
+    let is = |name: &str| named.iter().any(|role| role == name);
+    if is("Instructor") || is("Administrator") || is("ContentDeveloper") {
+        return Some(Role::Staff);
+    }
+    if is("Learner") {
+        return Some(Role::Student);
+    }
+    let administers = |role: &String| {
+        ["institution/person", "system/person"]
+            .iter()
+            .any(|place| *role == format!("http://purl.imsglobal.org/vocab/lis/v2/{place}#Administrator"))
+    };
+    (named.is_empty() && roles.iter().any(administers)).then_some(Role::Staff)
+}
+
+/// The answer to who asked for a link to be chosen: one link to an assignment (DL 4.5), as a signed token.
+///
+/// # Errors
+/// What the database says.
+pub async fn deep_linking_response(
+    database: &Database,
+    platform: &Platform,
+    arrival: &Arrival,
+    launch: &str,
+    (slug, title): (&str, &str),
+) -> Result<String, DbError> {
+    let now = now();
+    let mut claims = json!({
+        "iss": platform.settings.client_id,
+        "aud": [platform.settings.issuer],
+        "iat": now,
+        "exp": now + 300,
+        "nonce": crate::secret::random_hex(),
+        "https://purl.imsglobal.org/spec/lti/claim/message_type": "LtiDeepLinkingResponse",
+        "https://purl.imsglobal.org/spec/lti/claim/version": "1.3.0",
+        "https://purl.imsglobal.org/spec/lti/claim/deployment_id": arrival.deployment,
+        "https://purl.imsglobal.org/spec/lti-dl/claim/content_items": [{
+            "type": "ltiResourceLink",
+            "title": title,
+            "url": launch,
+            "custom": {"assignment": slug},
+            "window": {"targetName": "_blank"},
+            "lineItem": {"scoreMaximum": 100, "label": title, "resourceId": slug},
+        }],
+    });
+    if let Some(data) = arrival.deep_linking.as_ref().and_then(|wanted| wanted.data.as_ref()) {
+        claims["https://purl.imsglobal.org/spec/lti-dl/claim/data"] = json!(data);
+    }
+    keys::signing(database).await?.sign(&claims)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roles_in_the_course_decide() {
+        const MEMBER: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
+        const PERSON: &str = "http://purl.imsglobal.org/vocab/lis/v2/institution/person";
+        let role = |roles: &[String]| role_of(roles);
+        assert_eq!(role(&[format!("{MEMBER}#Learner")]), Some(Role::Student));
+        assert_eq!(role(&["Learner".to_owned()]), Some(Role::Student));
+        assert_eq!(role(&[format!("{MEMBER}#Instructor"), format!("{MEMBER}#Learner")]), Some(Role::Staff));
+        assert_eq!(role(&[format!("{MEMBER}/Instructor#TeachingAssistant")]), Some(Role::Staff));
+        assert_eq!(role(&[format!("{MEMBER}#Administrator")]), Some(Role::Staff));
+        // Teachers of the institution may learn something, too, and administrators take part as what they are here.
+        assert_eq!(role(&[format!("{PERSON}#Instructor"), format!("{MEMBER}#Learner")]), Some(Role::Student));
+        assert_eq!(role(&[format!("{PERSON}#Administrator"), format!("{MEMBER}#Learner")]), Some(Role::Student));
+        assert_eq!(role(&[format!("{PERSON}#Administrator")]), Some(Role::Staff));
+        for other in [format!("{MEMBER}#Mentor"), format!("{PERSON}#Student"), format!("{PERSON}#Guest"), String::new()]
+        {
+            assert_eq!(role(std::slice::from_ref(&other)), None, "{other}");
+        }
+        assert_eq!(role(&[]), None);
+        assert_eq!(role(&["https://evil.example/membership#Instructor".to_owned()]), None);
+    }
+}

@@ -1,0 +1,59 @@
+//! Learning platforms, by LTI 1.3 with its three services ("LTI Advantage"): people come from a platform's course to an
+//! assignment, a roster is read, and scores go back. This room knows the platforms' words: messages, keys, tokens, services. Who
+//! may do what by them is `access`'s to say.
+//!
+//! Written against the specifications of 1EdTech: LTI Core 1.3 ("LTI"), Security Framework 1.0 ("SEC"), Deep Linking 2.0 ("DL"),
+//! Names and Role Provisioning Services 2.0 ("NRPS"), and Assignment and Grade Services 2.0 ("AGS").
+
+mod client;
+mod crypto;
+mod keys;
+mod message;
+mod platform;
+mod roster;
+pub(crate) mod score;
+mod sender;
+mod trust;
+
+pub use client::{Client, ServiceFault};
+pub use keys::{new_key, published};
+pub use message::{Arrival, Context, DeepLinking, Message, Refused, Resource, Role, deep_linking_response};
+pub use platform::{Platform, PlatformWish};
+pub use roster::{RosterMember, fetch as fetch_roster};
+pub use sender::run as send_scores;
+
+pub(crate) use client::scope;
+
+use trust::Trust;
+
+/// What speaking with platforms takes.
+#[derive(Debug)]
+pub struct Lti {
+    /// Asks platforms for tokens and services.
+    pub client: Client,
+    trust: Trust,
+}
+
+impl Lti {
+    /// With `over_http` platforms may be reached without TLS: for trials on one machine.
+    #[must_use]
+    pub fn new(over_http: bool) -> Self {
+        Self { client: Client::new(over_http), trust: Trust::default() }
+    }
+
+    /// Whether platforms may be reached, and the service used by them, without TLS.
+    #[must_use]
+    pub fn over_http(&self) -> bool {
+        self.client.over_http()
+    }
+
+    /// Reads what a platform says about somebody who comes from it, and checks all of it (SEC 5.1.3).
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Refused> {
+        let kid = message::key_of(token)?;
+        let key = self.trust.key(&self.client, platform, &kid).await?;
+        message::read(platform, token, &key, nonce)
+    }
+}

@@ -1,0 +1,191 @@
+//! A platform as an administrator registers it.
+use crate::{
+    db::{DbError, Row},
+    problem::Problem,
+};
+use serde::{Deserialize, Serialize};
+use url::Url;
+use utoipa::ToSchema;
+
+/// What a platform says about itself: all of it stands on its page for tools.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlatformWish {
+    /// The issuer of its messages ("platform ID").
+    pub issuer: String,
+    /// What it calls this service ("client ID").
+    pub client_id: String,
+    /// Where it signs people in ("authentication request URL").
+    pub login_url: String,
+    /// Where it gives tokens for its services ("access token URL").
+    pub token_url: String,
+    /// Where its public keys are ("public keyset URL").
+    pub keys_url: String,
+    /// Whom tokens are asked of, where that is not the address for tokens.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub audience: Option<String>,
+    /// The deployments that people may come from. A new one is told by its number when somebody tries.
+    pub deployments: Vec<String>,
+    /// Further hosts on which its services may be, beside those of the addresses above.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hosts: Vec<String>,
+}
+
+/// A platform.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Platform {
+    /// Its number here.
+    #[serde(skip)]
+    pub(crate) id: i64,
+    /// What it is called here.
+    pub name: String,
+    /// What it says about itself.
+    #[serde(flatten)]
+    pub settings: PlatformWish,
+}
+
+/// An address that may be asked: by HTTPS, of a host, with nothing hidden in it.
+pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
+    let url = Url::parse(text).ok()?;
+    let secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
+    let plain = url.username().is_empty() && url.password().is_none() && url.fragment().is_none();
+    (secure && plain && url.has_host() && text.len() <= 2000).then_some(url)
+}
+
+/// Host and port, as it stands in an origin.
+fn place(url: &Url) -> String {
+    match (url.host_str(), url.port()) {
+        (Some(host), Some(port)) => format!("{host}:{port}"),
+        (host, _) => host.unwrap_or_default().to_owned(),
+    }
+}
+
+impl PlatformWish {
+    /// Whether it makes sense.
+    ///
+    /// # Errors
+    /// What does not.
+    pub fn check(&self, over_http: bool) -> Result<(), Problem> {
+        let is_word = |text: &str| (1..=255).contains(&text.len()) && !text.chars().any(char::is_control);
+        for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
+            if !is_word(text) {
+                return Err(Problem::invalid(format!("{name} is 1 to 255 characters long")));
+            }
+        }
+        for (name, text) in
+            [("login_url", &self.login_url), ("token_url", &self.token_url), ("keys_url", &self.keys_url)]
+        {
+            if address(text, over_http).is_none() {
+                return Err(Problem::invalid(format!("{name} is an address that begins with https://")));
+            }
+        }
+        if self.deployments.is_empty() || self.deployments.len() > 1000 || !self.deployments.iter().all(|d| is_word(d))
+        {
+            return Err(Problem::invalid("deployments is a list of their numbers, with at least one"));
+        }
+        if self.audience.as_deref().is_some_and(|audience| !is_word(audience)) {
+            return Err(Problem::invalid("audience is 1 to 255 characters long"));
+        }
+        let is_host = |host: &String| Url::parse(&format!("https://{host}/")).is_ok_and(|url| place(&url) == *host);
+        if self.hosts.len() > 50 || !self.hosts.iter().all(is_host) {
+            return Err(Problem::invalid("hosts is a list of host names, such as lms.example.org"));
+        }
+        Ok(())
+    }
+}
+
+impl Platform {
+    pub(crate) fn read(row: &Row) -> Result<Self, DbError> {
+        let settings = serde_json::from_str(&row.text("settings")?)
+            .map_err(|error| DbError::Other(format!("the settings of a platform can't be read: {error}")))?;
+        Ok(Self { id: row.int("id")?, name: row.text("name")?, settings })
+    }
+
+    /// The hosts that its services may be on.
+    fn places(&self, over_http: bool) -> Vec<String> {
+        let settings = &self.settings;
+        let own = [&settings.login_url, &settings.token_url, &settings.keys_url, &settings.issuer];
+        let own = own.into_iter().filter_map(|text| address(text, over_http)).map(|url| place(&url));
+        own.chain(settings.hosts.iter().cloned()).collect()
+    }
+
+    /// An address of one of its services. A message may name any; this service asks hosts alone that an administrator named, so
+    /// that nobody makes it ask others, or show them its token.
+    pub(crate) fn service(&self, text: &str, over_http: bool) -> Option<Url> {
+        let url = address(text, over_http)?;
+        self.places(over_http).contains(&place(&url)).then_some(url)
+    }
+
+    /// The origins that may show a page of this service in a frame.
+    #[must_use]
+    pub fn origins(&self, over_http: bool) -> String {
+        let scheme = if over_http { "http://" } else { "https://" };
+        let mut places: Vec<String> = self.places(over_http).iter().map(|place| format!("{scheme}{place}")).collect();
+        places.sort();
+        places.dedup();
+        places.join(" ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wish() -> PlatformWish {
+        PlatformWish {
+            issuer: "https://lms.example.org".to_owned(),
+            client_id: "client".to_owned(),
+            login_url: "https://lms.example.org/auth".to_owned(),
+            token_url: "https://tokens.example.org/token".to_owned(),
+            keys_url: "https://lms.example.org/keys".to_owned(),
+            audience: None,
+            deployments: vec!["1".to_owned()],
+            hosts: vec!["grades.example.org:8443".to_owned()],
+        }
+    }
+
+    #[test]
+    fn addresses_that_lead_elsewhere_are_refused() {
+        assert!(wish().check(false).is_ok());
+        for address in [
+            "http://lms.example.org/auth",
+            "file:///etc/passwd",
+            "https://user:word@lms.example.org/",
+            "https://lms.example.org/#here",
+            "//lms.example.org/",
+            "lms.example.org",
+            "https://",
+            "",
+        ] {
+            let wish = PlatformWish { keys_url: address.to_owned(), ..wish() };
+            assert!(wish.check(false).is_err(), "{address}");
+        }
+        let open = PlatformWish { keys_url: "http://127.0.0.1:1/".to_owned(), ..wish() };
+        assert!(open.check(false).is_err() && open.check(true).is_ok());
+        assert!(PlatformWish { deployments: vec![], ..wish() }.check(false).is_err());
+        assert!(PlatformWish { hosts: vec!["a/b".to_owned()], ..wish() }.check(false).is_err());
+        assert!(PlatformWish { issuer: "a\nb".to_owned(), ..wish() }.check(false).is_err());
+    }
+
+    #[test]
+    fn services_are_on_hosts_that_an_administrator_named() {
+        let platform = Platform { id: 1, name: "lms".to_owned(), settings: wish() };
+        let may = |text: &str| platform.service(text, false).is_some();
+        assert!(may("https://lms.example.org/lineitems/1?type=2"));
+        assert!(may("https://tokens.example.org/x") && may("https://grades.example.org:8443/x"));
+        for address in [
+            "https://169.254.169.254/latest/meta-data",
+            "https://grades.example.org/x",
+            "https://lms.example.org:444/x",
+            "https://lms.example.org@evil.example/x",
+            "https://lms.example.org.evil.example/x",
+            "http://lms.example.org/x",
+        ] {
+            assert!(!may(address), "{address}");
+        }
+        assert_eq!(
+            platform.origins(false),
+            "https://grades.example.org:8443 https://lms.example.org https://tokens.example.org"
+        );
+    }
+}

@@ -1,0 +1,126 @@
+//! Who is in a platform's course, as the platform tells (NRPS 2).
+use super::{
+    Client, Platform, Role, ServiceFault,
+    client::{Ask, scope},
+    message::role_of,
+};
+use crate::db::Database;
+use serde::Deserialize;
+
+/// More pages or members than this are no course.
+const PAGES: usize = 500;
+const MEMBERS: usize = 50_000;
+
+/// What a page of members is.
+const KIND: &str = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json";
+
+/// Somebody in a platform's course.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RosterMember {
+    /// The platform's name for the person.
+    pub subject: String,
+    /// What they are called, where the platform tells.
+    pub name: Option<String>,
+    /// Their address, where the platform tells.
+    pub email: Option<String>,
+    /// What they are; nothing for those who are none of ours, or not any more.
+    pub role: Option<Role>,
+}
+
+#[derive(Deserialize)]
+struct Page {
+    members: Vec<Member>,
+}
+
+#[derive(Deserialize)]
+struct Member {
+    user_id: String,
+    #[serde(default)]
+    roles: Vec<String>,
+    status: Option<String>,
+    name: Option<String>,
+    given_name: Option<String>,
+    family_name: Option<String>,
+    email: Option<String>,
+}
+
+/// Reads all pages of the members of a course.
+///
+/// # Errors
+/// What the platform says, or what is wrong with it; nothing of it is told then.
+pub async fn fetch(
+    client: &Client,
+    database: &Database,
+    platform: &Platform,
+    address: &str,
+) -> Result<Vec<RosterMember>, ServiceFault> {
+    let mut members = Vec::new();
+    let mut next = Some(address.to_owned());
+    for _ in 0..PAGES {
+        let Some(address) = next else { return Ok(members) };
+        let ask = Ask { address, accept: KIND, body: None };
+        let told = client.call(database, platform, scope::MEMBERS, &ask).await?;
+        let page: Page = serde_json::from_slice(&told.body)
+            .map_err(|error| ServiceFault::Refused(format!("its members can't be read: {error}")))?;
+        members.extend(page.members.into_iter().filter_map(read));
+        if members.len() > MEMBERS {
+            break;
+        }
+        next = told.link.as_deref().and_then(following);
+    }
+    Err(ServiceFault::Refused("its list of members has no end".to_owned()))
+}
+
+fn read(member: Member) -> Option<RosterMember> {
+    if member.user_id.is_empty() || member.user_id.len() > 255 {
+        return None;
+    }
+    let is_active = member.status.as_deref().is_none_or(|status| status == "Active");
+    let spoken = [member.given_name, member.family_name].into_iter().flatten().collect::<Vec<_>>().join(" ");
+    Some(RosterMember {
+        subject: member.user_id,
+        name: member.name.or(Some(spoken)).filter(|name| !name.trim().is_empty()),
+        email: member.email,
+        role: role_of(&member.roles).filter(|_| is_active),
+    })
+}
+
+/// The address of the next page in a header `Link` (RFC 8288).
+fn following(header: &str) -> Option<String> {
+    let mut rest = header;
+    while let Some((_, after)) = rest.split_once('<') {
+        let (address, after) = after.split_once('>')?;
+        // Parameters reach to the next link, which begins with a bracket.
+        let (parameters, further) = after.split_at(after.find('<').unwrap_or(after.len()));
+        let is_next = parameters.split([';', ',']).any(|parameter| {
+            parameter.split_once('=').is_some_and(|(name, value)| {
+                name.trim().eq_ignore_ascii_case("rel")
+                    && value.trim().trim_matches('"').split(' ').any(|word| word.eq_ignore_ascii_case("next"))
+            })
+        });
+        if is_next {
+            return Some(address.to_owned());
+        }
+        rest = further;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_page_is_found_in_the_header() {
+        for (header, next) in [
+            (r#"<https://a/2>; rel="next""#, Some("https://a/2")),
+            (r#"<https://a/?p=2;x,y>; rel=next"#, Some("https://a/?p=2;x,y")),
+            (r#"<https://a/1>; rel="first", <https://a/2>; title="a"; rel="next last""#, Some("https://a/2")),
+            (r#"<https://a/1>; rel="prev", <https://a/9>; rel="differences""#, None),
+            ("", None),
+            ("<https://a/2", None),
+        ] {
+            assert_eq!(following(header).as_deref(), next, "{header}");
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! What a platform is to know of somebody's work on an assignment (AGS 3.4), and when it is to be told.
+//!
+//! Whoever changes a grade puts a job into the queue, in the same transaction. The job holds no score: what is sent is read when
+//! it is sent, so that many changes are one message. Each content has a time of its own, which only grows and stays the same
+//! however often it is sent; a platform keeps what is newer. So a message that comes twice, or late, changes nothing.
+use super::Platform;
+use crate::{
+    db::{DbError, Row, Transaction},
+    queue::{self, Bell, Lane, NewJob, Turn},
+    values,
+};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+/// What a job is to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Order {
+    /// The platform's link.
+    pub(super) link: i64,
+    /// Whose work.
+    pub(super) account: i64,
+    /// Also when the platform was told the same before.
+    #[serde(default)]
+    pub(super) again: bool,
+}
+
+/// Notes that what counts for a submission has changed: the platforms that its owner came from are to be told.
+pub(crate) async fn changed(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
+    let rows = transaction
+        .rows(
+            "SELECT platform_link.id AS link, submission.account FROM submission
+             JOIN assignment ON assignment.id = submission.assignment
+             JOIN member ON member.course = assignment.course AND member.account = submission.account
+                AND member.role = 'student'
+             JOIN platform_link ON platform_link.assignment = submission.assignment
+             JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
+                AND platform_member.account = submission.account
+             WHERE submission.id = ? AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
+             ORDER BY platform_link.id",
+            values![submission],
+        )
+        .await?;
+    enqueue(transaction, &rows, false).await.map(drop)
+}
+
+/// Has all scores of an assignment sent, also those that platforms know; how many these are.
+pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64) -> Result<usize, DbError> {
+    let rows = transaction
+        .rows(
+            "SELECT platform_link.id AS link, member.account FROM platform_link
+             JOIN assignment ON assignment.id = platform_link.assignment
+             JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
+             JOIN member ON member.course = assignment.course AND member.account = platform_member.account
+                AND member.role = 'student'
+             WHERE platform_link.assignment = ?
+                AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
+                AND EXISTS (SELECT 1 FROM submission
+                    WHERE submission.assignment = platform_link.assignment AND submission.account = member.account)
+             ORDER BY platform_link.id, member.account",
+            values![assignment],
+        )
+        .await?;
+    enqueue(transaction, &rows, true).await
+}
+
+/// Has what an account is worth sent to a link that it just came by.
+pub(crate) async fn arrived(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
+    let rows = transaction
+        .rows(
+            "SELECT DISTINCT platform_link.id AS link, submission.account FROM platform_link
+             JOIN submission ON submission.assignment = platform_link.assignment AND submission.account = ?
+             JOIN assignment ON assignment.id = platform_link.assignment
+             JOIN member ON member.course = assignment.course AND member.account = submission.account
+                AND member.role = 'student'
+             WHERE platform_link.id = ? AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL",
+            values![account, link],
+        )
+        .await?;
+    enqueue(transaction, &rows, false).await.map(drop)
+}
+
+async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Result<usize, DbError> {
+    for row in rows {
+        let order = Order { link: row.int("link")?, account: row.int("account")?, again };
+        let turn = Turn::Score(order.link, order.account);
+        if !again && queue::waits(transaction, turn).await? {
+            continue;
+        }
+        let payload = serde_json::to_string(&order).map_err(|error| DbError::Other(error.to_string()))?;
+        let job = NewJob { lane: Lane::Passback, submission: None, campaign: None, turn, payload: &payload };
+        queue::enqueue(transaction, &job).await?;
+    }
+    if !rows.is_empty() {
+        Bell::ring(transaction).await?;
+    }
+    Ok(rows.len())
+}
+
+/// A score on its way.
+#[derive(Debug, Clone)]
+pub(super) struct Parcel {
+    pub(super) order: Order,
+    pub(super) platform: Platform,
+    /// The platform's name for the person.
+    pub(super) subject: String,
+    /// The column of the grade book, when it is known.
+    pub(super) line_item: Option<String>,
+    /// Where it is to be found or made otherwise.
+    pub(super) line_items: Option<String>,
+    pub(super) resource: String,
+    pub(super) slug: String,
+    pub(super) title: String,
+    pub(super) content: Value,
+    /// When the content became so, in milliseconds since 1970.
+    pub(super) stamp: i64,
+}
+
+/// What is to be sent for an order; nothing when there is nothing to tell (any more). Gives the content its time.
+pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Result<Option<Parcel>, DbError> {
+    let row = transaction
+        .row(
+            "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
+                platform_link.line_items, platform_link.resource, platform_link.assignment, assignment.slug,
+                assignment.title
+             FROM platform_link
+             JOIN platform_course ON platform_course.id = platform_link.platform_course
+             JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
+             JOIN platform_account ON platform_account.issuer = platform.issuer AND platform_account.account = ?
+             JOIN assignment ON assignment.id = platform_link.assignment
+             WHERE platform_link.id = ?",
+            values![order.account, order.link],
+        )
+        .await?;
+    let Some(row) = row else { return Ok(None) };
+    let Some(content) = content(transaction, row.int("assignment")?, order.account).await? else { return Ok(None) };
+    let text = content.to_string();
+    let before = transaction
+        .row(
+            "SELECT content, stamp, sent_at FROM platform_score WHERE link = ? AND account = ? {for update}",
+            values![order.link, order.account],
+        )
+        .await?;
+    let stamp = match before {
+        Some(before) if before.text("content")? == text && !order.again => {
+            if before.maybe_int("sent_at")?.is_some() {
+                return Ok(None);
+            }
+            before.int("stamp")?
+        }
+        _ => transaction
+            .one(
+                "INSERT INTO platform_score (link, account, content, stamp) VALUES (?, ?, ?, {now})
+                 ON CONFLICT (link, account) DO UPDATE SET content = excluded.content, sent_at = NULL, fault = NULL,
+                    stamp = CASE WHEN excluded.stamp > platform_score.stamp THEN excluded.stamp
+                        ELSE platform_score.stamp + 1 END
+                 RETURNING stamp",
+                values![order.link, order.account, text],
+            )
+            .await?
+            .int("stamp")?,
+    };
+    Ok(Some(Parcel {
+        order,
+        subject: row.text("subject")?,
+        line_item: row.maybe_text("line_item")?,
+        line_items: row.maybe_text("line_items")?,
+        resource: row.text("resource")?,
+        slug: row.text("slug")?,
+        title: row.text("title")?,
+        platform: Platform::read(&row)?,
+        content,
+        stamp,
+    }))
+}
+
+/// What somebody's work on an assignment is worth: the most points of all their submissions. While there are none the platform is
+/// told that they come, and when the grader failed, that somebody has to look: never a zero that nobody earned.
+async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
+    let rows = transaction
+        .rows(
+            "SELECT job.state, result.points, result.max_points FROM submission
+             LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL
+             LEFT JOIN grade ON grade.submission = submission.id
+             LEFT JOIN result ON result.id = grade.result
+             WHERE submission.assignment = ? AND submission.account = ? ORDER BY submission.id",
+            values![assignment, account],
+        )
+        .await?;
+    let mut best: Option<(f64, f64)> = None;
+    let mut waits = false;
+    for row in &rows {
+        let state = row.maybe_text("state")?.unwrap_or_default();
+        waits |= matches!(state.as_str(), "waiting" | "running");
+        let number = |column: &str| -> Result<Option<f64>, DbError> {
+            Ok(row.maybe_text(column)?.and_then(|text| text.parse().ok()).filter(|number: &f64| number.is_finite()))
+        };
+        if let (Some(points), Some(most)) = (number("points")?, number("max_points")?)
+            && most > 0.0
+            && best.is_none_or(|(best, _)| points >= best)
+        {
+            best = Some((points.max(0.0), most));
+        }
+    }
+    Ok(match best {
+        _ if rows.is_empty() => None,
+        Some((points, most)) => Some(json!({
+            "scoreGiven": points, "scoreMaximum": most,
+            "activityProgress": "Completed", "gradingProgress": "FullyGraded",
+        })),
+        None => {
+            let grading = if waits { "Pending" } else { "PendingManual" };
+            Some(json!({"activityProgress": "Submitted", "gradingProgress": grading}))
+        }
+    })
+}
+
+/// Notes that a platform was told, unless there is something newer by now.
+pub(super) async fn sent(transaction: &mut Transaction, parcel: &Parcel) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?",
+            values![parcel.order.link, parcel.order.account, parcel.stamp],
+        )
+        .await?;
+    let score = &parcel.content;
+    let what = match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
+        (Some(points), Some(most)) => format!("{points} of {most} points"),
+        _ => score["gradingProgress"].as_str().unwrap_or_default().to_owned(),
+    };
+    note(transaction, parcel.order, "score sent", &format!("{what}, to {}", parcel.platform.name)).await
+}
+
+/// Notes why a platform does not take a score, for staff.
+pub(super) async fn refused(transaction: &mut Transaction, order: Order, fault: &str) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "UPDATE platform_score SET fault = ? WHERE link = ? AND account = ? AND sent_at IS NULL",
+            values![fault, order.link, order.account],
+        )
+        .await?;
+    Ok(())
+}
+
+/// The same for a job that was tried too often; whether it was one of these.
+pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
+    let Ok(order) = serde_json::from_str::<Order>(payload) else { return Ok(false) };
+    refused(transaction, order, fault).await?;
+    note(transaction, order, "score not sent", fault).await?;
+    Ok(true)
+}
+
+/// Writes an event about a score, for the staff of its course.
+async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &str) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "INSERT INTO event (happened_at, kind, course, assignment, text)
+             SELECT {now}, ?, assignment.course, assignment.id, account.login || ': ' || CAST(? AS TEXT)
+             FROM platform_link JOIN assignment ON assignment.id = platform_link.assignment
+             JOIN account ON account.id = ? WHERE platform_link.id = ?",
+            values![kind, text, order.account, order.link],
+        )
+        .await?;
+    Ok(())
+}
+
+/// Keeps the column that was found or made for a link; the first one counts.
+pub(super) async fn keep_line_item(transaction: &mut Transaction, link: i64, address: &str) -> Result<(), DbError> {
+    transaction
+        .execute("UPDATE platform_link SET line_item = ? WHERE id = ? AND line_item IS NULL", values![address, link])
+        .await?;
+    Ok(())
+}

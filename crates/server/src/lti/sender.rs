@@ -1,0 +1,225 @@
+//! Sends scores to platforms: jobs of their own lane, done by the server itself.
+use super::{
+    Lti, ServiceFault,
+    client::{Ask, scope},
+    score::{self, Order, Parcel},
+};
+use crate::{
+    calendar,
+    db::{Database, DbError},
+    ledger,
+    queue::{self, Bell, Claim, Completion, Failure, Lane, Policy},
+    values,
+};
+use serde::Deserialize;
+use serde_json::json;
+use std::{sync::Arc, time::Duration};
+use tokio::sync::Semaphore;
+use tokio_util::sync::CancellationToken;
+use url::Url;
+
+/// Messages on their way at one time: a platform that hangs holds up a few only.
+const AT_ONE_TIME: usize = 4;
+
+/// How often somebody looks although nobody rang.
+const LOOK_EVERY: Duration = Duration::from_secs(2);
+
+/// A platform that is away is asked so often, with waits up to an hour: more than a day.
+const PATIENT: u32 = 32;
+
+/// One that refuses may have been set up wrongly, and mended soon.
+const REFUSED: u32 = 6;
+
+/// The longest wait between two tries.
+const LONGEST_WAIT: Duration = Duration::from_secs(3600);
+
+/// Who holds the jobs.
+const WORKER: &str = "scores";
+
+/// Sends scores until `stop` is cancelled. What was sent and not noted then is sent once more, and changes nothing.
+pub async fn run(database: Database, bell: Bell, policy: Policy, lti: Arc<Lti>, stop: CancellationToken) {
+    let room = Arc::new(Semaphore::new(AT_ONE_TIME));
+    let mut ear = bell.ear();
+    while !stop.is_cancelled() {
+        tokio::select! {
+            () = stop.cancelled() => return,
+            taken = take(&database, &policy, &room) => match taken {
+                Ok(Some((claim, place))) => {
+                    let (database, lti) = (database.clone(), lti.clone());
+                    tokio::spawn(async move {
+                        if let Err(error) = work(&database, &policy, &lti, &claim).await {
+                            tracing::warn!(%error, "what became of a score can't be noted yet");
+                        }
+                        drop(place);
+                    });
+                    continue;
+                }
+                Ok(None) => {}
+                Err(error) => tracing::warn!(%error, "no score to be had"),
+            },
+        }
+        tokio::select! {
+            () = stop.cancelled() => return,
+            _ = ear.wait(LOOK_EVERY) => {}
+        }
+    }
+}
+
+/// The next job, and a place to do it in.
+async fn take(
+    database: &Database,
+    policy: &Policy,
+    room: &Arc<Semaphore>,
+) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
+    // A server without platforms never writes for them.
+    if !queue::is_due(&mut database.read().await?, Lane::Passback).await? {
+        return Ok(None);
+    }
+    let place = room.clone().acquire_owned().await.map_err(|error| DbError::Other(error.to_string()))?;
+    let mut transaction = database.begin().await?;
+    ledger::tick(&mut transaction, policy).await?;
+    let claim = queue::claim(&mut transaction, policy, Lane::Passback, WORKER).await?;
+    transaction.commit().await?;
+    Ok(claim.map(|claim| (claim, place)))
+}
+
+async fn work(database: &Database, policy: &Policy, lti: &Lti, claim: &Claim) -> Result<(), DbError> {
+    let sending = send(database, lti, claim);
+    tokio::pin!(sending);
+    let sent = loop {
+        tokio::select! {
+            sent = &mut sending => break sent,
+            () = tokio::time::sleep(policy.renew_every()) => {
+                let mut transaction = database.begin().await?;
+                queue::renew(&mut transaction, policy, &claim.lease).await?;
+                transaction.commit().await?;
+            }
+        }
+    };
+    let mut transaction = database.begin().await?;
+    match sent {
+        Ok(parcel) => {
+            // Whoever lost the lease sent what somebody else sends, too: the same, at the same time.
+            if queue::complete(&mut transaction, &claim.lease).await? == Completion::Done
+                && let Some(parcel) = parcel
+            {
+                score::sent(&mut transaction, &parcel).await?;
+            }
+        }
+        Err(fault) => {
+            let text = fault.to_string();
+            tracing::warn!(job = claim.lease.job, fault = text, "a platform did not take a score");
+            let (tries, least) = match &fault {
+                ServiceFault::Away { after, .. } => (PATIENT, after.unwrap_or_default()),
+                ServiceFault::Refused(_) => (REFUSED, Duration::ZERO),
+            };
+            let patient = Policy { max_failures: tries, longest_wait: LONGEST_WAIT, ..*policy };
+            let failure = queue::fail_for(&mut transaction, &patient, &claim.lease, &text, least).await?;
+            match (failure, serde_json::from_str::<Order>(&claim.payload)) {
+                (Failure::Buried, _) => {
+                    score::give_up(&mut transaction, &claim.payload, &text).await?;
+                }
+                (Failure::Retried, Ok(order)) => score::refused(&mut transaction, order, &text).await?,
+                _ => {}
+            }
+        }
+    }
+    transaction.commit().await
+}
+
+/// Sends what there is to send; what it was, or nothing.
+async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Parcel>, ServiceFault> {
+    let order: Order = serde_json::from_str(&claim.payload)
+        .map_err(|error| ServiceFault::Refused(format!("the job can't be read: {error}")))?;
+    let mut transaction = database.begin().await?;
+    let parcel = score::prepare(&mut transaction, order).await?;
+    transaction.commit().await?;
+    let Some(parcel) = parcel else { return Ok(None) };
+    let line_item = match &parcel.line_item {
+        Some(line_item) => line_item.clone(),
+        None => line_item(database, lti, &parcel).await?,
+    };
+    let mut body = parcel.content.clone();
+    body["userId"] = json!(parcel.subject);
+    body["timestamp"] = json!(calendar::exact(parcel.stamp));
+    let ask = Ask {
+        address: scores(&line_item)?,
+        accept: "application/json",
+        body: Some(("application/vnd.ims.lis.v1.score+json", body.to_string().into_bytes())),
+    };
+    match lti.client.call(database, &parcel.platform, scope::SCORE, &ask).await {
+        Ok(_) => Ok(Some(parcel)),
+        // It knows something newer already (AGS 3.4.8).
+        Err(ServiceFault::Refused(said)) if said.starts_with("409") => Ok(Some(parcel)),
+        Err(fault) => Err(fault),
+    }
+}
+
+/// The address of a column's scores: its own with `/scores` at the path's end (AGS 3.4).
+fn scores(line_item: &str) -> Result<String, ServiceFault> {
+    let wrong = || ServiceFault::Refused("the address of its grade book's column is none".to_owned());
+    let mut url = Url::parse(line_item).map_err(|_| wrong())?;
+    url.path_segments_mut().map_err(|()| wrong())?.pop_if_empty().push("scores");
+    Ok(url.into())
+}
+
+#[derive(Deserialize)]
+struct LineItem {
+    id: String,
+    #[serde(rename = "resourceLinkId")]
+    link: Option<String>,
+}
+
+/// The column of a link that has none yet: one that is there, or a new one (AGS 3.2).
+async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<String, ServiceFault> {
+    let Some(container) = &parcel.line_items else {
+        return Err(ServiceFault::Refused("its grade book has no column for this link".to_owned()));
+    };
+    let wrong = |error: String| ServiceFault::Refused(format!("its columns can't be read: {error}"));
+    let mut url = Url::parse(container).map_err(|error| wrong(error.to_string()))?;
+    url.query_pairs_mut().append_pair("resource_link_id", &parcel.resource);
+    let ask = Ask { address: url.into(), accept: "application/vnd.ims.lis.v2.lineitemcontainer+json", body: None };
+    let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
+    let found: Vec<LineItem> = serde_json::from_slice(&told.body).map_err(|error| wrong(error.to_string()))?;
+    let found = found.into_iter().find(|item| item.link.as_ref() == Some(&parcel.resource)).map(|item| item.id);
+    let address = match found {
+        Some(address) => address,
+        None => {
+            let most = parcel.content["scoreMaximum"].as_f64().unwrap_or(100.0);
+            let item = json!({
+                "scoreMaximum": most, "label": parcel.title, "resourceId": parcel.slug,
+                "resourceLinkId": parcel.resource,
+            });
+            const KIND: &str = "application/vnd.ims.lis.v2.lineitem+json";
+            let body = Some((KIND, item.to_string().into_bytes()));
+            let ask = Ask { address: container.clone(), accept: KIND, body };
+            let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
+            let made: LineItem = serde_json::from_slice(&told.body).map_err(|error| wrong(error.to_string()))?;
+            made.id
+        }
+    };
+    let mut transaction = database.begin().await?;
+    score::keep_line_item(&mut transaction, parcel.order.link, &address).await?;
+    // Another server may have made one at the same moment: the first one counts.
+    let kept = transaction
+        .one("SELECT line_item FROM platform_link WHERE id = ?", values![parcel.order.link])
+        .await?
+        .text("line_item")?;
+    transaction.commit().await?;
+    Ok(kept)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn scores_lie_below_their_column() {
+        for (line_item, scores) in [
+            ("https://a/lineitems/1", "https://a/lineitems/1/scores"),
+            ("https://a/lineitems/1/", "https://a/lineitems/1/scores"),
+            ("https://a/1/lineitem?type_id=2", "https://a/1/lineitem/scores?type_id=2"),
+        ] {
+            assert_eq!(super::scores(line_item).expect("an address"), scores);
+        }
+        assert!(super::scores("mailto:somebody").is_err());
+    }
+}

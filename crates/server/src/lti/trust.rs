@@ -1,0 +1,120 @@
+//! The keys of platforms, as they publish them: kept for an hour, looked for again when one is not known, since platforms change
+//! their keys.
+use super::{Client, Platform, Refused, crypto::PublicKey};
+use serde::Deserialize;
+use std::{
+    collections::HashMap,
+    sync::{Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+
+/// For so long keys are taken as they were.
+const FRESH: Duration = Duration::from_secs(3600);
+
+/// When the platform does not answer, those of before are good for a day.
+const STALE: Duration = Duration::from_secs(24 * 3600);
+
+/// Unknown keys make the service ask once in so long: strangers may name any.
+const PAUSE: Duration = Duration::from_secs(5);
+
+/// The keys of platforms, by number.
+#[derive(Debug, Default)]
+pub(super) struct Trust(Mutex<HashMap<i64, Known>>);
+
+#[derive(Debug, Clone)]
+struct Known {
+    address: String,
+    keys: Vec<PublicKey>,
+    read_at: Option<Instant>,
+    asked_at: Instant,
+}
+
+#[derive(Deserialize)]
+struct KeySet {
+    keys: Vec<serde_json::Value>,
+}
+
+#[derive(Deserialize)]
+struct Key {
+    kty: String,
+    kid: Option<String>,
+    n: String,
+    e: String,
+    alg: Option<String>,
+    r#use: Option<String>,
+}
+
+/// The keys of a set that sign by RS256; others are not ours to judge.
+fn read(set: &[u8]) -> Result<Vec<PublicKey>, serde_json::Error> {
+    let set: KeySet = serde_json::from_slice(set)?;
+    let keys = set.keys.into_iter().filter_map(|key| serde_json::from_value::<Key>(key).ok());
+    let usable = keys.filter(|key| {
+        key.kty == "RSA"
+            && key.alg.as_deref().is_none_or(|alg| alg == "RS256")
+            && key.r#use.as_deref().is_none_or(|purpose| purpose == "sig")
+    });
+    Ok(usable.filter_map(|key| Some(PublicKey { kid: key.kid?, n: key.n, e: key.e })).collect())
+}
+
+impl Trust {
+    fn known(&self, platform: &Platform) -> Option<Known> {
+        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
+    }
+
+    /// A platform's key of this name.
+    pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Refused> {
+        let named = |known: &Known| known.keys.iter().find(|key| key.kid == kid).cloned();
+        let known = self.known(platform);
+        if let Some(known) = &known {
+            if known.read_at.is_some_and(|at| at.elapsed() < FRESH)
+                && let Some(key) = named(known)
+            {
+                return Ok(key);
+            }
+            if known.asked_at.elapsed() < PAUSE {
+                return named(known).ok_or(Refused::UnknownKey);
+            }
+        }
+        let asked = client.get(platform, &platform.settings.keys_url, None, "application/json").await;
+        let keys = asked.map_err(|fault| fault.to_string()).and_then(|answer| {
+            let told = answer.successful().map_err(|fault| fault.to_string())?;
+            read(&told.body).map_err(|error| format!("its keys can't be read: {error}"))
+        });
+        let now = Instant::now();
+        let newly = match keys {
+            Ok(keys) => Known { address: platform.settings.keys_url.clone(), keys, read_at: Some(now), asked_at: now },
+            Err(error) => {
+                tracing::warn!(platform = platform.name, error, "a platform's keys can't be had");
+                let before = known.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE));
+                let address = platform.settings.keys_url.clone();
+                let none = || Known { address, keys: Vec::new(), read_at: None, asked_at: now };
+                Known { asked_at: now, ..before.unwrap_or_else(none) }
+            }
+        };
+        let found = named(&newly);
+        let away = newly.read_at.is_none();
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(platform.id, newly);
+        found.ok_or(if away { Refused::NoKeys } else { Refused::UnknownKey })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_of_other_kinds_are_passed_over() {
+        let set = br#"{"keys": [
+            {"kty": "RSA", "kid": "a", "n": "AQ", "e": "AQAB", "alg": "RS256", "use": "sig"},
+            {"kty": "RSA", "kid": "plain", "n": "AQ", "e": "AQAB"},
+            {"kty": "RSA", "kid": "encrypts", "n": "AQ", "e": "AQAB", "use": "enc"},
+            {"kty": "RSA", "kid": "other", "n": "AQ", "e": "AQAB", "alg": "PS512"},
+            {"kty": "RSA", "n": "AQ", "e": "AQAB"},
+            {"kty": "EC", "kid": "curve", "crv": "P-256", "x": "AQ", "y": "AQ"},
+            {"kty": "oct", "kid": "shared", "k": "AQ"}, 7]}"#;
+        let names: Vec<String> = read(set).expect("a set").into_iter().map(|key| key.kid).collect();
+        assert_eq!(names, ["a", "plain"]);
+        assert!(read(b"[]").is_err() && read(b"no").is_err());
+    }
+}

@@ -1,0 +1,561 @@
+//! People come from a learning platform, and their scores go back there.
+use crate::support::{
+    engines::{Fresh, on_both_engines, run},
+    platform::{
+        self, CLIENT, DEPLOYMENT, INSTRUCTOR, KEYS, LEARNER, Platform, Trouble, arrive, begin, checked, come, now,
+        unsigned,
+    },
+    server::{Client, JSON, Server, program},
+};
+use serde_json::{Value, json};
+
+on_both_engines!(a_course_of_a_platform, a_platform_with_troubles, rosters_are_read_to_their_end);
+
+const CONTEXT: &str = "https://purl.imsglobal.org/spec/lti/claim/context";
+const RESOURCE: &str = "https://purl.imsglobal.org/spec/lti/claim/resource_link";
+const CUSTOM: &str = "https://purl.imsglobal.org/spec/lti/claim/custom";
+const ENDPOINT: &str = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint";
+
+async fn start(fresh: &Fresh, more: &[&str]) -> (Server, Client, Platform) {
+    let options = ["--workers", "1", "--public-url", "https://grades.example.org", "--lti-over-http"];
+    let mut server = Server::start(fresh, &[&options[..], more].concat());
+    let link = server.first_link();
+    let session = server.visitor().welcome(&link);
+    let token = session.post_json("/api/v1/tokens", r#"{"name": "tests"}"#).expect(201).json();
+    let admin = server.with_token(token["token"].as_str().expect("a token"));
+    let platform = Platform::start(&server, &admin).await;
+    (server, admin, platform)
+}
+
+/// The teacher connects the platform's course with a new one, makes an assignment, and chooses it for the link.
+fn connect(server: &Server, platform: &Platform) -> Client {
+    let (teacher, place) = arrive(server, platform, ("teacher", INSTRUCTOR), |_| {});
+    let page = teacher.get(&place).expect(200).text();
+    assert!(page.contains("Physics &#60;1&#62;") && page.contains(r#"value="phys-1""#), "{page}");
+    teacher.post_form(&format!("{place}/course"), "slug=physics&title=Physics").expect(303);
+    assert!(teacher.get(&place).expect(200).text().contains("There are none yet"));
+    let wish = r#"{"title": "Milestone one", "visible": true, "settings": {"per_hour": 0}}"#;
+    teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
+    // The form of before does as well as a new one.
+    let chosen = teacher.post_form(&format!("{place}/assignment"), "assignment=m1").expect(303);
+    assert_eq!(chosen.header("location"), Some("/c/physics/a/m1"));
+    teacher
+}
+
+async fn a_course_of_a_platform(fresh: Fresh) {
+    let (server, admin, platform) = start(&fresh, &["--tries", "1"]).await;
+    // Before somebody who teaches has opened the link, nobody gets in, and nobody is remembered.
+    let begun = begin(&server, &platform);
+    let token = KEYS[0].sign(&platform.claims(&begun.nonce, "ada", LEARNER));
+    let early = come(&server, &begun, &token).expect(403).text();
+    assert!(early.contains("not connected with the grading server yet"), "{early}");
+    let teacher = connect(&server, &platform);
+    assert!(!admin.get("/api/v1/accounts").expect(200).text().contains("ada"));
+    let (_, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), |_| {});
+    assert_eq!(place, "/c/physics/a/m1", "chosen once");
+    let (ada, place) = arrive(&server, &platform, ("ada", LEARNER), |_| {});
+    assert_eq!(place, "/c/physics/a/m1");
+    assert!(ada.get(&place).expect(200).text().contains("Milestone one"));
+    let me = ada.get("/api/v1/me").expect(200).json();
+    assert_eq!([&me["login"], &me["name"]], ["ada", "The ada"]);
+    ada.get("/api/v1/courses/physics/members").expect(403);
+    let members = teacher.get("/api/v1/courses/physics/members").expect(200).text();
+    assert!(members.contains(r#""login":"ada","name":"The ada","role":"student""#), "{members}");
+
+    // Points go to a column that the service makes, once; the better submission counts.
+    let first = ada.submit("physics", &program("WA", 40));
+    ada.wait_for_grade("physics", first);
+    let score = platform.wait_for("ada", |score| score["scoreGiven"] == 40.0);
+    assert_eq!([&score["scoreMaximum"], &score["userId"]], [&json!(100.0), &json!("ada")]);
+    assert_eq!([&score["activityProgress"], &score["gradingProgress"]], ["Completed", "FullyGraded"]);
+    for points in [80, 60] {
+        let id = ada.submit("physics", &program("WA", points));
+        ada.wait_for_grade("physics", id);
+    }
+    platform.wait_for("ada", |score| score["scoreGiven"] == 80.0);
+    // The grader's own failure is nobody's zero, and takes nothing away.
+    let (eve, _) = arrive(&server, &platform, ("eve", LEARNER), |_| {});
+    let failed = eve.submit("physics", b"#!grade JE 0\n");
+    assert_eq!(eve.wait_for_grade("physics", failed)["state"], "buried");
+    let score = platform.wait_for("eve", |score| score["gradingProgress"] == "PendingManual");
+    assert!(score.get("scoreGiven").is_none() && score["activityProgress"] == "Submitted", "{score}");
+    let failed = ada.submit("physics", b"#!grade JE 0\n");
+    ada.wait_for_grade("physics", failed);
+    // What the teacher hands in is no score.
+    let tried = teacher.submit("physics", &program("AC", 100));
+    teacher.wait_for_grade("physics", tried);
+
+    // A regrade that is applied sends what counts from then on: everything is worth half by these rules.
+    let base = "/api/v1/courses/physics/assignments/m1";
+    let wish = r#"{"reason": "other rules", "settings": {"rules": "parity", "per_hour": 0}}"#;
+    let regrade = teacher.post_json(&format!("{base}/regrades"), wish).expect(201).json();
+    let path = format!("{base}/regrades/{}", regrade["id"]);
+    while teacher.get(&path).expect(200).json()["left"] != 0 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert_eq!(platform.wait_for("ada", |_| true)["scoreGiven"], 80.0, "not before it is applied");
+    teacher.post_json(&format!("{path}/apply"), "").expect(200);
+    platform.wait_for("ada", |score| score["scoreGiven"] == 40.0);
+    {
+        let inside = platform.inside();
+        assert_eq!(inside.line_items.len(), 1, "{:?}", inside.line_items);
+        assert_eq!(inside.line_items[0]["resourceLinkId"], "link");
+        let zeros = inside.scores.iter().filter(|(_, score)| score["scoreGiven"] == 0.0).count();
+        let teachers = inside.scores.iter().filter(|(_, score)| score["userId"] == "teacher").count();
+        assert_eq!((zeros, teachers), (0, 0), "{:?}", inside.scores);
+        assert!(inside.token_requests <= 3, "tokens are used as long as they last");
+    }
+    let scores = teacher.get(&format!("{base}/scores")).expect(200).json();
+    assert_eq!([&scores[0]["login"], &scores[0]["platform"]], ["ada", "lms"]);
+    let page = teacher.get("/c/physics/a/m1/class").expect(200).text();
+    assert!(page.contains("40 / 100") && page.contains("somebody has to look"), "{page}");
+    // Sent once more, it is newer than everything before.
+    let before = platform.wait_for("ada", |_| true)["timestamp"].clone();
+    teacher.post_form("/c/physics/a/m1/scores", "").expect(303);
+    platform.wait_for("ada", |score| score["timestamp"].as_str() > before.as_str());
+
+    // Somebody's platform is shut: nobody comes, and nothing goes there.
+    admin.send("DELETE", "/api/v1/platforms/lms", &[], b"").expect(204);
+    let query = format!("iss={}&login_hint=x", platform.url.replace(':', "%3A"));
+    server.visitor().get(&format!("/lti/login?{query}")).expect(403);
+    ada.get("/c/physics").expect(200);
+}
+
+async fn a_platform_with_troubles(fresh: Fresh) {
+    let (server, _admin, platform) = start(&fresh, &["--lease", "3"]).await;
+    let teacher = connect(&server, &platform);
+    let (ada, _) = arrive(&server, &platform, ("ada", LEARNER), |_| {});
+    platform.inside().troubles.extend([
+        Trouble::Status(500),
+        Trouble::Busy(1),
+        Trouble::Forgets,
+        Trouble::Lost,
+        Trouble::Status(403),
+    ]);
+    let id = ada.submit("physics", &program("WA", 40));
+    ada.wait_for_grade("physics", id);
+    platform.wait_for("ada", |score| score["scoreGiven"] == 40.0);
+    let base = "/api/v1/courses/physics/assignments/m1/scores";
+    let taken = || -> Vec<Value> {
+        loop {
+            let scores = teacher.get(base).expect(200).json();
+            let scores = scores.as_array().expect("a list");
+            if !scores.is_empty() && scores.iter().all(|score| score["sent_at"].is_i64()) {
+                return scores.clone();
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+    };
+    assert_eq!(taken().len(), 1);
+    {
+        let inside = platform.inside();
+        assert!(inside.troubles.is_empty(), "{:?}", inside.troubles);
+        // The one whose answer got lost came twice, with one time.
+        let of_forty: Vec<&Value> =
+            inside.scores.iter().filter(|(_, score)| score["scoreGiven"] == 40.0).map(|(_, score)| score).collect();
+        assert!(of_forty.iter().all(|score| score["timestamp"] == of_forty[0]["timestamp"]), "{of_forty:?}");
+    }
+    // A column on a host that no administrator named is never asked, and staff reads why.
+    let elsewhere = |claims: &mut Value| {
+        claims[RESOURCE]["id"] = json!("other");
+        claims[CUSTOM] = json!({"assignment": "m1"});
+        claims[ENDPOINT]["lineitem"] = json!("http://169.254.169.254/latest/meta-data");
+    };
+    let (bob, place) = arrive(&server, &platform, ("bob", LEARNER), elsewhere);
+    assert_eq!(place, "/c/physics/a/m1", "the link names its assignment");
+    let id = bob.submit("physics", &program("WA", 10));
+    bob.wait_for_grade("physics", id);
+    let start = std::time::Instant::now();
+    loop {
+        let scores = teacher.get(base).expect(200).text();
+        if scores.contains("none of the platform's hosts") {
+            break;
+        }
+        assert!(start.elapsed() < std::time::Duration::from_secs(120), "{scores}");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let log = server.log();
+    assert!(!log.contains('\u{1b}'), "words of a platform give no orders to terminals");
+}
+
+async fn rosters_are_read_to_their_end(fresh: Fresh) {
+    let (server, admin, platform) = start(&fresh, &[]).await;
+    let teacher = connect(&server, &platform);
+    let (ada, _) = arrive(&server, &platform, ("ada", LEARNER), |_| {});
+    let member = |id: &str, role: &str, status: &str| json!({"user_id": id, "status": status, "roles": [role], "given_name": "Given", "family_name": id});
+    platform.inside().members = vec![
+        member("teacher", INSTRUCTOR, "Active"),
+        member("ada", LEARNER, "Active"),
+        member("bob", LEARNER, "Active"),
+        member("gone", LEARNER, "Inactive"),
+        member("parent", "http://purl.imsglobal.org/vocab/lis/v2/membership#Mentor", "Active"),
+        member("tutor", "http://purl.imsglobal.org/vocab/lis/v2/membership/Instructor#TeachingAssistant", "Active"),
+        member("carol", LEARNER, "Active"),
+    ];
+    let read = teacher.post_json("/api/v1/courses/physics/roster", "").expect(200).json();
+    assert_eq!(read, json!({"members": 5, "left": 0}));
+    let members = || -> Vec<String> {
+        let members = teacher.get("/api/v1/courses/physics/members").expect(200).json();
+        let line =
+            |member: &Value| format!("{} {}", member["name"].as_str().unwrap(), member["role"].as_str().unwrap());
+        members.as_array().expect("a list").iter().map(line).collect()
+    };
+    let all =
+        ["Given ada student", "Given bob student", "Given carol student", "Given teacher staff", "Given tutor staff"];
+    let sorted = |mut lines: Vec<String>| {
+        lines.sort();
+        lines
+    };
+    assert_eq!(sorted(members()), all);
+    // Who is told of by the roster first is the same when they come.
+    let (bob, _) = arrive(&server, &platform, ("bob", LEARNER), |_| {});
+    bob.get("/c/physics").expect(200);
+    // Staff made one of them staff here, and somebody of no platform a student: both stay what they are.
+    let wish = br#"{"name": "x", "role": "staff"}"#;
+    let login = bob.get("/api/v1/me").expect(200).json()["login"].as_str().expect("a login").to_owned();
+    teacher.send("PUT", &format!("/api/v1/courses/physics/members/{login}"), JSON, wish).expect(200);
+    bob.get("/api/v1/me").expect(401);
+    teacher
+        .send("PUT", "/api/v1/courses/physics/members/local", JSON, br#"{"name": "Local", "role": "student"}"#)
+        .expect(200);
+    platform.inside().members.retain(|member| member["user_id"] != "carol");
+    let read = teacher.post_json("/api/v1/courses/physics/roster", "").expect(200).json();
+    assert_eq!(read, json!({"members": 4, "left": 1}));
+    let left = ["Given ada student", "Given bob staff", "Given teacher staff", "Given tutor staff", "Local student"];
+    assert_eq!(sorted(members()), left);
+    // Who becomes more than a student signs in again: whoever was signed in for them does not come along.
+    let (now_staff, _) = arrive(&server, &platform, ("ada", INSTRUCTOR), |_| {});
+    ada.get("/api/v1/me").expect(401);
+    now_staff.get("/api/v1/courses/physics/members").expect(200);
+    // Nobody does everything here by a platform's word.
+    let account = now_staff.get("/api/v1/me").expect(200).json()["login"].as_str().expect("a login").to_owned();
+    let wish = br#"{"name": "Ada", "is_admin": true}"#;
+    admin.send("PUT", &format!("/api/v1/accounts/{account}"), JSON, wish).expect(200);
+    let begun = begin(&server, &platform);
+    let token = KEYS[0].sign(&platform.claims(&begun.nonce, "ada", INSTRUCTOR));
+    assert!(come(&server, &begun, &token).expect(403).text().contains("sign in here yourself"));
+    // A list without an end is given up, and changes nothing.
+    teacher.post_form("/c/physics/members/roster", "").expect(303);
+    platform.inside().published.clear();
+    assert!(teacher.get("/c/physics/members").expect(200).text().contains("Read the members from lms"));
+}
+
+#[test]
+fn what_a_platform_did_not_say_is_refused() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let (server, _, platform) = start(&fresh, &[]).await;
+        let teacher = connect(&server, &platform);
+        let valid = |claims: &mut Value| claims["name"] = json!("Ada");
+        let sign = |claims: &Value| KEYS[0].sign(claims);
+        type Change<'a> = &'a dyn Fn(&mut Value);
+        type Sign<'a> = &'a dyn Fn(&Value) -> String;
+        const CLAIM: &str = "https://purl.imsglobal.org/spec/lti/claim";
+        let set = |name: &'static str, value: Value| move |claims: &mut Value| claims[name] = value.clone();
+        let drop_claim =
+            |name: &'static str| move |claims: &mut Value| drop(claims.as_object_mut().expect("claims").remove(name));
+        let attacks: &[(&str, Change, Sign, &str)] = &[
+            ("somebody else's key", &valid, &|claims| KEYS[2].sign(claims), "not signed by the platform"),
+            ("a key of no platform", &valid, &|claims| KEYS[1].sign(claims), "no key of the name"),
+            (
+                "no key's name",
+                &valid,
+                &|claims| KEYS[0].sign_as(&json!({"alg": "RS256"}), claims),
+                "RS256 with a named key",
+            ),
+            (
+                "no signature",
+                &valid,
+                &|claims| unsigned(&json!({"alg": "none", "kid": "first"}), claims) + ".",
+                "RS256",
+            ),
+            (
+                "a signature that is not looked at",
+                &valid,
+                &|claims| KEYS[0].sign_as(&json!({"alg": "none", "kid": "first"}), claims),
+                "RS256",
+            ),
+            ("the public key as a secret", &valid, &|claims| KEYS[0].sign_by_public(claims), "RS256"),
+            (
+                "another algorithm of the family",
+                &valid,
+                &|claims| KEYS[0].sign_as(&json!({"alg": "RS512", "kid": "first"}), claims),
+                "RS256",
+            ),
+            (
+                "claims changed after signing",
+                &valid,
+                &|claims| {
+                    let signed = KEYS[0].sign(claims);
+                    let mut other = claims.clone();
+                    other["sub"] = json!("teacher");
+                    let signature = signed.rsplit('.').next().expect("a signature");
+                    unsigned(&json!({"alg": "RS256", "typ": "JWT", "kid": "first"}), &other) + "." + signature
+                },
+                "not signed by the platform",
+            ),
+            ("no token", &valid, &|_| "a.b.c".to_owned(), "RS256"),
+            ("another issuer", &set("iss", json!("https://evil.example")), &sign, "the issuer is another one"),
+            ("another audience", &set("aud", json!("client-2")), &sign, "the audience is another one"),
+            ("no audience", &drop_claim("aud"), &sign, "aud"),
+            (
+                "several audiences",
+                &set("aud", json!([CLIENT, "client-2"])),
+                &sign,
+                "the authorized party is another one",
+            ),
+            ("another party", &set("azp", json!("client-2")), &sign, "the authorized party is another one"),
+            ("another nonce", &set("nonce", json!("0".repeat(64))), &sign, "the nonce is another one"),
+            ("expired", &set("exp", json!(now() - 120)), &sign, "too old"),
+            ("no end", &drop_claim("exp"), &sign, "exp"),
+            ("made in the future", &set("iat", json!(now() + 600)), &sign, "too old, or a clock"),
+            ("made long ago", &set("iat", json!(now() - 10_000)), &sign, "too old, or a clock"),
+            ("not valid yet", &set("nbf", json!(now() + 600)), &sign, "too old, or a clock"),
+            (
+                "another deployment",
+                &|claims| claims[format!("{CLAIM}/deployment_id")] = json!("d<2>"),
+                &sign,
+                "deployment d&#60;2&#62; is not among",
+            ),
+            ("another version", &|claims| claims[format!("{CLAIM}/version")] = json!("1.1"), &sign, "another version"),
+            ("another message", &|claims| claims[format!("{CLAIM}/message_type")] = json!("X"), &sign, "another type"),
+            ("nobody", &set("sub", json!("")), &sign, "sub"),
+            ("no subject", &drop_claim("sub"), &sign, "sub"),
+            ("no course", &drop_claim(CONTEXT), &sign, "context is missing"),
+            ("no link", &drop_claim(RESOURCE), &sign, "resource_link is missing"),
+            ("no role", &|claims| claims[format!("{CLAIM}/roles")] = json!([]), &sign, "neither learn nor teach"),
+            (
+                "a role of elsewhere",
+                &|claims| claims[format!("{CLAIM}/roles")] = json!(["https://evil.example/membership#Instructor"]),
+                &sign,
+                "neither learn nor teach",
+            ),
+        ];
+        for (name, change, sign, said) in attacks {
+            let begun = begin(&server, &platform);
+            let mut claims = platform.claims(&begun.nonce, "ada", LEARNER);
+            change(&mut claims);
+            let answer = come(&server, &begun, &sign(&claims)).expect(403);
+            assert!(answer.text().contains(said), "{name}: {}", answer.text());
+            assert!(answer.header("set-cookie").is_none(), "{name}");
+        }
+        let members = teacher.get("/api/v1/courses/physics/members").expect(200).json();
+        assert_eq!(members.as_array().expect("a list").len(), 1, "nobody came in by any of these");
+
+        // The same words with several audiences, and said to be for this one, are believed.
+        let begun = begin(&server, &platform);
+        let mut claims = platform.claims(&begun.nonce, "ada", LEARNER);
+        claims["aud"] = json!([CLIENT, "client-2"]);
+        claims["azp"] = json!(CLIENT);
+        let token = KEYS[0].sign(&claims);
+        let answer = come(&server, &begun, &token).expect(303);
+        assert_eq!(answer.header("location"), Some("/c/physics/a/m1"), "whatever the message says it wanted");
+        // Once; in the browser that began it; and only when somebody began it.
+        let again = come(&server, &begun, &token).expect(403).text();
+        assert!(again.contains("unknown, used, or was begun too long ago"), "{again}");
+        let (mine, other) = (begin(&server, &platform), begin(&server, &platform));
+        let token = KEYS[0].sign(&platform.claims(&mine.nonce, "ada", LEARNER));
+        let stolen = platform::Begun { cookie: other.cookie.clone(), state: mine.state.clone(), nonce: String::new() };
+        assert!(come(&server, &stolen, &token).expect(403).text().contains("begun in another browser"));
+        let bare = platform::Begun { cookie: "x=y".to_owned(), state: mine.state.clone(), nonce: String::new() };
+        assert!(come(&server, &bare, &token).expect(403).text().contains("did not send the cookie"));
+        let mixed = platform::Begun { cookie: other.cookie, state: other.state, nonce: String::new() };
+        assert!(come(&server, &mixed, &token).expect(403).text().contains("the nonce is another one"));
+        let forged = platform::Begun { cookie: mine.cookie.clone(), state: "0".repeat(64), nonce: String::new() };
+        come(&server, &forged, &token).expect(403);
+        come(&server, &mine, &token).expect(303);
+        // Too late.
+        let late = begin(&server, &platform);
+        let mut transaction = fresh.database.begin().await.expect("a transaction");
+        let statement = "UPDATE platform_login SET expires_at = expires_at - 600000";
+        transaction.execute(statement, fosssim_server::values![]).await.expect("a statement");
+        transaction.commit().await.expect("commit");
+        let token = KEYS[0].sign(&platform.claims(&late.nonce, "ada", LEARNER));
+        come(&server, &late, &token).expect(403);
+        // A platform that nobody registered leads nowhere.
+        let unknown = server.visitor().get("/lti/login?iss=https%3A%2F%2Fevil.example&login_hint=x").expect(403);
+        assert!(unknown.header("location").is_none() && unknown.text().contains("has registered this platform"));
+        // What the platform could not do is said.
+        let form = "state=x&error=login_required&error_description=%3Cb%3Enot%20signed%20in";
+        let answer = server.visitor().post_form("/lti/launch", form).expect(403).text();
+        assert!(answer.contains("login_required: &#60;b&#62;not signed in"), "{answer}");
+    });
+}
+
+#[test]
+fn platforms_change_their_keys() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let (server, _, platform) = start(&fresh, &[]).await;
+        connect(&server, &platform);
+        assert_eq!(platform.inside().key_reads, 1, "read once");
+        // A key that is not known is looked for, but not for everybody who makes one up.
+        for _ in 0..20 {
+            let begun = begin(&server, &platform);
+            let header = json!({"alg": "RS256", "kid": "made up"});
+            let token = KEYS[0].sign_as(&header, &platform.claims(&begun.nonce, "ada", LEARNER));
+            come(&server, &begun, &token).expect(403);
+        }
+        let reads = platform.inside().key_reads;
+        assert!(reads <= 3, "{reads}");
+        platform.inside().published = vec![0, 1];
+        let start = std::time::Instant::now();
+        loop {
+            let begun = begin(&server, &platform);
+            let token = KEYS[1].sign(&platform.claims(&begun.nonce, "ada", LEARNER));
+            if come(&server, &begun, &token).status == 303 {
+                break;
+            }
+            assert!(start.elapsed() < std::time::Duration::from_secs(60), "the new key is never believed");
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+    });
+}
+
+#[test]
+fn links_are_chosen_in_the_platform() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let (server, admin, platform) = start(&fresh, &[]).await;
+        connect(&server, &platform);
+        let wanted = |claims: &mut Value| {
+            let claims = claims.as_object_mut().expect("claims");
+            claims.remove(RESOURCE);
+            claims.insert(
+                "https://purl.imsglobal.org/spec/lti/claim/message_type".to_owned(),
+                json!("LtiDeepLinkingRequest"),
+            );
+            let settings = json!({"deep_link_return_url": format!("{}/return?course=1", platform.url),
+                "accept_types": ["link", "ltiResourceLink"], "data": "sent back"});
+            claims.insert("https://purl.imsglobal.org/spec/lti-dl/claim/deep_linking_settings".to_owned(), settings);
+        };
+        let (teacher, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), wanted);
+        let answer = teacher.post_form(&format!("{place}/assignment"), "assignment=m1").expect(200);
+        let policy = answer.header("content-security-policy").expect("a policy");
+        assert!(policy.contains(&format!("form-action 'self' {};", platform.url)), "{policy}");
+        let page = answer.text();
+        assert!(page.contains(&format!("action=\"{}/return?course=1\"", platform.url)), "{page}");
+        let token =
+            page.split("name=\"JWT\" value=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("a token");
+        let keys = server.visitor().get("/lti/keys.json").expect(200).json();
+        let claims = checked(token, &keys);
+        assert_eq!([&claims["iss"], &claims["aud"][0]], [CLIENT, platform.url.as_str()]);
+        assert_eq!(claims["https://purl.imsglobal.org/spec/lti/claim/deployment_id"], DEPLOYMENT);
+        assert_eq!(claims["https://purl.imsglobal.org/spec/lti-dl/claim/data"], "sent back");
+        let item = &claims["https://purl.imsglobal.org/spec/lti-dl/claim/content_items"][0];
+        assert_eq!(item["url"], "https://grades.example.org/lti/launch");
+        // The link that the platform makes of it leads there by itself.
+        let chosen = |claims: &mut Value| {
+            claims[RESOURCE]["id"] = json!("chosen");
+            claims[CUSTOM] = item["custom"].clone();
+        };
+        let (_, place) = arrive(&server, &platform, ("ada", LEARNER), chosen);
+        assert_eq!(place, "/c/physics/a/m1");
+        // Students choose nothing, and nobody chooses for another.
+        let begun = begin(&server, &platform);
+        let mut claims = platform.claims(&begun.nonce, "ada", LEARNER);
+        wanted(&mut claims);
+        come(&server, &begun, &KEYS[0].sign(&claims)).expect(403);
+        let (_, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), wanted);
+        admin.get(&place).expect(404);
+        // The answer goes to the platform and nowhere else.
+        let elsewhere = |claims: &mut Value| {
+            wanted(claims);
+            claims["https://purl.imsglobal.org/spec/lti-dl/claim/deep_linking_settings"]["deep_link_return_url"] =
+                json!("https://evil.example/return");
+        };
+        let (teacher, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), elsewhere);
+        let refused = teacher.post_form(&format!("{place}/assignment"), "assignment=m1").expect(403).text();
+        assert!(refused.contains("no administrator named"), "{refused}");
+
+        // A new key is told of beside the one that signs.
+        admin.post_json("/api/v1/platform-keys", "").expect(204);
+        let newly = server.visitor().get("/lti/keys.json").expect(200).json();
+        assert_eq!(newly["keys"].as_array().map(Vec::len), Some(2));
+        assert!(newly["keys"].as_array().expect("keys").contains(&keys["keys"][0]));
+        assert!(!newly.to_string().contains("\"d\""), "no private part");
+        for _ in 0..2 {
+            admin.post_form("/admin/platform-keys", "").expect(303);
+        }
+        let later = server.visitor().get("/lti/keys.json").expect(200).json();
+        assert_eq!(later["keys"].as_array().map(Vec::len), Some(2));
+    });
+}
+
+#[test]
+fn frames_and_cookies_are_as_platforms_need_them() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let (server, _, platform) = start(&fresh, &[]).await;
+        let cookie = begin(&server, &platform).cookie;
+        assert!(cookie.starts_with("__Host-fosssim-lti="), "{cookie}");
+        for word in ["; Path=/", "; HttpOnly", "; SameSite=None", "; Secure", "; Partitioned", "; Max-Age=600"] {
+            assert!(cookie.contains(word), "{cookie}");
+        }
+        // In a frame there is a button that opens a window, and it asks the same there.
+        let query = format!("iss={}&login_hint=a%22%3E&client_id={CLIENT}", platform.url.replace(':', "%3A"));
+        let framed = server.visitor().send("GET", &format!("/lti/login?{query}"), &[("Sec-Fetch-Dest", "iframe")], b"");
+        let framed = framed.expect(200);
+        assert!(framed.header("set-cookie").is_none());
+        let policy = framed.header("content-security-policy").expect("a policy").to_owned();
+        assert!(policy.contains(&format!("frame-ancestors {}", platform.url)), "{policy}");
+        let page = framed.text();
+        assert!(page.contains("target=\"_blank\"") && page.contains("value=\"a&#34;&#62;\""), "{page}");
+        // By POST, too, as some platforms begin.
+        let headers = [("Content-Type", "application/x-www-form-urlencoded"), ("Sec-Fetch-Site", "cross-site")];
+        server.visitor().send("POST", "/lti/login", &headers, query.as_bytes()).expect(303);
+        let configuration = server.visitor().get("/lti/configuration.json").expect(200).json();
+        assert_eq!(configuration["oidc_initiation_url"], "https://grades.example.org/lti/login");
+    });
+}
+
+#[test]
+fn platforms_are_reached_by_https_only() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("platforms.toml");
+        let text = "[moodle]\nissuer = \"https://moodle.example.org\"\nclient_id = \"abc\"\n\
+            login_url = \"https://moodle.example.org/mod/lti/auth.php\"\n\
+            token_url = \"https://moodle.example.org/mod/lti/token.php\"\n\
+            keys_url = \"https://moodle.example.org/mod/lti/certs.php\"\ndeployments = [\"1\"]\n";
+        std::fs::write(&file, text).expect("written");
+        let file = file.to_str().expect("a plain path");
+        let mut server = Server::start(&fresh, &["--workers", "0", "--platforms", file]);
+        let admin = server.admin();
+        let platforms = admin.get("/api/v1/platforms").expect(200).json();
+        assert_eq!([&platforms[0]["name"], &platforms[0]["client_id"]], ["moodle", "abc"]);
+        let mut wish = platforms[0].clone();
+        wish.as_object_mut().expect("fields").remove("name");
+        let put = |name: &str, wish: &Value| {
+            admin.send("PUT", &format!("/api/v1/platforms/{name}"), JSON, wish.to_string().as_bytes())
+        };
+        for (field, value) in [
+            ("keys_url", "http://127.0.0.1:5432/"),
+            ("token_url", "http://169.254.169.254/"),
+            ("login_url", "javascript:alert(1)"),
+            ("keys_url", "file:///etc/passwd"),
+        ] {
+            let mut wrong = wish.clone();
+            wrong[field] = json!(value);
+            put("other", &wrong).expect(400);
+        }
+        // One registration for each issuer and client, and accounts of an issuer stay that issuer's.
+        put("other", &wish).expect(409);
+        wish["issuer"] = json!("https://evil.example");
+        put("moodle", &wish).expect(409);
+        let page = admin.get("/admin").expect(200).text();
+        assert!(page.contains("/lti/login</code>") && page.contains("https://moodle.example.org"), "{page}");
+        // Without HTTPS the browser's cookie would not come back from there.
+        let answer = server.visitor().get("/lti/login?iss=https%3A%2F%2Fmoodle.example.org&login_hint=x").expect(409);
+        assert!(answer.text().contains("--public-url"), "{}", answer.text());
+        let form = "name=canvas&issuer=https://canvas.instructure.com&client_id=1&login_url=https://sso.canvaslms.com/a\
+            &token_url=https://sso.canvaslms.com/t&keys_url=https://sso.canvaslms.com/k&deployments=1%3Aab,+2%3Acd\
+            &hosts=school.instructure.com";
+        admin.post_form("/admin/platforms", form).expect(303);
+        let platforms = admin.get("/api/v1/platforms").expect(200).json();
+        assert_eq!(platforms[0]["deployments"], json!(["1:ab", "2:cd"]));
+        admin.post_form("/admin/platforms/canvas/shut", "").expect(303);
+        assert_eq!(admin.get("/api/v1/platforms").expect(200).json().as_array().map(Vec::len), Some(1));
+    });
+}
