@@ -13,6 +13,7 @@ mod folder_in_memory;
 mod fuzz_replay;
 mod grading;
 mod handed_in;
+mod judging;
 mod kills;
 mod known;
 mod layers;

@@ -54,7 +54,6 @@ impl Identical {
     }
 
     /// Tries no step.
-    #[cfg(test)]
     pub(super) fn give_up(&mut self) {
         self.skipped = u32::MAX;
     }
@@ -126,7 +125,6 @@ impl Identical {
 mod tests {
     use crate::{
         parity::{self, Options},
-        replay::judge_the_long_way,
         samples::{BOUNCE, ZONES, changed, relog, scene},
     };
     use fosssim_model::{scene::Scene, trace::Frame};
@@ -141,17 +139,17 @@ mod tests {
 
     /// Everything that both ways say, as text: it compares NaN, too.
     fn judged(scene: &Scene, trace: &[u8]) -> [String; 2] {
-        let options = Options { fair: true, threads: 1, ..Options::default() };
-        let quickly = parity::judge(scene, trace, &options, &mut ());
-        let slowly = judge_the_long_way(scene, trace, &options);
-        [quickly, slowly].map(|outcome| format!("{outcome:?}"))
+        [false, true].map(|one_by_one| {
+            let options = Options { fair: true, threads: 1, one_by_one, ..Options::default() };
+            format!("{:?}", parity::judge(scene, trace, &options, &mut ()))
+        })
     }
 
     type Change = fn(&mut Vec<Frame>);
 
     #[test]
     fn both_ways_say_the_same_to_the_last_field() {
-        let changes: [Change; 10] = [
+        let changes: [Change; 14] = [
             |_| {},
             |frames| frames.truncate(3),
             |frames| frames.push(frames[1].clone()),
@@ -162,6 +160,14 @@ mod tests {
             |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| 3.0 * c).collect())),
             |frames| relog(&mut frames[1], |_, own| own.iter().map(|c| c + 1e-3).collect()),
             |frames| frames[2].impulses.clear(),
+            |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| c / 3.0).collect())),
+            |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| -c).collect())),
+            |frames| relog(&mut frames[1], |index, own| own[usize::from(index == 1).min(own.len())..].to_vec()),
+            |frames| {
+                relog(&mut frames[3], |index, own| {
+                    own.iter().map(|c| if index == 0 { f64::NAN } else { c * 1.25 }).collect()
+                })
+            },
         ];
         for text in [BOUNCE, ZONES, LARGE] {
             let scene = scene(text);

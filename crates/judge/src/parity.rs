@@ -23,6 +23,8 @@ pub struct Options {
     pub stop_by: Book,
     /// Judge by the fair rules as well ([`Outcome::fair`]).
     pub fair: bool,
+    /// Look at every step and every call by itself, the long way. The outcome is the same; it shows that it is.
+    pub one_by_one: bool,
 }
 
 impl Default for Options {
@@ -33,6 +35,7 @@ impl Default for Options {
             stop_at_first: false,
             stop_by: Book::Parity,
             fair: false,
+            one_by_one: false,
         }
     }
 }

@@ -15,7 +15,7 @@ use fosssim_model::{
     sim::{Impulse, Observer, Pair, PairKind, Pairs, Pass, Stage, pairs},
     trace::{Cause, Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
 };
-use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+use fosssim_num::vector::Vec2;
 use std::io::Read;
 
 /// Why a trace can't be judged against a recording: always the recording's fault.
@@ -55,7 +55,7 @@ fn compare(
     let (mut trace, mut recording) =
         (Lenient::new(trace, layout).with_limit(record_memory(scene)), Lenient::new(recording, layout));
     let (mut actual, mut expected) = (LenientFrame::default(), LenientFrame::default());
-    let (mut buffers, mut result) = (Buffers::default(), StepResult::default());
+    let (mut buffers, mut result) = (Buffers::new(scene), StepResult::default());
     let mut outcome = Outcome::empty(layout.steps);
     let mut wrong_step = None;
     for frame in 0..layout.records() {
@@ -93,8 +93,7 @@ fn compare(
             }
         }
         for index in 0..expected.polynomials.len() {
-            let polynomial = Polynomial::untrimmed(expected.polynomials.get(index));
-            tally.expect_polynomial(&polynomial, || places.at(index));
+            tally.expect_polynomial(expected.polynomials.get(index), || places.at(index));
         }
         tally.finish(&expected.state, layout.impulses, layout.polynomials);
         tally::accumulate(&mut outcome.residuals, &result.residuals);

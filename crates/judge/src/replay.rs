@@ -89,16 +89,10 @@ pub(super) fn judge_within<R: Read + Send>(
     let reader = Lenient::new(trace, Layout::of(scene)).with_limit(memory);
     let mut replay = Replay::new(scene, reader, options.fair, options.root_search);
     replay.budget = replay.budget.with_floor(work);
+    if options.one_by_one {
+        replay.identical.give_up();
+    }
     replay.judge(options, progress)
-}
-
-/// As [`judge`], where no step is compared as bytes.
-#[cfg(test)]
-pub(super) fn judge_the_long_way(scene: &Scene, trace: &[u8], options: &Options) -> Outcome {
-    let reader = Lenient::new(trace, Layout::of(scene)).with_limit(record_memory(scene));
-    let mut replay = Replay::new(scene, reader, options.fair, options.root_search);
-    replay.identical.give_up();
-    replay.judge(options, &mut ())
 }
 
 /// Which parts of a step are compared.

@@ -1,7 +1,7 @@
 //! Compares one step of the trace with the reference while the reference computes it.
 //!
-//! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list as soon
-//! as it is known, so nothing of the reference's log is stored. Only at the end of the step is it known whether the
+//! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list at the end of
+//! its pass, so nothing of the reference's log is stored but one pass. Only at the end of the step is it known whether the
 //! two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
 use super::{
     contacts::{Contacts, key, logged_key},
@@ -11,7 +11,8 @@ use super::{
     parity::Remark,
 };
 use fosssim_model::{
-    sim::{Detection, Impulse, Observer, Pass, Resume, Stage, State},
+    scene::Scene,
+    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, Stage, State, Wanted, pairs},
     trace::{LenientFrame, LoggedImpulse},
 };
 use fosssim_num::{
@@ -100,10 +101,23 @@ impl Pending {
 }
 
 /// Buffers of a tally, kept from step to step.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Buffers {
+    /// What a pass looks at.
+    order: Pairs<'static>,
+    /// The reference's polynomials of the current pass.
+    own: PolynomialBytes,
     impulses: Vec<Impulse>,
     pending: Pending,
+}
+
+impl Buffers {
+    /// Empty, for steps of this scene.
+    pub(super) fn new(scene: &Scene) -> Self {
+        let (order, own, impulses, pending) =
+            (pairs(scene), PolynomialBytes::default(), Vec::new(), Pending::default());
+        Self { order, own, impulses, pending }
+    }
 }
 
 /// The observer that compares one step.
@@ -136,6 +150,7 @@ impl<'a> Tally<'a> {
         buffers: &'a mut Buffers,
         result: &'a mut StepResult,
     ) -> Self {
+        buffers.own.clear();
         buffers.impulses.clear();
         buffers.pending.clear();
         result.clear();
@@ -156,15 +171,15 @@ impl<'a> Tally<'a> {
 
     /// The next polynomial of the reference; `place` says where it belongs, should that be needed.
     #[inline]
-    pub(super) fn expect_polynomial(&mut self, expected: &Polynomial, place: impl FnOnce() -> PolynomialPlace) {
+    pub(super) fn expect_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
         let index = self.polynomials;
         self.polynomials += 1;
         if index < self.frame.polynomials.len() {
             let actual = self.frame.polynomials.get(index);
-            if !equal_and_safe(expected.coefficients(), actual) {
-                self.identical = self.identical && equal(expected.coefficients(), actual);
-                if !passes(expected.coefficients(), actual) {
-                    self.compare_closely(place(), expected, actual);
+            if !equal_and_safe(expected, actual) {
+                self.identical = self.identical && equal(expected, actual);
+                if !passes(expected, actual) {
+                    self.compare_closely(&place, &Polynomial::untrimmed(expected), actual);
                 }
             }
         }
@@ -271,7 +286,7 @@ impl<'a> Tally<'a> {
 
     /// Oracle-behaviour.md 6.2 for one polynomial that the original rejects: what it finds.
     #[cold]
-    fn compare_closely(&mut self, place: PolynomialPlace, expected: &Polynomial, actual: &[f64]) {
+    fn compare_closely(&mut self, place: &dyn Fn() -> PolynomialPlace, expected: &Polynomial, actual: &[f64]) {
         let (step, frame) = (self.step, self.frame_number);
         let finding = |detail| Finding { step, frame, detail };
         let own = expected.coefficients();
@@ -279,7 +294,7 @@ impl<'a> Tally<'a> {
         if own.len() != actual.len() {
             self.buffers.pending.record(Kind::PolynomialDegree, || {
                 let (expected, actual_size) = (*expected, actual.len());
-                finding(Detail::PolynomialDegree { place, expected, actual_size, actual: shown })
+                finding(Detail::PolynomialDegree { place: place(), expected, actual_size, actual: shown })
             });
             return;
         }
@@ -288,8 +303,9 @@ impl<'a> Tally<'a> {
             return;
         }
         if sum_own < PARITY_ZERO_POLYNOMIAL {
-            let detail = Detail::VanishingPolynomial { place, expected: *expected, actual: shown };
-            self.buffers.pending.record(Kind::VanishingPolynomial, || finding(detail));
+            self.buffers.pending.record(Kind::VanishingPolynomial, || {
+                finding(Detail::VanishingPolynomial { place: place(), expected: *expected, actual: shown })
+            });
             return;
         }
         for (number, (&own_coefficient, &coefficient)) in own.iter().zip(actual).enumerate() {
@@ -300,7 +316,7 @@ impl<'a> Tally<'a> {
                 self.buffers.pending.record(Kind::Coefficient, || {
                     let power = own.len() - 1 - number;
                     let rescaled = Rescaled { power, expected: rescaled, actual: coefficient, residual };
-                    finding(wrong_coefficient(place, rescaled, expected, &shown))
+                    finding(wrong_coefficient(place(), rescaled, expected, &shown))
                 });
             }
         }
@@ -334,15 +350,26 @@ impl Observer for Tally<'_> {
     }
 
     #[inline]
-    fn detection(&mut self, detection: &Detection<'_>) {
-        let pass = self.pass;
-        for (number, expected) in detection.polynomials.iter().enumerate() {
+    fn wanted(&mut self) -> Wanted<'_> {
+        Wanted::Bytes(&mut self.buffers.own)
+    }
+
+    /// Compares the pass's polynomials.
+    fn end_pass(&mut self, pass: Pass, _hits: usize) {
+        let mut own = std::mem::take(&mut self.buffers.own);
+        let order = std::mem::replace(&mut self.buffers.order, Pairs::none());
+        let mut coefficients = [0.0; MAX_COEFFICIENTS];
+        for (number, bytes) in own.iter().enumerate() {
+            let places = coefficients.iter_mut().zip(bytes.as_chunks::<8>().0);
+            places.for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes));
             let index = self.polynomials;
-            self.expect_polynomial(expected, || {
-                let role = Role::of(detection.pair.kind, number);
-                PolynomialPlace { pass, pair: detection.pair, role, index }
+            self.expect_polynomial(&coefficients[..bytes.len() / 8], || {
+                let (_, pair, which) = order.polynomial(number).expect("a pass logs the polynomials of these pairs");
+                PolynomialPlace { pass, pair, role: Role::of(pair.kind, which), index }
             });
         }
+        own.clear();
+        (self.buffers.own, self.buffers.order) = (own, order);
     }
 
     fn impulse(&mut self, impulse: &Impulse) {
@@ -409,13 +436,21 @@ pub(super) fn rejects_itself(coefficients: &[f64]) -> bool {
 /// holds what is no number.
 fn passes(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
+    if own.len() != actual.len() {
+        return false;
+    }
+    if sum_own < PARITY_ZERO_POLYNOMIAL {
+        return sum_actual < PARITY_ZERO_POLYNOMIAL;
+    }
+    // One division for all: what differs in rounding from the original's order is less than a hundredth of the bound.
+    let factor = sum_actual / sum_own;
+    let clearly_alike = |(own, actual): (&f64, &f64)| {
+        let rescaled = own * factor;
+        ((actual - rescaled).abs() <= 0.9 * PARITY_COEFFICIENT) & (rescaled.abs() <= 1e3)
+    };
     let alike = |(own, actual): (&f64, &f64)| !((actual - (own * sum_actual) / sum_own).abs() > PARITY_COEFFICIENT);
-    own.len() == actual.len()
-        && if sum_own < PARITY_ZERO_POLYNOMIAL {
-            sum_actual < PARITY_ZERO_POLYNOMIAL
-        } else {
-            own.iter().zip(actual).fold(true, |all, pair| all & alike(pair))
-        }
+    own.iter().zip(actual).fold(true, |all, pair| all & clearly_alike(pair))
+        || own.iter().zip(actual).fold(true, |all, pair| all & alike(pair))
 }
 
 /// The sum of moduli, left to right from zero.

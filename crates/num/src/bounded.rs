@@ -5,29 +5,27 @@
 //! Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.3), with
 //! the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and the bound also
 //! covers other orders of summation. Nothing of this reaches a trace.
-use super::vector::Vec2;
+use super::{
+    lanes::{Lanes, Modulus, Number, Plane, Simd},
+    vector::Vec2,
+};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The unit roundoff of doubles, `2^-53`.
 pub const UNIT_ROUNDOFF: f64 = 1.110_223_024_625_156_5e-16;
 
-/// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value).
+/// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value); of one number, or of one in
+/// each [lane](super::lanes).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Bounded {
+pub struct Bounded<N = f64> {
     /// The computed value.
-    pub value: f64,
+    pub value: N,
     /// Sum of the moduli of everything that was rounded on the way, weighted by its effect; at least 0, or NaN.
-    pub bound: f64,
+    pub bound: N,
 }
 
 /// A vector of bounded components.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Bounded2 {
-    /// To the right.
-    pub x: Bounded,
-    /// Up.
-    pub y: Bounded,
-}
+pub type Bounded2<N = f64> = Plane<Bounded<N>>;
 
 impl Bounded {
     /// A number without error, such as a factor of a formula.
@@ -59,46 +57,32 @@ impl Bounded2 {
     pub fn rounded(v: Vec2) -> Self {
         Self { x: Bounded::rounded(v.x), y: Bounded::rounded(v.y) }
     }
-
-    /// `x*x' + y*y'`.
-    #[inline]
-    #[must_use]
-    pub fn dot(self, other: Self) -> Bounded {
-        self.x * other.x + self.y * other.y
-    }
-
-    /// `x*y' - y*x'`.
-    #[inline]
-    #[must_use]
-    pub fn cross(self, other: Self) -> Bounded {
-        self.x * other.y - self.y * other.x
-    }
 }
 
-impl Add for Bounded {
+impl<N: Number + Modulus> Add for Bounded<N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
-        let rounding = self.value.abs() + other.value.abs();
+        let rounding = self.value.modulus() + other.value.modulus();
         Self { value: self.value + other.value, bound: self.bound + other.bound + rounding }
     }
 }
 
-impl Sub for Bounded {
+impl<N: Number + Modulus> Sub for Bounded<N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        let rounding = self.value.abs() + other.value.abs();
+        let rounding = self.value.modulus() + other.value.modulus();
         Self { value: self.value - other.value, bound: self.bound + other.bound + rounding }
     }
 }
 
-impl Mul for Bounded {
+impl<N: Number + Modulus> Mul for Bounded<N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let value = self.value * other.value;
-        let bound = self.bound * other.value.abs() + self.value.abs() * other.bound + value.abs();
+        let bound = self.bound * other.value.modulus() + self.value.modulus() * other.bound + value.modulus();
         Self { value, bound }
     }
 }
@@ -114,43 +98,39 @@ impl Div for Bounded {
     }
 }
 
-impl Neg for Bounded {
+impl<N: Number> Neg for Bounded<N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self { value: -self.value, bound: self.bound }
     }
 }
 
+/// A factor without error.
 impl Mul<Bounded> for f64 {
     type Output = Bounded;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Bounded) -> Bounded {
-        Bounded::exact(self) * other
+        let value = self * other.value;
+        Bounded { value, bound: self.abs() * other.bound + value.abs() }
     }
 }
 
-impl Add for Bounded2 {
-    type Output = Self;
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        Self { x: self.x + other.x, y: self.y + other.y }
+/// A factor without error.
+impl<S: Simd> Mul<Bounded<Lanes<S>>> for f64 {
+    type Output = Bounded<Lanes<S>>;
+    #[inline(always)]
+    fn mul(self, other: Bounded<Lanes<S>>) -> Bounded<Lanes<S>> {
+        let value = self * other.value;
+        Bounded { value, bound: self.abs() * other.bound + value.abs() }
     }
 }
 
-impl Sub for Bounded2 {
-    type Output = Self;
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        Self { x: self.x - other.x, y: self.y - other.y }
-    }
-}
-
-impl Mul<Bounded2> for Bounded {
-    type Output = Bounded2;
-    #[inline]
-    fn mul(self, other: Bounded2) -> Bounded2 {
-        Bounded2 { x: self * other.x, y: self * other.y }
+impl<N: Number + Modulus> Mul<Bounded2<N>> for Bounded<N> {
+    type Output = Bounded2<N>;
+    #[inline(always)]
+    fn mul(self, other: Bounded2<N>) -> Bounded2<N> {
+        Plane { x: self * other.x, y: self * other.y }
     }
 }
 

@@ -15,6 +15,27 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
 
 impl<N> Number for N where N: Copy + Add<Output = N> + Sub<Output = N> + Mul<Output = N> + Neg<Output = N> {}
 
+/// A number with a modulus.
+pub trait Modulus {
+    /// The modulus.
+    #[must_use]
+    fn modulus(self) -> Self;
+}
+
+impl Modulus for f64 {
+    #[inline(always)]
+    fn modulus(self) -> Self {
+        self.abs()
+    }
+}
+
+impl<S: Simd> Modulus for Lanes<S> {
+    #[inline(always)]
+    fn modulus(self) -> Self {
+        self.abs()
+    }
+}
+
 /// A vector in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Plane<N> {
@@ -30,12 +51,26 @@ impl<N: Number> Plane<N> {
     pub fn dot(self, other: Self) -> N {
         self.x * other.x + self.y * other.y
     }
+
+    /// The third component of the cross product, `x*y' - y*x'`.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> N {
+        self.x * other.y - self.y * other.x
+    }
 }
 
 impl From<Vec2> for Plane<f64> {
     #[inline(always)]
     fn from(v: Vec2) -> Self {
         Self { x: v.x, y: v.y }
+    }
+}
+
+impl<N: Number> Add for Plane<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y }
     }
 }
 
@@ -252,10 +287,18 @@ impl<S: Simd> Mask<S> {
         Lanes { simd: self.simd, values: self.simd.select_f64s(self.lanes, one, zero) }
     }
 
+    /// The one number of each lane where it says yes, the other one elsewhere.
+    #[inline(always)]
+    #[must_use]
+    pub fn choose(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
+        Lanes { simd: self.simd, values: self.simd.select_f64s(self.lanes, yes.values, no.values) }
+    }
+
     /// Whether any lane says yes.
     #[inline(always)]
     pub fn any(self) -> bool {
-        self.as_numbers().largest() > 0.0
+        // Cheaper than to look for the largest.
+        self.simd.reduce_sum_f64s(self.as_numbers().values) > 0.0
     }
 
     /// Whether all lanes say yes.

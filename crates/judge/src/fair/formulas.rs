@@ -1,11 +1,14 @@
 //! The detection polynomials with bounds of their rounding errors (collisions.md 2; numerics.md 1 and 2).
 //!
 //! What a polynomial should be, and how far a correct program may be off: every operation, and every input, adds its
-//! modulus to the bound of what it yields. Values here are for comparing, not for traces: the reference's own bits come
-//! from `sim`.
+//! modulus to the bound of what it yields. The formulas are those of the passes ([`fosssim_model::sim::formulas`]), so values
+//! are the reference's own bits.
 use fosssim_model::{
     scene::Scene,
-    sim::{Pair, PairKind},
+    sim::{
+        Pair, PairKind,
+        formulas::{EdgeMotions, particle_edge_and_right_cubic, particle_half_plane, particle_particle},
+    },
 };
 use fosssim_num::{
     bounded::{Bounded, Bounded2, UNIT_ROUNDOFF},
@@ -31,11 +34,6 @@ impl Way {
         let start_place = within(start, size);
         let shift = if rests { Bounded2::default() } else { within(end, size) - start_place };
         Self { start: start_place, shift }
-    }
-
-    /// The way as seen from `other`.
-    fn from(self, other: Self) -> [Bounded2; 2] {
-        [self.start - other.start, self.shift - other.shift]
     }
 }
 
@@ -167,17 +165,26 @@ impl Motion {
         let mut expected = Expected::default();
         match *self {
             Self::Particles([one, two], radii) => {
-                let [x, d] = two.from(one);
-                let (squared, mixed) = (d.dot(d), x.dot(d));
-                expected.set(0, &[-squared, -2.0 * mixed, radii * radii - x.dot(x)]);
-                expected.set(1, &[-squared, -mixed]);
+                let (overlap, approach) = particle_particle(one.start, one.shift, two.start, two.shift, radii);
+                expected.set(0, &overlap);
+                expected.set(1, &approach);
             }
-            Self::Edge(ways, radii) => edge(&mut expected, ways, radii),
+            Self::Edge([one, two, three], radii) => {
+                let edge = EdgeMotions::new(two.start, two.shift, three.start, three.shift);
+                let (pair, right_cubic) = particle_edge_and_right_cubic(one.start, one.shift, &edge, radii);
+                expected.set(0, &pair.distance);
+                expected.set(1, &pair.beyond_first);
+                expected.set(2, &pair.before_second);
+                expected.set(3, &pair.approach);
+                let mut right = pair.approach;
+                right[2] = right_cubic;
+                expected.right_approach = Some(right);
+            }
             Self::HalfPlane(way, radius, point, q) => {
-                let (q, w) = (turned(q), turned(point) - way.start);
-                let (s, w) = (way.shift.dot(q), w.dot(q));
-                expected.set(0, &[-(s * s), 2.0 * (w * s), radius * radius * q.dot(q) - w * w]);
-                expected.set(1, &[-(s * s), w * s]);
+                let (q, point) = (turned(q), turned(point));
+                let (overlap, approach) = particle_half_plane(way.start, way.shift, radius, point, q, q.dot(q));
+                expected.set(0, &overlap);
+                expected.set(1, &approach);
             }
         }
         expected
@@ -219,74 +226,6 @@ pub(super) fn extent(v: Vec2) -> f64 {
     v.x.abs() + v.y.abs()
 }
 
-/// The four polynomials of a particle and an edge, with the letters of collisions.md 2.
-#[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
-fn edge(expected: &mut Expected, [one, two, three]: [Way; 3], radii: Bounded) {
-    let s = radii * radii;
-    let [x12, d12] = one.from(two);
-    let [x32, d32] = three.from(two);
-    let [x13, d13] = one.from(three);
-    let (a, b, c) = (x12.dot(x32), x12.dot(d32) + d12.dot(x32), d12.dot(d32));
-    let (d, f) = (x12.dot(x12), d12.dot(d12));
-    // `e` of the specification is dot(d21, x21): both signs change, so it is dot(d12, x12).
-    let e = d12.dot(x12);
-    let (g, h, i) = (x32.dot(x32), d32.dot(x32), d32.dot(d32));
-    expected.set(
-        0,
-        &[
-            c * c - f * i,
-            2.0 * (b * c) - 2.0 * (e * i) - 2.0 * (f * h),
-            2.0 * (c * a) + b * b - d * i - f * g - 4.0 * (e * h) + s * i,
-            2.0 * (a * b) - 2.0 * (d * h) - 2.0 * (e * g) + 2.0 * (s * h),
-            a * a - d * g + s * g,
-        ],
-    );
-    expected.set(1, &[c, b, a]);
-    expected.set(2, &[-d13.dot(d32), -(d13.dot(x32) + x13.dot(d32)), -x13.dot(x32)]);
-    let (approach, right) = approach([g, h, i, f, e, a, b, c], -(d32.dot(x12) + d12.dot(x32)), -d32.dot(d12));
-    expected.set(3, &approach);
-    expected.right_approach = Some(right);
-}
-
-/// The course's approach polynomial and the right one, which differ in t^3; with the approach's own letters.
-#[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
-fn approach([a, b, c, d, e, f, g, h]: [Bounded; 8], i: Bounded, j: Bounded) -> (Coefficients, Coefficients) {
-    let k = a * f;
-    let l = a * g + 2.0 * (b * f);
-    let m = a * h + 2.0 * (b * g) + c * f;
-    let n = c * g + 2.0 * (b * h);
-    let o = c * h;
-    let (p, q) = (b, c);
-    let cubic = |slip: Bounded| {
-        -(2.0 * (g * h * p))
-            - 2.0 * (f * slip * q)
-            - g * g * q
-            - 2.0 * (a * c * d)
-            - 4.0 * (b * b * d)
-            - 4.0 * (b * c * e)
-            - n * i
-            - 2.0 * (m * j)
-    };
-    let course = [
-        -(h * h * q) - c * c * d - 2.0 * (o * j),
-        -(h * h * p) - 2.0 * (g * h * q) - 4.0 * (b * c * d) - c * c * e - o * i - 2.0 * (n * j),
-        cubic(g),
-        -(2.0 * (f * h * p))
-            - g * g * p
-            - 2.0 * (f * g * q)
-            - 4.0 * (a * b * d)
-            - 2.0 * (a * c * e)
-            - 4.0 * (b * b * e)
-            - m * i
-            - 2.0 * (l * j),
-        -(2.0 * (f * g * p)) - f * f * q - a * a * d - 4.0 * (a * b * e) - l * i - 2.0 * (k * j),
-        -(f * f * p) - a * a * e - k * i,
-    ];
-    let mut right = course;
-    right[2] = cubic(h);
-    (course, right)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -302,9 +241,9 @@ mod tests {
         <halfplane px="0.2" py="-1.1" nx="0.3" ny="1.7"/>
     </scene>"#;
 
-    /// The reference's own coefficients lie within one unit of these bounds, whatever the order of evaluation.
+    /// The values are the reference's own bits.
     #[test]
-    fn the_reference_lies_within_the_bounds() {
+    fn values_are_those_of_the_reference() {
         struct Compare<'a>(&'a Scene, usize);
         impl fosssim_model::sim::Observer for Compare<'_> {
             fn detection(&mut self, detection: &fosssim_model::sim::Detection<'_>) {
@@ -314,7 +253,8 @@ mod tests {
                     let own = expected.polynomial(number);
                     assert_eq!(own.len(), polynomial.coefficients().len());
                     for (own, theirs) in own.iter().zip(polynomial.coefficients()) {
-                        assert!((own.value - theirs).abs() <= UNIT_ROUNDOFF * own.bound, "{own:?} {theirs}");
+                        assert_eq!(own.value.to_bits(), theirs.to_bits());
+                        assert!(own.bound >= own.value.abs(), "{own:?}");
                         self.1 += 1;
                     }
                 }

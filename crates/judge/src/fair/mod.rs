@@ -22,6 +22,7 @@
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS
 //! [`FAIR_SENSITIVITY`]: fosssim_num::tolerances::FAIR_SENSITIVITY
 
+mod ahead;
 mod borderline;
 mod cause;
 pub mod compare;
@@ -37,6 +38,7 @@ mod probe;
 mod reach;
 mod step;
 
+pub(super) use ahead::Ahead;
 pub use borderline::borderline;
 pub use cause::{Cause, cause};
 pub use contact::decides;

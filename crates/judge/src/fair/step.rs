@@ -1,6 +1,7 @@
 //! Judges one step by the fair rules: follows it, looks at its sensitivity where something differs, and tries borderline
 //! decisions the other way where they can't be seen.
 use super::{
+    ahead::Ahead,
     contact,
     follow::Follower,
     formulas::extent,
@@ -195,6 +196,13 @@ impl StepJudgement {
         }
     }
 
+    /// Notes the factor of a polynomial of this kind and number.
+    #[inline]
+    pub(super) fn scale(&mut self, kind: PairKind, number: usize, scale: f64) {
+        let range = &mut self.scales[kind][number];
+        *range = Some(range.map_or([scale; 2], |[low, high]| [f64::min(low, scale), f64::max(high, scale)]));
+    }
+
     /// Notes a borderline decision.
     pub(super) fn borderline(&mut self, pass: Pass, pair: Pair, collides: bool) {
         self.borderline.push(Borderline { step: self.step, pass, pair, collides });
@@ -240,11 +248,13 @@ pub(super) fn largest(vectors: &[f64]) -> f64 {
 }
 
 /// Judges a step. `identical` says that states, impulses and polynomials of both records are the reference's bit for
-/// bit; then only what the records say besides is looked at. The reference has a result; if there is none here, it is what
+/// bit; then only what the records say besides is looked at. With `ahead` calls are looked at many at a time; the judgement is
+/// the same. The reference has a result; if there is none here, it is what
 /// the trace logged that leads to a search without end.
 pub(crate) fn judge(
     context: &Context<'_>,
     simulation: &mut Simulation,
+    ahead: Option<&mut Ahead>,
     records: Records<'_>,
     identical: bool,
 ) -> StepJudgement {
@@ -252,7 +262,7 @@ pub(crate) fn judge(
     let mut judged = if identical {
         StepJudgement::identical(context, step, records.end.polynomials.len())
     } else {
-        follow(context, simulation, records).unwrap_or_else(|_| StepJudgement {
+        follow(context, simulation, ahead, records).unwrap_or_else(|_| StepJudgement {
             step,
             frame,
             endless: true,
@@ -284,22 +294,24 @@ pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> Step
 fn follow(
     context: &Context<'_>,
     simulation: &mut Simulation,
+    ahead: Option<&mut Ahead>,
     records: Records<'_>,
 ) -> Result<StepJudgement, StepError> {
-    let attempt = |simulation: &mut Simulation, sensitivity: Option<&Sensitivity>, flips: &[usize]| {
-        simulation.state_mut().clone_from(records.before);
-        simulation.set_steps_done(records.step - 1);
-        let mut follower = Follower::new(context, records, sensitivity, flips);
-        simulation.step(&mut follower)?;
-        follower.finish(simulation.state());
-        Ok::<_, StepError>((follower.judged, follower.decisions, follower.borderline))
-    };
-    let (first, decisions, _) = attempt(simulation, None, &[])?;
+    let attempt =
+        |simulation: &mut Simulation, ahead: Option<&mut Ahead>, sensitivity: Option<&Sensitivity>, flips: &[usize]| {
+            simulation.state_mut().clone_from(records.before);
+            simulation.set_steps_done(records.step - 1);
+            let mut follower = Follower::new(context, records, ahead, sensitivity, flips);
+            simulation.step(&mut follower)?;
+            follower.finish(simulation.state());
+            Ok::<_, StepError>((follower.judged, follower.decisions, follower.borderline))
+        };
+    let (first, decisions, _) = attempt(simulation, ahead, None, &[])?;
     if !first.hangs_on_round_off() {
         return Ok(first);
     }
     let sensitivity = probe(context, simulation, &records, &decisions);
-    let (second, _, borderline) = attempt(simulation, Some(&sensitivity), &[])?;
+    let (second, _, borderline) = attempt(simulation, None, Some(&sensitivity), &[])?;
     if second.total() == 0 || !second.hangs_on_decisions() {
         return Ok(second);
     }
@@ -307,7 +319,7 @@ fn follow(
     for set in 1_usize..1 << borderline.len() {
         let flips: Vec<usize> =
             borderline.iter().enumerate().filter(|(bit, _)| set >> bit & 1 == 1).map(|(_, call)| *call).collect();
-        if let Ok((other, ..)) = attempt(simulation, Some(&sensitivity), &flips)
+        if let Ok((other, ..)) = attempt(simulation, None, Some(&sensitivity), &flips)
             && other.total() == 0
         {
             return Ok(other);

@@ -1,7 +1,7 @@
 //! The threads that judge what was read. Nothing of the results depends on how many there are.
 use super::{Batch, Shape, Slot, copy_state};
 use crate::{
-    fair::{self, Records},
+    fair::{self, Ahead, Records},
     parity::Options,
     tally::{Buffers, Tally},
 };
@@ -18,12 +18,15 @@ const MOST_THREADS: usize = 8;
 struct Worker {
     simulation: Simulation,
     buffers: Buffers,
+    /// Looks at many calls at a time, unless each is to be looked at by itself.
+    ahead: Option<Ahead>,
 }
 
 /// The threads that judge steps, and what each of them needs; started when there is something to do.
 pub(super) struct Crew<'a> {
     scene: &'a Scene,
     root_search: RootSearch,
+    one_by_one: bool,
     /// How many are asked for; 0 leaves it to the machine.
     threads: usize,
     workers: Vec<Worker>,
@@ -32,8 +35,8 @@ pub(super) struct Crew<'a> {
 
 impl<'a> Crew<'a> {
     pub(super) fn new(scene: &'a Scene, options: &Options) -> Self {
-        let Options { threads, root_search, .. } = *options;
-        Self { scene, root_search, threads: threads.min(MOST_THREADS), workers: Vec::new(), pool: None }
+        let Options { threads, root_search, one_by_one, .. } = *options;
+        Self { scene, root_search, one_by_one, threads: threads.min(MOST_THREADS), workers: Vec::new(), pool: None }
     }
 
     /// Has all threads started. Whether there is more than one.
@@ -50,8 +53,14 @@ impl<'a> Crew<'a> {
     }
 
     fn hire(&mut self, workers: usize) {
-        let worker =
-            || Worker { simulation: Simulation::new(self.scene, self.root_search), buffers: Buffers::default() };
+        let worker = || {
+            let mut simulation = Simulation::new(self.scene, self.root_search);
+            if self.one_by_one {
+                simulation.forgo_lanes();
+            }
+            let ahead = (!self.one_by_one).then(|| Ahead::new(self.scene));
+            Worker { simulation, buffers: Buffers::new(self.scene), ahead }
+        };
         self.workers.resize_with(workers.max(self.workers.len()), worker);
     }
 
@@ -117,7 +126,7 @@ fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
     let Slot {
         step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, ..
     } = slot;
-    let Worker { simulation, buffers } = worker;
+    let Worker { simulation, buffers, ahead } = worker;
     copy_state(simulation.state_mut(), before);
     simulation.set_steps_done(*step - 1);
     let layout = shape.layout;
@@ -137,7 +146,7 @@ fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
         *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
         *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
         if !*is_put_off {
-            *judged = fair::judge(context, simulation, records, result.identical);
+            *judged = fair::judge(context, simulation, ahead.as_mut(), records, result.identical);
         }
     }
 }

@@ -22,7 +22,7 @@ mod simulation;
 mod state;
 mod step_error;
 
-pub use collision::{PairMotion, PointMotion};
+pub use collision::{PairMotion, PointMotion, formulas};
 pub use observer::{Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Time, Wanted, Zone};
 pub use pair::{ByKind, Pair, PairKind};
 pub use pairs::{Pairs, pairs};

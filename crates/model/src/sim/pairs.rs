@@ -24,6 +24,12 @@ pub fn pairs(scene: &Scene) -> Pairs<'static> {
 }
 
 impl Pairs<'_> {
+    /// The pairs of a scene without any.
+    #[must_use]
+    pub const fn none() -> Pairs<'static> {
+        Pairs { particles: 0, edges: Cow::Borrowed(&[]), half_planes: 0 }
+    }
+
     /// All pairs, in the order of the pass: particle by particle, with all later particles, then with the edges that it is no
     /// end of, then with the half-planes.
     pub fn iter(&self) -> impl Iterator<Item = Pair> + Clone {
@@ -31,7 +37,7 @@ impl Pairs<'_> {
     }
 
     /// The pairs in which this particle comes first.
-    fn of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
+    pub fn of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
         PairKind::ALL.into_iter().flat_map(move |kind| {
             let (begin, end) = match kind {
                 PairKind::ParticleParticle => (first + 1, self.particles),

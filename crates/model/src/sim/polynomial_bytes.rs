@@ -35,6 +35,17 @@ impl PolynomialBytes {
         &self.bytes[..self.used]
     }
 
+    /// The bytes of each polynomial's coefficients.
+    pub fn iter(&self) -> impl Iterator<Item = &[u8]> {
+        let mut rest = self.bytes();
+        std::iter::from_fn(move || {
+            let (size, behind) = rest.split_first_chunk::<4>()?;
+            let own;
+            (own, rest) = behind.split_at(8 * u32::from_le_bytes(*size) as usize);
+            Some(own)
+        })
+    }
+
     /// No coefficient has a larger modulus than this; a NaN does not count. It may be that of a pair that is not logged.
     #[must_use]
     pub fn largest(&self) -> f64 {

@@ -83,18 +83,12 @@ impl StepBytes {
 
     /// Whether `holds` is true of the coefficients of any polynomial, highest power first.
     pub fn any(&self, mut holds: impl FnMut(&[f64]) -> bool) -> bool {
-        let mut rest = self.log.polynomials.bytes();
         let mut coefficients = Vec::new();
-        while let Some((size, behind)) = rest.split_first_chunk::<4>() {
-            let (own, others) = behind.split_at(8 * u32::from_le_bytes(*size) as usize);
+        self.log.polynomials.iter().any(|own| {
             coefficients.clear();
             coefficients.extend(own.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)));
-            if holds(&coefficients) {
-                return true;
-            }
-            rest = others;
-        }
-        false
+            holds(&coefficients)
+        })
     }
 
     fn record(&mut self, index: usize, state: &State) {

@@ -76,6 +76,41 @@ fn within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
     value.at_least(low) & value.below(high)
 }
 
+/// Where an impact is excluded of a pair of particles, or with a half-plane: one of its polynomials, a parabola and a line, is
+/// certainly not positive within the step.
+#[inline(always)]
+pub fn excludes_two<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
+    never_positive(a, b, c) | never_positive_line(d, e)
+}
+
+/// Where the closed forms exclude an impact of a pair with an edge: one of its polynomials is certainly not positive within
+/// the step, and the search among all of them would end.
+#[inline(always)]
+pub fn excludes_edge<S: Simd>(
+    distance: [Lanes<S>; 5],
+    beyond_first: [Lanes<S>; 3],
+    before_second: [Lanes<S>; 3],
+    approach: [Lanes<S>; 6],
+) -> Mask<S> {
+    let [o0, o1, o2, o3, o4] = distance;
+    let [f0, f1, f2] = beyond_first;
+    let [s0, s1, s2] = before_second;
+    let [a0, a1, a2, a3, a4, a5] = approach;
+    let mut excluded = never_positive(f0, f1, f2) | never_positive(s0, s1, s2);
+    if !excluded.all() {
+        // Where the overlap has degree two at most, or the approach, the closed forms know of them, too.
+        let is_parabola = is_small(o0) & is_small(o1);
+        if is_parabola.any() {
+            excluded = excluded | (is_parabola & never_positive(o2, o3, o4));
+        }
+        let is_parabola = is_small(a0) & is_small(a1) & is_small(a2);
+        if is_parabola.any() {
+            excluded = excluded | (is_parabola & never_positive(a3, a4, a5));
+        }
+    }
+    excluded & search_ends(&distance) & search_ends(&approach)
+}
+
 /// Where all coefficients are of a size with which a search is known to end.
 #[inline(always)]
 pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGTH]) -> Mask<S> {

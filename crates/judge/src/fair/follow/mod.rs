@@ -1,11 +1,14 @@
 //! The observer that follows a submission through one step, and charges what can't be followed.
 //!
-//! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows what was decided.
+//! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows what was decided, `over` takes
+//! over what was seen of calls beforehand.
 mod decisions;
+mod over;
 mod passes;
 mod polynomials;
 
 use super::{
+    ahead::Ahead,
     contact,
     formulas::{Expected, Motion},
     probe::Sensitivity,
@@ -38,6 +41,8 @@ struct Deferred {
 pub(super) struct Follower<'a> {
     context: &'a Context<'a>,
     records: Records<'a>,
+    /// Looks at calls before they are made; on a first look only.
+    ahead: Option<&'a mut Ahead>,
     /// What is known of the step's sensitivity to round-off, on a second look.
     sensitivity: Option<&'a Sensitivity>,
     /// Decisions (by number of the call) that are turned round: borderline ones, in hybrid scenes.
@@ -88,6 +93,7 @@ impl<'a> Follower<'a> {
     pub fn new(
         context: &'a Context<'a>,
         records: Records<'a>,
+        ahead: Option<&'a mut Ahead>,
         sensitivity: Option<&'a Sensitivity>,
         flips: &'a [usize],
     ) -> Self {
@@ -95,6 +101,7 @@ impl<'a> Follower<'a> {
         let mut follower = Self {
             context,
             records,
+            ahead,
             sensitivity,
             flips,
             judged,
@@ -147,6 +154,9 @@ impl<'a> Follower<'a> {
 impl Observer for Follower<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.pass = pass;
+        if let Some(ahead) = &mut self.ahead {
+            ahead.begin_pass();
+        }
         if matches!(pass.stage, Stage::Geometric { round: 0 }) {
             // The geometric part starts from the mid record, which is known.
             self.moved.fill(false);
@@ -160,7 +170,14 @@ impl Observer for Follower<'_> {
         });
     }
 
+    fn passes_over(&mut self, next: Pair, q_start: &[f64], q_end: &[f64]) -> usize {
+        self.take_over(next, q_start, q_end)
+    }
+
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+        if let Some(ahead) = &mut self.ahead {
+            ahead.step_over();
+        }
         self.own = None;
         self.seen = None;
         let Some(index) = self.next else { return };

@@ -69,9 +69,7 @@ impl Follower<'_> {
                     self.judged.shares.coefficient = self.judged.shares.coefficient.max(share);
                     if let Some(scale) = scale {
                         self.factors[pair.kind][number] = Some(scale);
-                        let range = &mut self.judged.scales[pair.kind][number];
-                        *range =
-                            Some(range.map_or([scale; 2], |[low, high]| [f64::min(low, scale), f64::max(high, scale)]));
+                        self.judged.scale(pair.kind, number, scale);
                     }
                 }
                 Err(mismatch) => {

@@ -12,7 +12,8 @@
 //! sorted by what the original does on purpose: `c t^m` counts as nowhere positive, small leading coefficients are dropped;
 //! whatever is left is its rounding. These do not change the exit code.
 //!
-//! `audit lanes [pairs] [seed]` compares detection in lanes with detection pair by pair instead, on random scenes.
+//! `audit lanes [pairs] [seed]` compares detection in lanes with detection pair by pair instead, on random scenes, and
+//! `audit judging [CORPUS or part of a sample's id]` judging of many calls at a time with judging one by one.
 use std::{
     fmt::Write as _,
     process::ExitCode,
@@ -26,8 +27,10 @@ use fosssim_oracle::num::{
     polynomial::Polynomial,
     vector::Vec2,
 };
+use fosssim_oracle::sim::formulas;
 
 mod decisions;
+mod judging;
 mod lanes;
 
 use decisions::Decisions;
@@ -37,6 +40,12 @@ const BLOCK: u64 = 10_000;
 
 fn main() -> ExitCode {
     let mut words = std::env::args().skip(1).peekable();
+    if words.next_if(|word| word == "judging").is_some() {
+        return judging::run(&words.next().unwrap_or_default()).unwrap_or_else(|error| {
+            eprintln!("{error:#}");
+            ExitCode::from(2)
+        });
+    }
     let of_lanes = words.next_if(|word| word == "lanes").is_some();
     let mut arguments = words.map(|argument| argument.parse::<u64>());
     let (Ok(detections), Ok(seed)) = (arguments.next().unwrap_or(Ok(1_000_000)), arguments.next().unwrap_or(Ok(1)))
@@ -419,72 +428,25 @@ fn rounded(v: V) -> Bounded2 {
     Bounded2::rounded(Vec2::new(v.0, v.1))
 }
 
-/// The polynomials of collisions.md 2, with the terms in any order: they need not be those of a trace.
+/// The polynomials of collisions.md 2.
 fn particle_particle(motion: &Motion) -> Vec<Vec<Bounded>> {
     let [x1, x2, _] = motion.x.map(rounded);
     let [d1, d2, _] = motion.d.map(rounded);
-    let (x, d, reach) = (x2 - x1, d2 - d1, Bounded::rounded(motion.radius));
-    vec![vec![-d.dot(d), -2.0 * x.dot(d), reach * reach - x.dot(x)], vec![-d.dot(d), -d.dot(x)]]
+    let (overlap, approach) = formulas::particle_particle(x1, d1, x2, d2, Bounded::rounded(motion.radius));
+    vec![overlap.to_vec(), approach.to_vec()]
 }
 
 fn particle_half_plane(motion: &Motion) -> Vec<Vec<Bounded>> {
     let [x, point, normal] = motion.x.map(rounded);
-    let (s, w) = (rounded(motion.d[0]).dot(normal), (point - x).dot(normal));
-    let radius = Bounded::rounded(motion.radius);
-    vec![vec![-s * s, 2.0 * w * s, -w * w + radius * radius * normal.dot(normal)], vec![-s * s, w * s]]
+    let (d, radius) = (rounded(motion.d[0]), Bounded::rounded(motion.radius));
+    let (overlap, approach) = formulas::particle_half_plane(x, d, radius, point, normal, normal.dot(normal));
+    vec![overlap.to_vec(), approach.to_vec()]
 }
 
-#[expect(clippy::many_single_char_names, reason = "the letters of collisions.md 2")]
 fn particle_edge(motion: &Motion) -> Vec<Vec<Bounded>> {
     let [x1, x2, x3] = motion.x.map(rounded);
     let [d1, d2, d3] = motion.d.map(rounded);
-    let (x12, x32, x21, x13, x23) = (x1 - x2, x3 - x2, x2 - x1, x1 - x3, x2 - x3);
-    let (d12, d32, d21, d13, d23) = (d1 - d2, d3 - d2, d2 - d1, d1 - d3, d2 - d3);
-    let square = Bounded::rounded(motion.radius) * Bounded::rounded(motion.radius);
-    let (a, b, c) = (x12.dot(x32), x12.dot(d32) + d12.dot(x32), d12.dot(d32));
-    let (d, e, f) = (x21.dot(x21), d21.dot(x21), d21.dot(d21));
-    let (g, h, i) = (x32.dot(x32), d32.dot(x32), d32.dot(d32));
-    let distance = vec![
-        c * c - f * i,
-        2.0 * b * c - 2.0 * e * i - 2.0 * f * h,
-        2.0 * c * a + b * b - d * i - f * g - 4.0 * e * h + square * i,
-        2.0 * a * b - 2.0 * d * h - 2.0 * e * g + 2.0 * square * h,
-        a * a - d * g + square * g,
-    ];
-    let after_first = vec![c, b, a];
-    let before_second = vec![d13.dot(d23), d13.dot(x23) + x13.dot(d23), x13.dot(x23)];
-    vec![distance, after_first, before_second, approach([x12, x32, x21], [d12, d32, d21])]
-}
-
-/// The quintic, with the original's mistake in its third-power coefficient.
-#[expect(clippy::many_single_char_names, reason = "the letters of collisions.md 2")]
-fn approach([x12, x32, x21]: [Bounded2; 3], [d12, d32, d21]: [Bounded2; 3]) -> Vec<Bounded> {
-    let (a, b, c) = (x32.dot(x32), x32.dot(d32), d32.dot(d32));
-    let (d, e) = (d21.dot(d21), d21.dot(x21));
-    let (f, g, h) = (x12.dot(x32), x12.dot(d32) + d12.dot(x32), d12.dot(d32));
-    let (i, j) = (d32.dot(x21) + d21.dot(x32), d32.dot(d21));
-    let (k, l, m) = (a * f, a * g + 2.0 * b * f, a * h + 2.0 * b * g + c * f);
-    let (n, o, p, q) = (c * g + 2.0 * b * h, c * h, b, c);
-    vec![
-        -h * h * q - c * c * d - 2.0 * o * j,
-        -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,
-        -2.0 * g * h * p
-            - 2.0 * f * g * q
-            - g * g * q
-            - 2.0 * a * c * d
-            - 4.0 * b * b * d
-            - 4.0 * b * c * e
-            - n * i
-            - 2.0 * m * j,
-        -2.0 * f * h * p
-            - g * g * p
-            - 2.0 * f * g * q
-            - 4.0 * a * b * d
-            - 2.0 * a * c * e
-            - 4.0 * b * b * e
-            - m * i
-            - 2.0 * l * j,
-        -2.0 * f * g * p - f * f * q - a * a * d - 4.0 * a * b * e - l * i - 2.0 * k * j,
-        -f * f * p - a * a * e - k * i,
-    ]
+    let edge = formulas::EdgeMotions::new(x2, d2, x3, d3);
+    let pair = formulas::particle_edge(x1, d1, &edge, Bounded::rounded(motion.radius));
+    vec![pair.distance.to_vec(), pair.beyond_first.to_vec(), pair.before_second.to_vec(), pair.approach.to_vec()]
 }

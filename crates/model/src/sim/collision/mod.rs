@@ -18,6 +18,19 @@ mod simple;
 mod two;
 mod zones;
 
+/// The coefficients of the detection polynomials (collisions.md 2), once for all: over one number as a pass computes them, over
+/// [lanes](fosssim_num::lanes), and over numbers with bounds. Highest power first, nothing dropped.
+pub mod formulas {
+    pub use super::{
+        particle_edge::{
+            Coefficients as EdgeCoefficients, EdgeMotions, coefficients as particle_edge,
+            coefficients_and_right_cubic as particle_edge_and_right_cubic,
+        },
+        particle_half_plane::coefficients as particle_half_plane,
+        particle_particle::coefficients as particle_particle,
+    };
+}
+
 use super::{
     bodies::Bodies,
     observer::Observer,

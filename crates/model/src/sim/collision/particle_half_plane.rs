@@ -21,7 +21,7 @@ pub(super) fn polynomials(x: Vec2, d: Vec2, radius: f64, point: Vec2, normal: Ve
 
 /// Their coefficients, highest power first, of one pair or of several.
 #[inline(always)]
-pub(super) fn coefficients<N: Number>(
+pub fn coefficients<N: Number>(
     x: Plane<N>,
     d: Plane<N>,
     radius: N,

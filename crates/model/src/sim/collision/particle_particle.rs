@@ -19,13 +19,7 @@ pub(super) fn polynomials(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, radii: f64) ->
 
 /// Their coefficients, highest power first, of one pair or of several.
 #[inline(always)]
-pub(super) fn coefficients<N: Number>(
-    x1: Plane<N>,
-    d1: Plane<N>,
-    x2: Plane<N>,
-    d2: Plane<N>,
-    radii: N,
-) -> ([N; 3], [N; 2])
+pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, x2: Plane<N>, d2: Plane<N>, radii: N) -> ([N; 3], [N; 2])
 where
     f64: Mul<N, Output = N>,
 {

@@ -116,7 +116,7 @@ impl Detector {
         }
         if place.first < bodies.particles() {
             self.prepare(bodies, q_start);
-            let mut way = Way { bodies, q_start, q_end, observer, react, hits };
+            let mut way = Way { bodies, q_start, q_end, observer, react, hits, over: 0 };
             for i in place.first..bodies.particles() {
                 let from = |kind| if i > place.first || kind > place.kind { 0 } else { place.second };
                 if i > place.first || place.kind == PairKind::ParticleParticle {
@@ -178,6 +178,9 @@ impl Detector {
         let x1 = at(q_start, i);
         let mut d1 = at(&self.displacements, i);
         for j in from..bodies.particles() {
+            if self.is_passed_over(pair(PairKind::ParticleParticle, i, j), way) {
+                continue;
+            }
             let (x2, d2) = (at(q_start, j), at(&self.displacements, j));
             let mut polynomials = particle_particle::polynomials(x1, d1, x2, d2, bodies.radii[i] + bodies.radii[j]);
             let normal = |t| Some(particle_particle::normal(x1, d1, x2, d2, t));
@@ -203,18 +206,25 @@ impl Detector {
             let coefficients = |d1: Vec2, edges: &EdgeMotions<Two>| {
                 particle_edge::coefficients(two([x1; 2]), two([d1; 2]), edges, Two(radii))
             };
-            coefficients(d1, &self.edges[block]).write(&mut polynomials);
+            let mut are_known = false;
             for (lane, &ends) in ends.iter().enumerate() {
                 if ends.contains(&i) || LANES * block + lane < from {
                     continue;
                 }
                 let pair = pair(PairKind::ParticleEdge, i, LANES * block + lane);
+                if self.is_passed_over(pair, way) {
+                    continue;
+                }
+                if !are_known {
+                    coefficients(d1, &self.edges[block]).write(&mut polynomials);
+                    are_known = true;
+                }
                 let particles = [i, ends[0], ends[1]];
                 let d = particles.map(|particle| at(&self.displacements, particle));
                 let normal = |t| particle_edge::normal(particles.map(|particle| at(q_start, particle)), d, t);
                 if self.look(pair, &mut polynomials[lane], normal, way)? == Reaction::Moved {
                     d1 = at(&self.displacements, i);
-                    coefficients(d1, &self.edges[block]).write(&mut polynomials);
+                    are_known = false;
                 }
             }
         }
@@ -231,6 +241,9 @@ impl Detector {
         let x = at(q_start, i);
         let mut d = at(&self.displacements, i);
         for (h, (&point, &q)) in bodies.points.iter().zip(&bodies.normals).enumerate().skip(from) {
+            if self.is_passed_over(pair(PairKind::ParticleHalfPlane, i, h), way) {
+                continue;
+            }
             let squared = q.dot(&q);
             let mut polynomials = particle_half_plane::polynomials(x, d, bodies.radii[i], point, q, squared);
             let normal = |t| Some(particle_half_plane::normal(x, d, point, q, squared, t));
@@ -239,6 +252,24 @@ impl Detector {
             }
         }
         Ok(())
+    }
+
+    /// Whether the observer passes a call over.
+    #[inline]
+    fn is_passed_over<O: Observer, R>(&mut self, next: Pair, way: &mut Way<'_, O, R>) -> bool {
+        if self.search != RootSearch::WhereNeeded {
+            return false;
+        }
+        if way.over == 0 {
+            way.over = way.observer.passes_over(next, way.q_start, way.q_end);
+            if way.over == 0 {
+                return false;
+            }
+        }
+        way.over -= 1;
+        self.counts.calls += 1;
+        self.counts.excluded += 1;
+        true
     }
 
     /// Trims a pair's polynomials, decides about it, tells the observer and has a hit answered; `normal` gives the contact normal at a time, or
@@ -327,6 +358,8 @@ struct Way<'a, O, R> {
     observer: &'a mut O,
     react: R,
     hits: usize,
+    /// So many calls are passed over next.
+    over: usize,
 }
 
 /// Edges are looked at in blocks of so many.

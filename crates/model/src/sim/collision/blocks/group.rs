@@ -6,7 +6,7 @@ use super::{
 };
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
-    certificate::lanes::{is_small, never_positive, never_positive_line, search_ends},
+    certificate::lanes::{excludes_edge, excludes_two, is_small},
     lanes::{Lanes, Mask, Plane, Simd},
     vector::Vec2,
 };
@@ -60,21 +60,9 @@ impl Group {
             let [f0, f1, f2] = pair.beyond_first;
             let [s0, s1, s2] = pair.before_second;
             let [a0, a1, a2, a3, a4, a5] = pair.approach;
-            let (small, steep) = (is_small(o0), is_small(a0));
-            let mut excluded = never_positive(f0, f1, f2) | never_positive(s0, s1, s2);
-            if !excluded.all() {
-                // Where the overlap has degree two at most, or the approach, the closed forms know of them, too.
-                let is_parabola = small & is_small(o1);
-                if is_parabola.any() {
-                    excluded = excluded | (is_parabola & never_positive(o2, o3, o4));
-                }
-                let is_parabola = steep & is_small(a1) & is_small(a2);
-                if is_parabola.any() {
-                    excluded = excluded | (is_parabola & never_positive(a3, a4, a5));
-                }
-            }
-            excluded = excluded & search_ends(&pair.distance) & search_ends(&pair.approach);
-            let known = known(excluded, small | steep | is_small(f0) | is_small(s0));
+            let excluded = excludes_edge(pair.distance, pair.beyond_first, pair.before_second, pair.approach);
+            let has_small = is_small(o0) | is_small(a0) | is_small(f0) | is_small(s0);
+            let known = known(excluded, has_small);
             let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5, known];
             for (lanes, place) in all.iter().zip(numbers.chunks_exact_mut(width)) {
                 lanes.store(place);
@@ -116,12 +104,13 @@ pub(super) fn of_particles<S: Simd>(
 /// Asks the certificate about a parabola and a line with the same leading coefficient, and stores everything.
 #[inline(always)]
 fn store<S: Simd>(
-    [a, b, c]: [Lanes<S>; 3],
-    [d, e]: [Lanes<S>; 2],
+    overlap: [Lanes<S>; 3],
+    approach: [Lanes<S>; 2],
     numbers: &mut [f64],
     mut largest: Lanes<S>,
 ) -> Lanes<S> {
-    let excluded = never_positive(a, b, c) | never_positive_line(d, e);
+    let excluded = excludes_two(overlap, approach);
+    let ([a, b, c], [d, e]) = (overlap, approach);
     let all = [a, b, c, d, e, known(excluded, is_small(a))];
     for (lanes, place) in all.iter().zip(numbers.chunks_exact_mut(Lanes::<S>::COUNT)) {
         lanes.store(place);

@@ -1,4 +1,4 @@
-//! The detection polynomials of particle-edge pairs, several edges at a time (collisions.md 2).
+//! The detection polynomials of particle-edge pairs (collisions.md 2), of one pair or of several at a time.
 use super::super::two::Two;
 use fosssim_num::{
     lanes::{Number, Plane},
@@ -11,7 +11,7 @@ use std::ops::Mul;
 /// Every value is computed by the operations that the formulas prescribe, so it does not matter how often it is used.
 /// `x23` is computed and not taken as `-x32`: where they vanish their zeros have the same sign.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct EdgeMotions<N> {
+pub struct EdgeMotions<N> {
     x2: Plane<N>,
     d2: Plane<N>,
     x3: Plane<N>,
@@ -70,7 +70,7 @@ impl<N: Number> EdgeMotions<N> {
 
 /// The coefficients of particle-edge pairs before the removal of small leading ones, highest power first.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct Coefficients<N> {
+pub struct Coefficients<N> {
     /// "Closer than the radii to the line".
     pub distance: [N; 5],
     /// "Beyond the first end".
@@ -100,13 +100,22 @@ impl Coefficients<Two> {
 /// The t^3 coefficient of the last one is mathematically wrong (`g` where `h` belongs); it is the formula that every
 /// student was given.
 #[inline(always)]
+pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, edges: &EdgeMotions<N>, radii: N) -> Coefficients<N>
+where
+    f64: Mul<N, Output = N>,
+{
+    coefficients_and_right_cubic(x1, d1, edges, radii).0
+}
+
+/// The [`coefficients`], and what the definition gives for the t^3 coefficient of the last polynomial (numerics.md 1.1).
+#[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
-pub(in super::super) fn coefficients<N: Number>(
+pub fn coefficients_and_right_cubic<N: Number>(
     x1: Plane<N>,
     d1: Plane<N>,
     edges: &EdgeMotions<N>,
     radii: N,
-) -> Coefficients<N>
+) -> (Coefficients<N>, N)
 where
     f64: Mul<N, Output = N>,
 {
@@ -130,14 +139,14 @@ where
     ];
     let before_second = [d13.dot(d23), d13.dot(x23) + x13.dot(d23), x13.dot(x23)];
     // Products are commutative bit for bit, so `dot(x32, d32)` is `h` from above.
-    let approach = approach([g, h, i, f, e, a, b, c], d32.dot(x21) + d21.dot(x32), d32.dot(d21));
-    Coefficients { distance, beyond_first: [c, b, a], before_second, approach }
+    let (approach, right_cubic) = approach([g, h, i, f, e, a, b, c], d32.dot(x21) + d21.dot(x32), d32.dot(d21));
+    (Coefficients { distance, beyond_first: [c, b, a], before_second, approach }, right_cubic)
 }
 
-/// The coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`.
+/// The coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`; and the right one of t^3.
 #[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
-fn approach<N: Number>([a, b, c, d, e, f, g, h]: [N; 8], i: N, j: N) -> [N; 6]
+fn approach<N: Number>([a, b, c, d, e, f, g, h]: [N; 8], i: N, j: N) -> ([N; 6], N)
 where
     f64: Mul<N, Output = N>,
 {
@@ -148,17 +157,11 @@ where
     let o = c * h;
     let p = b;
     let q = c;
-    [
+    let others = [g * g * q, 2.0 * a * c * d, 4.0 * b * b * d, 4.0 * b * c * e, n * i, 2.0 * m * j];
+    let quintic = [
         -h * h * q - c * c * d - 2.0 * o * j,
         -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,
-        -2.0 * g * h * p
-            - 2.0 * f * g * q
-            - g * g * q
-            - 2.0 * a * c * d
-            - 4.0 * b * b * d
-            - 4.0 * b * c * e
-            - n * i
-            - 2.0 * m * j,
+        less(-2.0 * g * h * p - 2.0 * f * g * q, others),
         -2.0 * f * h * p
             - g * g * p
             - 2.0 * f * g * q
@@ -169,7 +172,17 @@ where
             - 2.0 * l * j,
         -2.0 * f * g * p - f * f * q - a * a * d - 4.0 * a * b * e - l * i - 2.0 * k * j,
         -f * f * p - a * a * e - k * i,
-    ]
+    ];
+    (quintic, less(-2.0 * g * h * p - 2.0 * f * h * q, others))
+}
+
+/// A number less others, one after the other.
+#[inline(always)]
+fn less<N: Number, const COUNT: usize>(mut number: N, others: [N; COUNT]) -> N {
+    for other in others {
+        number = number - other;
+    }
+    number
 }
 
 #[cfg(test)]
