@@ -17,6 +17,8 @@ use fosssim_num::{
     tolerances::IMAGINARY_PART,
 };
 
+fosssim_model::drops_leading!();
+
 /// One polynomial of a detection call, and where it is positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {

@@ -6,6 +6,8 @@ use fosssim_num::{
     tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
 };
 
+fosssim_model::drops_leading!();
+
 /// A polynomial that is right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Match {

@@ -23,6 +23,8 @@ use fosssim_num::{
     vector::{Vec2, at, length},
 };
 
+fosssim_model::drops_leading!();
+
 /// A polynomial's value at time `t` and the tolerance of that value, both from bounded coefficients.
 fn value(polynomial: &[Bounded], t: f64) -> (f64, f64) {
     let (mut value, mut bound) = (0.0, 0.0);

@@ -128,12 +128,22 @@ pub enum ImpulseList {
 
 /// What is dropped of a polynomial before its zeros are searched, and when one is read from a trace.
 ///
-/// Code that takes a rule for granted says so with a pattern that only this rule matches, in a constant. A second rule here
-/// then makes the compiler name each of these places.
+/// Code that takes a rule for granted says so ([`drops_leading`](crate::drops_leading)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dropping {
     /// Leading coefficients with `|c| < 1e-12` (root-finder.md 15.1, the dropping build).
     Leading,
+}
+
+/// Says that the code beside it takes it for granted that small leading coefficients are dropped. A second rule makes the
+/// compiler name all these places.
+#[macro_export]
+macro_rules! drops_leading {
+    () => {
+        const _: () = match $crate::assignments::Assignment::T2M2.definition().dropping {
+            $crate::assignments::Dropping::Leading => (),
+        };
+    };
 }
 
 #[cfg(test)]

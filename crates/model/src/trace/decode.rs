@@ -10,6 +10,8 @@ use crate::sim::State;
 use fosssim_num::{polynomial::MAX_COEFFICIENTS, tolerances::LEADING_COEFFICIENT, vector::Vec2};
 use std::io::Read;
 
+crate::drops_leading!();
+
 /// Bytes of memory that a decoded polynomial takes besides its coefficients.
 const POLYNOMIAL_MEMORY: usize = size_of::<usize>();
 

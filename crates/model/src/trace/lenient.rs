@@ -21,6 +21,8 @@ use crate::{
 use fosssim_num::{polynomial::MAX_COEFFICIENTS, tolerances::LEADING_COEFFICIENT};
 use std::io::Read;
 
+crate::drops_leading!();
+
 /// Memory that the lists of one record may take together at most, in bytes, whatever the scene.
 const LIMIT: usize = 256 * 1024 * 1024;
 

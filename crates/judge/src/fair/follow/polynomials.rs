@@ -11,6 +11,8 @@ use crate::{
 use fosssim_model::sim::{Pair, PairKind};
 use fosssim_num::polynomial::{MAX_COEFFICIENTS, Polynomial};
 
+fosssim_model::drops_leading!();
+
 impl Follower<'_> {
     /// Compares a pair's logged polynomials, which begin at `index`, with what they should be.
     pub(super) fn review(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize, count: usize) {

@@ -13,6 +13,8 @@ use fosssim_num::{
     vector::Vec2,
 };
 
+fosssim_model::drops_leading!();
+
 /// How far numbers may be apart.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::diagnose) struct Tolerance {

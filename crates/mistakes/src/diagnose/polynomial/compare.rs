@@ -8,6 +8,8 @@ use fosssim_num::{
     tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
 };
 
+fosssim_model::drops_leading!();
+
 /// How much of its bound a coefficient may be off; both sides round.
 const TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 

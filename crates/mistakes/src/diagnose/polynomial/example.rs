@@ -5,6 +5,8 @@ use crate::diagnose::{Example, ExampleValue};
 use fosssim_judge::PairWords;
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
+fosssim_model::drops_leading!();
+
 /// The example of a study, with the number of characters that its inputs take.
 pub(super) fn smallest(study: &Study) -> Option<(usize, Example)> {
     let wrong = study.cases.iter().filter(|case| !case.right);

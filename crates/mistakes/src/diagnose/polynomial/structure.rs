@@ -9,6 +9,8 @@ use fosssim_num::{
     tolerances::{FAIR_UNITS, LEADING_COEFFICIENT},
 };
 
+fosssim_model::drops_leading!();
+
 /// The relative rounding of a single-precision number.
 const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
 

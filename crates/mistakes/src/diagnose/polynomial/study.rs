@@ -9,6 +9,8 @@ use crate::assignments::t2m2::{
 };
 use fosssim_num::{bounded::Bounded, tolerances::LEADING_COEFFICIENT};
 
+fosssim_model::drops_leading!();
+
 /// So many samples are looked at; more add nothing but time.
 const MOST_CASES: usize = 1200;
 

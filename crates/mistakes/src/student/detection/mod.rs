@@ -32,6 +32,8 @@ mod wide;
 
 use frame::Frame;
 
+fosssim_model::drops_leading!();
+
 impl Encounter {
     fn new(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let frame = frame_of(world.student, pair);

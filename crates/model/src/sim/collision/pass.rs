@@ -22,6 +22,8 @@ use fosssim_num::{
     vector::{Vec2, at, put},
 };
 
+crate::drops_leading!();
+
 /// What a pass does about a hit, before it looks at the next pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reaction {

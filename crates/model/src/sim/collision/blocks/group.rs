@@ -12,6 +12,8 @@ use fosssim_num::{
 };
 use std::ops::Range;
 
+crate::drops_leading!();
+
 /// Numbers of a pair with an edge: its coefficients, and what is known about it.
 pub(super) const OF_EDGE: usize = 18;
 

@@ -15,6 +15,8 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
+crate::drops_leading!();
+
 /// Where polynomials go, and how many have gone there.
 pub(super) struct Output<'a> {
     /// Room for all of them; none where nobody wants to know.
