@@ -119,7 +119,7 @@ mod tests {
     use super::*;
     use fosssim_judge::parity;
     use fosssim_mistakes::{
-        diagnose::{Example, explain, formula_in},
+        diagnose::{About, Example, explain, formula_in},
         student::{self, CATALOGUE, Kind, Student},
     };
     use fosssim_model::scene::original;
@@ -129,6 +129,7 @@ mod tests {
             Example { step: 3, place: String::new(), given: Vec::new(), expected: vec![1.0], actual: vec![2.0] };
         Explanation {
             key: "pe-square-no-eh".to_owned(),
+            about: About::Mistake,
             what: "A term is missing.".to_owned(),
             details: vec!["t^2: (e.h) has weight 0, expected -4".to_owned()],
             reproduced: 3,

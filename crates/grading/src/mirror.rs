@@ -7,7 +7,7 @@ use fosssim_judge::{
     Book, Counts, Damage, Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role, Rules,
     Ruling, Unreadable, fair::Cause,
 };
-use fosssim_mistakes::diagnose::{Example, ExampleValue, Explanation};
+use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation, OfPolynomials, StepStage};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
     trace::LoggedImpulse,
@@ -118,6 +118,9 @@ struct OneValue(#[serde(with = "ExampleValueForm")] ExampleValue);
 
 #[derive(Serialize, Deserialize)]
 struct OneExample(#[serde(with = "ExampleForm")] Example);
+
+#[derive(Serialize, Deserialize)]
+struct OneKind(#[serde(with = "PairKindForm")] PairKind);
 
 #[derive(Serialize, Deserialize)]
 struct OneDamage(#[serde(with = "DamageForm")] Damage);
@@ -463,10 +466,49 @@ enum DetailForm {
     },
 }
 
+written_as!(kinds, Vec<PairKind>, Vec<OneKind>, |kinds| kinds.iter().copied().map(OneKind).collect(), |kinds| Some(
+    kinds.into_iter().map(|OneKind(kind)| kind).collect()
+));
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "About")]
+enum AboutForm {
+    Mistake,
+    Unfinished,
+    Scene,
+    Polynomials {
+        #[serde(with = "kinds")]
+        kinds: Vec<PairKind>,
+        #[serde(with = "OfPolynomialsForm")]
+        found: OfPolynomials,
+    },
+    Stage(#[serde(with = "StepStageForm")] StepStage),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "OfPolynomials")]
+enum OfPolynomialsForm {
+    Guess,
+    Missing,
+    NearlyRight,
+    Nothing,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "StepStage")]
+enum StepStageForm {
+    Detection,
+    ContactVectors,
+    Responses,
+    Zones,
+}
+
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Explanation")]
 struct ExplanationForm {
     key: String,
+    #[serde(with = "AboutForm")]
+    about: About,
     what: String,
     details: Vec<String>,
     reproduced: u64,

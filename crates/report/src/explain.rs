@@ -4,7 +4,7 @@
 //! come from a submission only as numbers.
 use super::{number::exact, view::Number};
 use fosssim_mistakes::{
-    diagnose::{Example, Explanation},
+    diagnose::{About, Example, Explanation},
     student::{Row, find},
 };
 use serde::Serialize;
@@ -24,7 +24,7 @@ pub fn lines(explanations: &[Explanation]) -> Vec<String> {
 pub fn sentence(explanations: &[Explanation]) -> Option<String> {
     let together: Vec<&str> = explanations
         .iter()
-        .filter(|one| one.is_complete() && find(&one.key).is_some())
+        .filter(|one| one.is_complete() && one.about == About::Mistake)
         .map(|one| one.what.as_str())
         .collect();
     if together.len() > 1 {
@@ -41,8 +41,8 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
     let mut lines = vec![match explanation {
         Explanation { what, samples: 0, .. } => what.clone(),
         Explanation { what, reproduced: 0, samples, .. } => format!("{what} ({samples} looked at)"),
-        Explanation { key, what, .. } if key == Explanation::UNFINISHED => what.clone(),
-        Explanation { key, what, reproduced, samples, .. } if find(key).is_some() => {
+        Explanation { what, .. } if explanation.is_unfinished() => what.clone(),
+        Explanation { about: About::Mistake, what, reproduced, samples, .. } => {
             format!("likely mistake: {what} (in {reproduced} of {samples} wrong steps tried)")
         }
         Explanation { what, reproduced, samples, .. } => {
@@ -50,7 +50,7 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
         }
     }];
     lines.extend(explanation.details.iter().map(|detail| format!("  {detail}")));
-    if !explanation.same_as.is_empty() && explanation.key != Explanation::UNFINISHED {
+    if !explanation.same_as.is_empty() && !explanation.is_unfinished() {
         let (shown, more) = explanation.same_as.split_at(explanation.same_as.len().min(LISTED));
         let more = if more.is_empty() { String::new() } else { format!(" And {} more.", more.len()) };
         let words = |key: &String| find(key).map_or_else(|| format!("{key}."), Row::sentence);
@@ -167,7 +167,7 @@ impl From<&Example> for ExampleView {
 pub(crate) mod tests {
     use super::*;
     use fosssim_grading::config::Hints;
-    use fosssim_mistakes::diagnose::ExampleValue;
+    use fosssim_mistakes::diagnose::{ExampleValue, OfPolynomials};
 
     /// One with everything, one with the least.
     pub(crate) fn explanations() -> Vec<Explanation> {
@@ -175,6 +175,7 @@ pub(crate) mod tests {
         vec![
             Explanation {
                 key: "pe-radius-not-squared".to_owned(),
+                about: About::Mistake,
                 what: "The sum of radii is not squared.".to_owned(),
                 details: vec!["t^2: R^2 (e1.e1) has weight 0, expected 1".to_owned()],
                 reproduced: 11,
@@ -190,6 +191,7 @@ pub(crate) mod tests {
             },
             Explanation {
                 key: "unexplained".to_owned(),
+                about: About::Polynomials { kinds: Vec::new(), found: OfPolynomials::Nothing },
                 what: "Nothing that is known explains the overlap polynomial.".to_owned(),
                 details: Vec::new(),
                 reproduced: 0,

@@ -8,7 +8,7 @@ use fosssim_judge::{
     Book, Counts, Damage, Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role, Ruling,
     Unreadable, fair::Cause,
 };
-use fosssim_mistakes::diagnose::{Example, ExampleValue, Explanation};
+use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation, OfPolynomials};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
     trace::LoggedImpulse,
@@ -119,6 +119,7 @@ fn wrong() -> SceneResult {
     };
     let explanation = |example| Explanation {
         key: "reversed".to_owned(),
+        about: About::Polynomials { kinds: vec![PairKind::ParticleEdge], found: OfPolynomials::Guess },
         what: "The coefficients are reversed.".to_owned(),
         details: vec!["t^2".to_owned()],
         reproduced: 4,
@@ -238,7 +239,7 @@ fn another_version_and_damage_are_not_read() {
     let written = String::from_utf8(write(&key(), "submission", &wrong())).expect("text");
     assert!(read(written.as_bytes()).is_some());
     assert!(!written.contains('\n'), "one line");
-    assert!(read(written.replacen("\"form\":1", "\"form\":2", 1).as_bytes()).is_none());
+    assert!(read(written.replacen("\"form\":2", "\"form\":3", 1).as_bytes()).is_none());
     assert!(read(written.replacen("\"coefficient\"", "\"coeficient\"", 1).as_bytes()).is_none());
     let seven = "[1,2,3,4,5,6,7]";
     let many = written.replacen("[1e-300,\"-inf\",0.3]", seven, 1);

@@ -1,6 +1,7 @@
 //! Puts the explanations of a trace together.
 use super::{
     Explanation,
+    about::{About, StepStage},
     known::{is_empty_stage, known_or_open, shows},
     notation, polynomial, samples, stages,
 };
@@ -27,7 +28,7 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     }
     let mut polynomials = polynomial::explain(&samples::samples(scene, &mut &trace[..]));
     if known.iter().any(|one| find(&one.key).is_some_and(is_empty_stage)) {
-        polynomials.retain(|one| one.key != "missing-polynomials");
+        polynomials.retain(|one| !one.is_of_missing());
     }
     let alone = known.len() == 1;
     for explanation in &mut known {
@@ -35,7 +36,7 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
         if alone && is_formula && explanation.is_complete() {
             // The same mistake in other words, with its terms and an example of its own.
             for own in std::mem::take(&mut polynomials) {
-                if own.key == "unexplained" || !own.is_complete() {
+                if own.is_unexplained() || !own.is_complete() {
                     continue;
                 }
                 // The remedy stays last. The same mistake by the same name has been said.
@@ -70,29 +71,32 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     all.append(&mut polynomials);
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.
-    all.sort_by_key(|explanation| (explanation.key == "unexplained", !explanation.is_complete()));
+    all.sort_by_key(|explanation| (explanation.is_unexplained(), !explanation.is_complete()));
     debug_assert!(all.iter().all(|one| formula_in(&one.what).is_none()), "a sentence gives a formula away: {all:?}");
     all
 }
 
 /// Says once, behind an explanation's formulas, what their letters mean.
 fn explain_letters(explanation: &mut Explanation) {
-    if explanation.key == "unexplained" {
+    if explanation.is_unexplained() {
         return;
     }
-    let kinds = [
-        ("particle-particle", PairKind::ParticleParticle),
-        ("particle-edge", PairKind::ParticleEdge),
-        ("particle-half-plane", PairKind::ParticleHalfPlane),
-    ];
-    let place = explanation.what.to_lowercase();
-    let named: Vec<PairKind> =
-        kinds.into_iter().filter(|(name, _)| place.contains(name)).map(|(_, kind)| kind).collect();
+    let named: Vec<PairKind> = match &explanation.about {
+        About::Polynomials { kinds, .. } => kinds_of(|kind| kinds.contains(&kind)),
+        _ => {
+            let sentence = explanation.what.to_lowercase();
+            kinds_of(|kind| sentence.contains(kind.name()))
+        }
+    };
     // A known mistake's last line says where to look.
     let end = explanation.details.len() - usize::from(find(&explanation.key).is_some());
     if let Some(letters) = notation::of(&explanation.details[..end], &named) {
         explanation.details.insert(end, letters);
     }
+}
+
+fn kinds_of(is_meant: impl Fn(PairKind) -> bool) -> Vec<PairKind> {
+    PairKind::ALL.into_iter().filter(|kind| is_meant(*kind)).collect()
 }
 
 /// Whether mistakes of this part of the assignment are mistakes of polynomials.
@@ -129,7 +133,7 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
             }
         }
     }
-    votes.remove("unexplained");
+    votes.remove(polynomial::UNEXPLAINED);
     votes.remove(Explanation::NEARLY_RIGHT);
     votes.remove(Explanation::OTHER_SCENE);
     let weight = |vote: &Vote<'_>| (vote.complete, vote.traces);
@@ -143,7 +147,10 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
     let shared = vote.shared?;
     match vote.told {
         Some(told) => Some(Explanation { same_as, ..told.clone() }),
-        None => Some(Explanation { key: (*key).to_owned(), what: find(key)?.sentence(), same_as, ..shared.clone() }),
+        None => {
+            let what = find(key)?.sentence();
+            Some(Explanation { key: (*key).to_owned(), about: About::Mistake, what, same_as, ..shared.clone() })
+        }
     }
 }
 
@@ -163,10 +170,14 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
             if let Some(row) =
                 named.iter().find(|row| explanation.is_in_other_words(row) && !is_refuted(&row.id.to_owned()))
             {
-                return Some(Explanation { key: row.id.to_owned(), what: row.sentence(), ..explanation.clone() });
+                let (key, about, what) = (row.id.to_owned(), About::Mistake, row.sentence());
+                return Some(Explanation { key, about, what, ..explanation.clone() });
             }
-            let what = if key == explanation.key { explanation.what.clone() } else { find(&key)?.sentence() };
-            Some(Explanation { key, what, same_as, ..explanation.clone() })
+            if key == explanation.key {
+                return Some(Explanation { same_as, ..explanation.clone() });
+            }
+            let what = find(&key)?.sentence();
+            Some(Explanation { key, about: About::Mistake, what, same_as, ..explanation.clone() })
         };
         list.iter().filter_map(settle).collect()
     };
@@ -186,7 +197,8 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         }
     }
     for one in &mut found {
-        if one.key == Explanation::UNFINISHED && one.same_as.len() == 1 {
+        if one.is_unfinished() && one.same_as.len() == 1 {
+            one.about = About::Mistake;
             (one.key, one.what) =
                 (one.same_as[0].clone(), find(&one.same_as[0]).map_or_else(String::new, Row::sentence));
             one.same_as.clear();
@@ -219,14 +231,14 @@ fn keep_earliest_stage(open: &mut Vec<Vec<Explanation>>) {
     open.retain(|list| !list.is_empty());
 }
 
-/// How early in a step mistakes of this part of the assignment are made, as [`Explanation::stage`] counts; nothing for
+/// The stage of a step in which mistakes of this part of the assignment are made; nothing for
 /// polynomials and for the trace.
-const fn stage_of(area: Area) -> Option<usize> {
+const fn stage_of(area: Area) -> Option<StepStage> {
     match area {
-        Area::Decision => Some(0),
-        Area::ContactVector => Some(1),
-        Area::Response | Area::ContinuousTime | Area::ImpulseLoop => Some(2),
-        Area::ImpactZones | Area::Failsafe => Some(3),
+        Area::Decision => Some(StepStage::Detection),
+        Area::ContactVector => Some(StepStage::ContactVectors),
+        Area::Response | Area::ContinuousTime | Area::ImpulseLoop => Some(StepStage::Responses),
+        Area::ImpactZones | Area::Failsafe => Some(StepStage::Zones),
         _ => None,
     }
 }
@@ -239,7 +251,7 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
     loop {
         let likely = several(traces.iter().copied(), &refuted);
         // What is not written yet stands for its stages.
-        let stages = likely.iter().filter(|one| one.key == Explanation::UNFINISHED).flat_map(|one| &one.same_as);
+        let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
         let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
         match keys.find(|key| right.iter().any(|scene| shows(scene, key))).cloned() {
             Some(key) => refuted.push(key),
@@ -291,6 +303,7 @@ fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
     let of_rows = || told.iter().filter(|one| rows.iter().any(|row| row.id == one.key));
     (!rows.is_empty()).then(|| Explanation {
         key: Explanation::UNFINISHED.to_owned(),
+        about: About::Unfinished,
         what: format!("Not written yet: {}.", rows.iter().map(|row| stage(row)).collect::<Vec<_>>().join(", ")),
         details: Vec::new(),
         reproduced: of_rows().map(|one| one.reproduced).sum(),

@@ -1,4 +1,5 @@
 //! What an explanation says.
+use super::about::{About, OfPolynomials, StepStage};
 use crate::student::{Row, find};
 
 /// A likely mistake, with the evidence for it.
@@ -6,6 +7,8 @@ use crate::student::{Row, find};
 pub struct Explanation {
     /// A stable key for machines: the id of a known mistake (`pe-square-no-eh`) or of a general finding (`reversed`).
     pub key: String,
+    /// What it is about: whoever decides by an explanation asks this and the key; the texts are for people.
+    pub about: About,
     /// What is wrong, in one sentence to the student, without the remedy's formula.
     pub what: String,
     /// The exact form, one line each: "t^2: R^2 (e1.e1) has weight 2, expected 1". May give the right formula away.
@@ -38,6 +41,7 @@ impl Explanation {
         let length = if has_length { "" } else { ", and neither is its length" };
         Self {
             key: Self::OTHER_SCENE.to_owned(),
+            about: About::Scene,
             what: format!("Is this trace of this scene? Its first record is not the scene's{length}."),
             details: Vec::new(),
             reproduced: 0,
@@ -50,13 +54,31 @@ impl Explanation {
     /// Whether this is the question whether the trace is of its scene.
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
-        self.key == Self::OTHER_SCENE
+        self.about == About::Scene
+    }
+
+    /// Whether it names stages that are still empty.
+    #[must_use]
+    pub fn is_unfinished(&self) -> bool {
+        self.about == About::Unfinished
+    }
+
+    /// Whether it says of polynomials that nothing explains them.
+    #[must_use]
+    pub(super) fn is_unexplained(&self) -> bool {
+        matches!(self.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
+    }
+
+    /// Whether it says that polynomials are not handed over.
+    #[must_use]
+    pub(super) fn is_of_missing(&self) -> bool {
+        matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
     }
 
     /// Whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet, one stage.
     #[must_use]
     pub fn is_named_in(&self, explanations: &[Self]) -> bool {
-        let stages = if self.key == Self::UNFINISHED { self.same_as.as_slice() } else { &[] };
+        let stages = if self.is_unfinished() { self.same_as.as_slice() } else { &[] };
         let is_meant = |key: &String| *key == self.key || stages.contains(key);
         let row = find(&self.key);
         explanations.iter().any(|one| {
@@ -70,7 +92,8 @@ impl Explanation {
     /// edges is `pe-radii-squared-apart`.
     pub(super) fn is_in_other_words(&self, row: &Row) -> bool {
         let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == self.key);
-        is_called_so && self.what.starts_with(row.place())
+        let About::Polynomials { kinds, .. } = &self.about else { return false };
+        is_called_so && kinds.first().is_some_and(|kind| kind.name().eq_ignore_ascii_case(row.place()))
     }
 
     /// Whether it says which stage of a step is wrong, which is an observation and no guess.
@@ -79,21 +102,12 @@ impl Explanation {
         self.stage().is_some()
     }
 
-    /// How early in a step the stage is that it says is wrong: detection, contact vectors, responses and impulse rounds, zones.
-    pub(super) fn stage(&self) -> Option<usize> {
-        let stages: [&[&str]; 4] = [
-            &[
-                Self::ORDER,
-                "stage-contact-times",
-                "stage-contacts-missed",
-                "stage-contacts-superfluous",
-                "stage-decisions",
-            ],
-            &["stage-contact-vectors"],
-            &["stage-response", "stage-unresolved", "stage-rounds", "stage-handed-over", "stage-loop"],
-            &["stage-zones", "stage-stop", "stage-zone-rounds", "stage-failsafe"],
-        ];
-        stages.iter().position(|keys| keys.contains(&self.key.as_str()))
+    /// The stage of a step that it says is wrong.
+    pub(super) fn stage(&self) -> Option<StepStage> {
+        match self.about {
+            About::Stage(stage) => Some(stage),
+            _ => None,
+        }
     }
 
     /// Whether it reproduces everything that was looked at.

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod about;
 mod explain;
 mod explanation;
 mod known;
@@ -15,6 +16,7 @@ mod samples;
 mod stages;
 
 pub use crate::{assignments::probe_scenes, plain::formula_in};
+pub use about::{About, OfPolynomials, StepStage};
 pub use explain::{common, explain, refuted, several};
 pub use explanation::{Example, ExampleValue, Explanation};
 pub use known::{known, shows};

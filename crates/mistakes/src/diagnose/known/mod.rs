@@ -27,7 +27,7 @@ pub use refute::shows;
 pub(super) use scan::Sample;
 pub(super) use several::is_empty_stage;
 
-use super::Explanation;
+use super::{Explanation, about::About};
 use crate::student::{Kind, Mistake, Row, find};
 use candidates::{Candidates, Score};
 use fosssim_model::{scene::Scene, trace::Layout};
@@ -164,6 +164,7 @@ fn plausibility(row: &Row) -> u8 {
 fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
         key: row.id.to_owned(),
+        about: About::Mistake,
         what: row.sentence(),
         details: details(row),
         reproduced,

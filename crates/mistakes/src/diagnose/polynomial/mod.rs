@@ -24,7 +24,11 @@ mod tests;
 pub use crate::assignments::t2m2::{Body, Motion};
 pub use sample::Sample;
 
-use super::{Explanation, notation};
+use super::{
+    Explanation,
+    about::{About, OfPolynomials},
+    notation,
+};
 use crate::{
     assignments::t2m2::{
         Subject,
@@ -35,6 +39,9 @@ use crate::{
 use fosssim_model::sim::PairKind;
 use std::collections::BTreeMap;
 use study::{Candidate, Study};
+
+/// The key of what nothing is known to explain.
+pub(super) const UNEXPLAINED: &str = "unexplained";
 
 /// So many other keys are told per explanation.
 const MOST_OTHERS: usize = 5;
@@ -78,7 +85,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
 
 /// Tells that no detection of a kind has all its polynomials.
 fn missing(samples: &[Sample]) -> Option<Explanation> {
-    let (mut names, mut details, mut count) = (Vec::new(), Vec::new(), 0);
+    let (mut names, mut kinds, mut details, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for kind in PairKind::ALL {
         let of_kind = || samples.iter().filter(|sample| sample.motion.kind() == kind);
         let logged = of_kind().map(|sample| sample.polynomials.len()).max().unwrap_or(usize::MAX);
@@ -86,11 +93,13 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         if logged < kind.polynomials() {
             details.push(format!("{logged} of {} polynomials per detection", kind.polynomials()));
             count += of_kind().count() as u64;
+            kinds.push(kind);
         }
         names.extend(absent.map(|subject| subject.name()));
     }
     (!names.is_empty()).then(|| Explanation {
         key: "missing-polynomials".to_owned(),
+        about: About::Polynomials { kinds, found: OfPolynomials::Missing },
         what: format!("Polynomials are not handed over: {}.", names.join(", ")),
         details: distinct(details.into_iter()),
         reproduced: count,
@@ -120,8 +129,10 @@ impl Suspect<'_> {
             let is_likely = other.cost <= best.cost + AS_LIKELY;
             is_likely && other.reproduced == best.reproduced && other.key != best.key
         };
+        let found = if best.key == UNEXPLAINED { OfPolynomials::Nothing } else { OfPolynomials::Guess };
         Explanation {
             key: best.key.clone(),
+            about: About::Polynomials { kinds: vec![self.study.subject.kind()], found },
             what: placed(&[self.study.subject.name()], &best.sentence),
             details: best
                 .details
@@ -176,6 +187,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let (error, samples) = (study.error(), study.cases.len() as u64);
     (error < NEARLY && suspect.full().next().is_none()).then(|| Explanation {
         key: Explanation::NEARLY_RIGHT.to_owned(),
+        about: About::Polynomials { kinds: vec![study.subject.kind()], found: OfPolynomials::NearlyRight },
         what: placed(&[study.subject.name()], "The formula is right, but for more round-off than the rules allow"),
         details: vec![format!("right up to {error:.0e} of the size of its terms")],
         reproduced: 0,
@@ -195,7 +207,11 @@ fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
         suspect.study.differences().into_iter().map(move |line| format!("{name}{line}")).collect::<Vec<_>>()
     };
     Some(Explanation {
-        key: "unexplained".to_owned(),
+        key: UNEXPLAINED.to_owned(),
+        about: About::Polynomials {
+            kinds: hopeless.iter().map(|suspect| suspect.study.subject.kind()).collect(),
+            found: OfPolynomials::Nothing,
+        },
         what: format!("No simple mistake explains the polynomial{plural}: {}.", names.join(", ")),
         details: distinct(hopeless.iter().flat_map(lines)),
         reproduced: 0,
@@ -235,12 +251,13 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
     });
     let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();
     let examples = covered.iter().filter_map(|suspect| example::smallest(&suspect.study));
+    let details = guesses.iter().flat_map(|guess| &guess.details).map(|line| notation::radii(line.clone(), &kinds));
+    let found = if key == UNEXPLAINED { OfPolynomials::Nothing } else { OfPolynomials::Guess };
     Explanation {
         key: key.to_owned(),
         what: placed(&names, &guesses[0].sentence),
-        details: distinct(
-            guesses.iter().flat_map(|guess| &guess.details).map(|line| notation::radii(line.clone(), &kinds)),
-        ),
+        details: distinct(details),
+        about: About::Polynomials { kinds, found },
         reproduced: samples,
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),

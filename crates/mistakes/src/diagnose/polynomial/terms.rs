@@ -298,7 +298,7 @@ impl Words<'_> {
                 ("coefficient-sign", "The {} coefficient has the wrong sign")
             }
             Edit::Factor(_) => ("coefficient-factor", "The {} coefficient has a wrong factor"),
-            Edit::Unknown => ("unexplained", "No simple mistake explains the {} coefficient"),
+            Edit::Unknown => (super::UNEXPLAINED, "No simple mistake explains the {} coefficient"),
             Edit::Terms(changes) => match changes[..] {
                 [change] => match self.weights(*power, change) {
                     (0.0, _) => ("term-foreign", "The {} coefficient contains a term that does not belong there"),

@@ -5,6 +5,7 @@ use super::{
     story::{Facts, Hit},
     times,
 };
+use crate::diagnose::about::StepStage;
 use crate::diagnose::known::same_impulse;
 use fosssim_model::{
     sim::{PairKind, Stage},
@@ -18,6 +19,7 @@ pub(super) fn order(facts: &[Facts]) -> Option<Explanation> {
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
     (permuted > 0 && 2 * permuted > wrong.len()).then(|| {
         observation(
+            StepStage::Detection,
             Explanation::ORDER,
             "Detection: The polynomials are right, but the pairs are looked at in another order.".to_owned(),
             vec!["per particle: the particles behind it, the edges that it is no end of, the half-planes".to_owned()],
@@ -169,7 +171,7 @@ impl Contacts {
                 let all: Vec<(PairKind, f64)> = self.missed.iter().chain(&self.superfluous).copied().collect();
                 let what =
                     "the polynomials are right, the decisions are not: contacts are missed, others are superfluous";
-                return Some(said("stage-decisions", "detection", &all, what, Vec::new()));
+                return Some(said((StepStage::Detection, "detection"), "stage-decisions", &all, what, Vec::new()));
             }
         };
         let mut details = Vec::new();
@@ -186,7 +188,7 @@ impl Contacts {
             let (low, high) = range(rivals.iter().copied());
             details.push(format!("of those that are right ({}): {low:.4} to {high:.4}", rivals.len()));
         }
-        Some(said(key, "detection", listed, word, details))
+        Some(said((StepStage::Detection, "detection"), key, listed, word, details))
     }
 
     fn vectors(&self) -> Option<Explanation> {
@@ -212,7 +214,7 @@ impl Contacts {
             "it has the right direction, but not the right length"
         };
         let details = vec![format!("{} as long along the right one", times(&ratios))];
-        Some(said("stage-contact-vectors", "contact vector", &listed, what, details))
+        Some(said((StepStage::ContactVectors, "contact vector"), "stage-contact-vectors", &listed, what, details))
     }
 
     fn times(&self) -> Option<Explanation> {
@@ -232,7 +234,7 @@ impl Contacts {
         details
             .push("the time of impact goes into contact vector and response as the root finder returns it".to_owned());
         let what = "Detection: The contacts are right, but not their times of impact.".to_owned();
-        Some(observation("stage-contact-times", what, details, self.times.len()))
+        Some(observation(StepStage::Detection, "stage-contact-times", what, details, self.times.len()))
     }
 }
 
@@ -246,10 +248,16 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-fn said(key: &str, stage: &str, listed: &[(PairKind, f64)], what: &str, details: Vec<String>) -> Explanation {
+fn said(
+    (of, stage): (StepStage, &str),
+    key: &str,
+    listed: &[(PairKind, f64)],
+    what: &str,
+    details: Vec<String>,
+) -> Explanation {
     let place = match only_kind(listed) {
         Some(kind) => format!("{} {stage}", sentence(kind.name())),
         None => sentence(stage),
     };
-    observation(key, format!("{place}: {}.", sentence(what)), details, listed.len())
+    observation(of, key, format!("{place}: {}.", sentence(what)), details, listed.len())
 }

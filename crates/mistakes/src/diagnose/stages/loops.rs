@@ -4,6 +4,7 @@ use super::{
     responses::{self, Responses},
     story::Facts,
 };
+use crate::diagnose::about::StepStage;
 use crate::diagnose::known::ROUND_OFF;
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -57,7 +58,13 @@ fn rounds(wrong: &[&Facts], max_iterations: i32) -> Option<Explanation> {
             details.push(line);
         }
     }
-    Some(observation("stage-rounds", format!("Impulse loop: It makes {word}."), details, seen.len()))
+    Some(observation(
+        StepStage::Responses,
+        "stage-rounds",
+        format!("Impulse loop: It makes {word}."),
+        details,
+        seen.len(),
+    ))
 }
 
 /// Steps whose polynomials are all right, but not the state behind the loop.
@@ -93,7 +100,7 @@ fn handed_over(wrong: &[&Facts]) -> Option<Explanation> {
         _ => "",
     };
     let what = format!("Impulse loop: Its rounds are right, but not the {what} that it hands over{when}.");
-    Some(observation("stage-handed-over", what, Vec::new(), count))
+    Some(observation(StepStage::Responses, "stage-handed-over", what, Vec::new(), count))
 }
 
 /// Steps whose later rounds are wrong though their first one is right.
@@ -106,10 +113,10 @@ fn later(wrong: &[&Facts], responses: &Responses) -> Option<Explanation> {
     Some(if wrong.iter().any(is_right) {
         let what = "Impulse loop: Its first round detects what it should, and isolated contacts are resolved as they should \
                     be, but not all contacts of a round.";
-        observation("stage-loop", what.to_owned(), Vec::new(), wrong.len())
+        observation(StepStage::Responses, "stage-loop", what.to_owned(), Vec::new(), wrong.len())
     } else {
         let what = "Collision response or impulse loop: The first round detects what it should, but what its contacts change \
                     is not right.";
-        observation(responses::KEY, what.to_owned(), Vec::new(), wrong.len())
+        observation(StepStage::Responses, responses::KEY, what.to_owned(), Vec::new(), wrong.len())
     })
 }

@@ -13,6 +13,7 @@ mod story;
 
 use super::{
     Explanation,
+    about::{About, StepStage},
     known::{ROUND_OFF, Sample, first_difference, same_polynomial},
 };
 use fosssim_model::scene::{Collision, Scene};
@@ -61,9 +62,10 @@ pub(super) fn explain<'a>(scene: &Scene, samples: impl Iterator<Item = &'a Sampl
 }
 
 /// An observation, which reproduces nothing.
-fn observation(key: &str, what: String, details: Vec<String>, samples: usize) -> Explanation {
+fn observation(stage: StepStage, key: &str, what: String, details: Vec<String>, samples: usize) -> Explanation {
     Explanation {
         key: key.to_owned(),
+        about: About::Stage(stage),
         what,
         details,
         reproduced: 0,

@@ -4,6 +4,7 @@ use super::{
     story::{Facts, Hit},
     times,
 };
+use crate::diagnose::about::StepStage;
 use crate::diagnose::known::{ROUND_OFF, same_impulse};
 use fosssim_model::{
     scene::Scene,
@@ -98,7 +99,7 @@ impl Responses {
             format!("{} along the contact vector, but not by the right amount", subject(&wrong, "change"))
         };
         let details = wrong.iter().map(|(place, wrong)| detail(*place, wrong, changes[place].len())).collect();
-        Some(observation(KEY, format!("{place}: {}.", sentence(&what)), details, self.contacts))
+        Some(observation(StepStage::Responses, KEY, format!("{place}: {}.", sentence(&what)), details, self.contacts))
     }
 }
 
@@ -112,7 +113,7 @@ impl Responses {
             }
             _ => "Impulse loop: Some contacts that the first round's polynomials show change nothing.",
         };
-        Some(observation("stage-unresolved", what.to_owned(), Vec::new(), self.unresolved))
+        Some(observation(StepStage::Responses, "stage-unresolved", what.to_owned(), Vec::new(), self.unresolved))
     }
 }
 
@@ -162,7 +163,7 @@ fn of_many(facts: &[Facts]) -> Option<Explanation> {
     };
     let count = facts.iter().filter(is_right).count();
     let what = "Collision response: The contacts are right, but not the state that they lead to.";
-    (count > 0).then(|| observation(KEY, what.to_owned(), Vec::new(), count))
+    (count > 0).then(|| observation(StepStage::Responses, KEY, what.to_owned(), Vec::new(), count))
 }
 
 /// The bodies of a pair, in the order of the assignment.

@@ -4,6 +4,7 @@ use super::{
     story::{Facts, ZoneFacts},
     times,
 };
+use crate::diagnose::about::StepStage;
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::State,
@@ -54,7 +55,7 @@ fn rounds(wrong: &[&Facts], is_right_at_first: bool) -> Option<Explanation> {
     }
     if !is_right_at_first && later > 0 {
         let what = "Impact zones or rigid failsafe: The impulse rounds are right, what follows them is not.";
-        return Some(observation("stage-zones", what.to_owned(), Vec::new(), wrong.len()));
+        return Some(observation(StepStage::Zones, "stage-zones", what.to_owned(), Vec::new(), wrong.len()));
     }
     let what = match (fewer, more, later) {
         (0, 0, _) => "zones are right in the first round, but not as they grow",
@@ -62,7 +63,13 @@ fn rounds(wrong: &[&Facts], is_right_at_first: bool) -> Option<Explanation> {
         (0, _, 0) => "the zones make more rounds than they should",
         _ => "the zones are right at first, but not in later rounds, or there are not as many as there should be",
     };
-    Some(observation("stage-zone-rounds", format!("Impact zones: {}.", sentence(what)), Vec::new(), wrong.len()))
+    Some(observation(
+        StepStage::Zones,
+        "stage-zone-rounds",
+        format!("Impact zones: {}.", sentence(what)),
+        Vec::new(),
+        wrong.len(),
+    ))
 }
 
 /// What became of zones that were moved once.
@@ -190,7 +197,7 @@ impl Moved {
         }
         let is_one = |ratios: &[f64]| ratios.iter().all(|ratio| (ratio - 1.0).abs() <= ALIKE);
         let told = |key: &str, place: &str, what: &str, details: Vec<String>| {
-            Some(observation(key, format!("{place}: {}.", sentence(what)), details, self.zones))
+            Some(observation(StepStage::Zones, key, format!("{place}: {}.", sentence(what)), details, self.zones))
         };
         if self.partly > 0 {
             return told("stage-zones", "Impact zones", "some of a zone's particles are not moved with it", Vec::new());
