@@ -1,6 +1,6 @@
 //! The store of artefacts: submissions, reports, suites. Each lies under the SHA-256 of its bytes, is written once and
-//! never changed; whoever reads one gets the bytes that its name promises, or an error. A folder by default; whatever
-//! `object_store` knows otherwise.
+//! never changed; whoever reads one gets the bytes that its name promises, or an error. A folder by default; a bucket of S3, or
+//! of what speaks like it, for several servers.
 //!
 //! An artefact is safely stored before the database hears of it, so that what the database names is always there.
 use crate::secret::hex;
@@ -155,6 +155,32 @@ impl Store {
         Ok(Self { objects: Arc::new(objects) })
     }
 
+    /// A bucket as a store: `s3://BUCKET` or `s3://BUCKET/PREFIX`, reached as the variables `AWS_...` say.
+    ///
+    /// # Errors
+    /// When the address is none, or this program was built without buckets.
+    pub fn bucket(address: &str) -> Result<Self, StoreError> {
+        let place = address.strip_prefix("s3://").unwrap_or_default();
+        let (bucket, prefix) = place.split_once('/').unwrap_or((place, ""));
+        if bucket.is_empty() {
+            return Err(StoreError::Failed(format!("{address} is no s3://BUCKET/PREFIX")));
+        }
+        Self::s3(bucket, prefix)
+    }
+
+    #[cfg(feature = "s3")]
+    fn s3(bucket: &str, prefix: &str) -> Result<Self, StoreError> {
+        // The second time it is there already, and is told so.
+        drop(rustls::crypto::ring::default_provider().install_default());
+        let objects = object_store::aws::AmazonS3Builder::from_env().with_bucket_name(bucket).build()?;
+        Ok(Self { objects: Arc::new(object_store::prefix::PrefixStore::new(objects, prefix)) })
+    }
+
+    #[cfg(not(feature = "s3"))]
+    fn s3(_: &str, _: &str) -> Result<Self, StoreError> {
+        Err(StoreError::Failed("this program was built without buckets: build it with --features s3".to_owned()))
+    }
+
     /// Stores bytes.
     ///
     /// # Errors
@@ -203,11 +229,7 @@ impl Store {
     /// # Errors
     /// When the store fails.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
-        match self.objects.head(&digest.key()).await {
-            Ok(_) => Ok(true),
-            Err(object_store::Error::NotFound { .. }) => Ok(false),
-            Err(error) => Err(error.into()),
-        }
+        Ok(self.age(&digest.key()).await?.is_some() || self.age(&digest.aside()).await?.is_some())
     }
 
     /// Whether there is one that nobody will give up soon.
@@ -226,32 +248,34 @@ impl Store {
 
     /// Gives up every artefact that is older than `least` and not `named`; how many these were.
     ///
-    /// Whoever stores one of them at this very moment does not lose it: it is put aside first, and looked at again there. If
-    /// it was written anew before that, it comes back; if after, it is a new one in its place.
+    /// Whoever stores one of them at this very moment does not lose it: it is put aside first, where it is still read, and looked
+    /// at again there, at once and every time from then on. When it is named by then it comes back. It goes only when it lay
+    /// there unnamed and older than `least`: in a folder it keeps its age, in a bucket, where it is a copy, it begins anew.
     ///
     /// # Errors
     /// When the store fails. What was put aside is looked at again the next time.
     pub async fn give_up(&self, least: Duration, named: impl Fn(&str) -> bool) -> Result<usize, StoreError> {
-        let mut given_up: usize = 0;
         for (digest, age) in self.list(KEPT).await? {
             if age < least || named(digest.as_str()) {
                 continue;
             }
             match self.objects.rename(&digest.key(), &digest.aside()).await {
-                Ok(()) => {}
                 // Another server was faster.
-                Err(object_store::Error::NotFound { .. }) => continue,
+                Ok(()) | Err(object_store::Error::NotFound { .. }) => {}
                 Err(error) => return Err(error.into()),
             }
-            given_up += 1;
         }
+        let mut given_up: usize = 0;
         for (digest, age) in self.list(ASIDE).await? {
-            if age < least || named(digest.as_str()) {
-                self.objects.rename(&digest.aside(), &digest.key()).await?;
-                given_up = given_up.saturating_sub(1);
-            } else {
-                match self.objects.delete(&digest.aside()).await {
+            if named(digest.as_str()) {
+                match self.objects.rename(&digest.aside(), &digest.key()).await {
                     Ok(()) | Err(object_store::Error::NotFound { .. }) => {}
+                    Err(error) => return Err(error.into()),
+                }
+            } else if age >= least {
+                match self.objects.delete(&digest.aside()).await {
+                    Ok(()) => given_up += 1,
+                    Err(object_store::Error::NotFound { .. }) => {}
                     Err(error) => return Err(error.into()),
                 }
             }
@@ -306,7 +330,12 @@ impl Store {
         most: u64,
         output: &mut (impl tokio::io::AsyncWrite + Unpin),
     ) -> Result<(), StoreError> {
-        let found = match self.objects.get(&digest.key()).await {
+        let mut found = self.objects.get(&digest.key()).await;
+        // What is put aside may be named since, and comes back.
+        if matches!(found, Err(object_store::Error::NotFound { .. })) {
+            found = self.objects.get(&digest.aside()).await;
+        }
+        let found = match found {
             Err(object_store::Error::NotFound { .. }) => return Err(StoreError::Missing(digest.clone())),
             found => found?,
         };

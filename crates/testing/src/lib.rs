@@ -48,11 +48,13 @@ pub enum Need {
     Systemd,
     /// Python's `yaml`.
     Yaml,
+    /// `moto_server`, which answers like S3.
+    Moto,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Corpus,
         Self::Sandbox,
         Self::Walls,
@@ -69,6 +71,7 @@ impl Need {
         Self::Pgbouncer,
         Self::Systemd,
         Self::Yaml,
+        Self::Moto,
     ];
 
     /// Its name in `FOSSSIM_REQUIRE`.
@@ -91,6 +94,7 @@ impl Need {
             Self::Pgbouncer => "pgbouncer",
             Self::Systemd => "systemd",
             Self::Yaml => "yaml",
+            Self::Moto => "moto",
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What lies where in the data folder.
 use super::arguments::Place;
-use crate::db::Address;
+use crate::{db::Address, store::Store};
 use anyhow::{Context, Result};
 use std::{
     fs,
@@ -34,8 +34,12 @@ impl Folders {
         Ok(Self { data: data.to_owned() })
     }
 
-    pub(super) fn store(&self) -> PathBuf {
-        self.data.join("store")
+    /// The store that was asked for, or the one in the data folder.
+    pub(super) fn store(&self, place: &Place) -> Result<Store> {
+        match &place.store {
+            Some(address) => Store::bucket(address).with_context(|| format!("store {address}")),
+            None => Ok(Store::folder(&self.data.join("store"))?),
+        }
     }
 
     pub(super) fn incoming(&self) -> PathBuf {

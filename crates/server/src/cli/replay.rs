@@ -51,7 +51,7 @@ pub(super) async fn run(arguments: &Replay) -> Result<bool> {
     if db::version(&database).await? != db::LATEST {
         bail!("the tables of {address} are not those of this version: start the server first");
     }
-    let store = Store::folder(&folders.store())?;
+    let store = folders.store(&arguments.place)?;
     let program = Program::new(grader(arguments.work.grader.as_deref())?, arguments.work.threads.get());
     let mut transaction = database.read().await?;
     let rows = transaction

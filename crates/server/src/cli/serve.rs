@@ -39,7 +39,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let address = folders.database(&arguments.place);
     let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
     bring_up_to_date(&database, &folders, &address).await?;
-    let store = Store::folder(&folders.store())?;
+    let store = folders.store(&arguments.place)?;
     clear_incoming(&folders.incoming())?;
     let bell = Bell::default();
     tokio::spawn(bell.clone().listen(database.clone()));
@@ -192,7 +192,7 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
     let address = folders.database(&arguments.place);
     let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
     let house = House::new(Parts {
-        store: Store::folder(&folders.store())?,
+        store: folders.store(&arguments.place)?,
         bell: Bell::default(),
         policy: crate::queue::Policy::default(),
         incoming: folders.incoming(),

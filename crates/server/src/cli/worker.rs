@@ -36,7 +36,7 @@ pub(super) async fn run(arguments: &Worker) -> Result<()> {
             "the tables of {address} are not those of this version: start the server first, it brings them up to date"
         );
     }
-    let store = Store::folder(&folders.store())?;
+    let store = folders.store(&arguments.place)?;
     let bell = Bell::default();
     tokio::spawn(bell.clone().listen(database.clone()));
     let local = Local {

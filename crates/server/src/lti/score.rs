@@ -263,10 +263,44 @@ async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &st
     Ok(())
 }
 
-/// Keeps the column that was found or made for a link; the first one counts.
-pub(super) async fn keep_line_item(transaction: &mut Transaction, link: i64, address: &str) -> Result<(), DbError> {
+/// How far the column of a link is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Column {
+    /// It is there.
+    Known(String),
+    /// The caller is to have it made, and nobody else for so long.
+    Yours,
+    /// Somebody else is at it.
+    Theirs,
+}
+
+/// How far the column of a link is; whoever hears [`Column::Yours`] calls [`column_made`] soon.
+pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<Column, DbError> {
+    let mine = transaction
+        .execute(
+            "UPDATE platform_link SET making_until = {now} + ?
+             WHERE id = ? AND line_item IS NULL AND coalesce(making_until, 0) < {now}",
+            values![at_most, link],
+        )
+        .await?;
+    if mine > 0 {
+        return Ok(Column::Yours);
+    }
+    let row = transaction.one("SELECT line_item FROM platform_link WHERE id = ?", values![link]).await?;
+    Ok(row.maybe_text("line_item")?.map_or(Column::Theirs, Column::Known))
+}
+
+/// Keeps the column that was found or made for a link; with nothing somebody else may try.
+pub(super) async fn column_made(
+    transaction: &mut Transaction,
+    link: i64,
+    address: Option<&str>,
+) -> Result<(), DbError> {
     transaction
-        .execute("UPDATE platform_link SET line_item = ? WHERE id = ? AND line_item IS NULL", values![address, link])
+        .execute(
+            "UPDATE platform_link SET line_item = coalesce(line_item, CAST(? AS TEXT)), making_until = NULL WHERE id = ?",
+            values![address, link],
+        )
         .await?;
     Ok(())
 }

@@ -2,14 +2,13 @@
 use super::{
     Lti, ServiceFault,
     client::{Ask, scope},
-    score::{self, Order, Parcel},
+    score::{self, Column, Order, Parcel},
 };
 use crate::{
     calendar,
     db::{Database, DbError},
     ledger,
     queue::{self, Bell, Claim, Completion, Failure, Lane, Policy},
-    values,
 };
 use serde::Deserialize;
 use serde_json::json;
@@ -32,6 +31,11 @@ const REFUSED: u32 = 6;
 
 /// The longest wait between two tries.
 const LONGEST_WAIT: Duration = Duration::from_secs(3600);
+
+/// For so long, in milliseconds, nobody else has a column made; and so often, after such a time, others look whether it is there.
+const MAKING: i64 = 90_000;
+const LOOKS: u32 = 100;
+const LOOK_AGAIN: Duration = Duration::from_millis(250);
 
 /// Who holds the jobs.
 const WORKER: &str = "scores";
@@ -170,43 +174,56 @@ struct LineItem {
     link: Option<String>,
 }
 
-/// The column of a link that has none yet: one that is there, or a new one (AGS 3.2).
+/// The column of a link that has none yet. One message has it found or made, and the others wait for it.
 async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<String, ServiceFault> {
     let Some(container) = &parcel.line_items else {
         return Err(ServiceFault::Refused("its grade book has no column for this link".to_owned()));
     };
+    let link = parcel.order.link;
+    for _ in 0..LOOKS {
+        let mut transaction = database.begin().await?;
+        let column = score::column(&mut transaction, link, MAKING).await?;
+        transaction.commit().await?;
+        match column {
+            Column::Known(address) => return Ok(address),
+            Column::Theirs => tokio::time::sleep(LOOK_AGAIN).await,
+            Column::Yours => {
+                let made = find_or_make(database, lti, parcel, container).await;
+                let mut transaction = database.begin().await?;
+                score::column_made(&mut transaction, link, made.as_deref().ok()).await?;
+                transaction.commit().await?;
+                return made;
+            }
+        }
+    }
+    Err(ServiceFault::Away { why: "the column of its grade book is still being made".to_owned(), after: None })
+}
+
+/// Has a platform tell of the column of a link, or make one (AGS 3.2).
+async fn find_or_make(
+    database: &Database,
+    lti: &Lti,
+    parcel: &Parcel,
+    container: &str,
+) -> Result<String, ServiceFault> {
     let wrong = |error: String| ServiceFault::Refused(format!("its columns can't be read: {error}"));
     let mut url = Url::parse(container).map_err(|error| wrong(error.to_string()))?;
     url.query_pairs_mut().append_pair("resource_link_id", &parcel.resource);
     let ask = Ask { address: url.into(), accept: "application/vnd.ims.lis.v2.lineitemcontainer+json", body: None };
     let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
     let found: Vec<LineItem> = serde_json::from_slice(&told.body).map_err(|error| wrong(error.to_string()))?;
-    let found = found.into_iter().find(|item| item.link.as_ref() == Some(&parcel.resource)).map(|item| item.id);
-    let address = match found {
-        Some(address) => address,
-        None => {
-            let most = parcel.content["scoreMaximum"].as_f64().unwrap_or(100.0);
-            let item = json!({
-                "scoreMaximum": most, "label": parcel.title, "resourceId": parcel.slug,
-                "resourceLinkId": parcel.resource,
-            });
-            const KIND: &str = "application/vnd.ims.lis.v2.lineitem+json";
-            let body = Some((KIND, item.to_string().into_bytes()));
-            let ask = Ask { address: container.clone(), accept: KIND, body };
-            let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
-            let made: LineItem = serde_json::from_slice(&told.body).map_err(|error| wrong(error.to_string()))?;
-            made.id
-        }
-    };
-    let mut transaction = database.begin().await?;
-    score::keep_line_item(&mut transaction, parcel.order.link, &address).await?;
-    // Another server may have made one at the same moment: the first one counts.
-    let kept = transaction
-        .one("SELECT line_item FROM platform_link WHERE id = ?", values![parcel.order.link])
-        .await?
-        .text("line_item")?;
-    transaction.commit().await?;
-    Ok(kept)
+    if let Some(item) = found.into_iter().find(|item| item.link.as_ref() == Some(&parcel.resource)) {
+        return Ok(item.id);
+    }
+    let most = parcel.content["scoreMaximum"].as_f64().unwrap_or(100.0);
+    let item = json!({
+        "scoreMaximum": most, "label": parcel.title, "resourceId": parcel.slug, "resourceLinkId": parcel.resource,
+    });
+    const KIND: &str = "application/vnd.ims.lis.v2.lineitem+json";
+    let ask = Ask { address: container.to_owned(), accept: KIND, body: Some((KIND, item.to_string().into_bytes())) };
+    let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
+    let made: LineItem = serde_json::from_slice(&told.body).map_err(|error| wrong(error.to_string()))?;
+    Ok(made.id)
 }
 
 #[cfg(test)]

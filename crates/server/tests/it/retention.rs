@@ -96,3 +96,96 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
         assert_eq!(store.bytes(&two, 10).await.expect("the bytes"), b"two");
     });
 }
+
+/// The same in a bucket, where what is put aside begins a new age; and a server with its workers on it.
+#[cfg(feature = "s3")]
+mod bucket {
+    use super::*;
+    use fosssim_testing::{Need, skip};
+    use std::process::{Child, Command, Stdio};
+
+    struct Moto(Child);
+
+    impl Drop for Moto {
+        fn drop(&mut self) {
+            drop(self.0.kill());
+            drop(self.0.wait());
+        }
+    }
+
+    /// A server that answers like S3, with a bucket; nothing where there is none.
+    fn start() -> Option<(Moto, String)> {
+        let port =
+            std::net::TcpListener::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
+        let mut command = Command::new("moto_server");
+        command.args(["-H", "127.0.0.1", "-p", &port.to_string()]);
+        let Ok(child) = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn() else {
+            skip(Need::Moto, "no moto_server (pip install 'moto[server]')");
+            return None;
+        };
+        let moto = Moto(child);
+        let start = std::time::Instant::now();
+        while std::net::TcpStream::connect(("127.0.0.1", port)).is_err() {
+            if start.elapsed() > Duration::from_secs(120) {
+                skip(Need::Moto, "moto_server does not start");
+                return None;
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        let url = format!("http://127.0.0.1:{port}");
+        ureq::put(format!("{url}/bucket")).send_empty().expect("a bucket");
+        Some((moto, url))
+    }
+
+    /// How a process reaches it.
+    fn variables(url: &str) -> [(&'static str, String); 5] {
+        [
+            ("AWS_ENDPOINT", url.to_owned()),
+            ("AWS_ALLOW_HTTP", "true".to_owned()),
+            ("AWS_ACCESS_KEY_ID", "key".to_owned()),
+            ("AWS_SECRET_ACCESS_KEY", "secret".to_owned()),
+            ("AWS_REGION", "us-east-1".to_owned()),
+        ]
+    }
+
+    #[test]
+    fn a_bucket_keeps_what_is_named() {
+        let Some((_moto, url)) = start() else { return };
+        // SAFETY: the tests of this file read no variables, and others run in processes of their own or do not look at these.
+        variables(&url).into_iter().for_each(|(name, value)| unsafe { std::env::set_var(name, value) });
+        run(async {
+            let store = Store::bucket("s3://bucket/some/where").expect("a store");
+            let large = vec![7; 12 << 20];
+            let folder = tempfile::tempdir().expect("a folder");
+            let file = folder.path().join("large");
+            std::fs::write(&file, &large).expect("written");
+            let large_one = store.put_file(&file).await.expect("stored in parts").digest;
+            let small = store.put(b"small".to_vec()).await.expect("stored").digest;
+            assert!(store.bytes(&large_one, 13 << 20).await.expect("the bytes") == large);
+            assert!(
+                store.bytes(&large_one, 1).await.is_err() && !store.has(&Digest::of(b"none")).await.expect("an answer")
+            );
+            let long = Duration::from_secs(3600);
+            assert_eq!(store.give_up(long, |_| false).await.expect("done"), 0, "too young");
+            // Nothing names either of them for a moment: put aside, and read all the same.
+            let aside = Duration::ZERO;
+            let count = std::sync::atomic::AtomicUsize::new(0);
+            let named_later =
+                |name: &str| name == small.as_str() && count.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 0;
+            assert_eq!(store.give_up(aside, named_later).await.expect("done"), 1, "the large one alone");
+            assert!(!store.has(&large_one).await.expect("an answer"));
+            assert_eq!(store.bytes(&small, 10).await.expect("it came back"), b"small");
+        });
+        let fresh = run(async { Fresh::sqlite().await.expect("SQLite").with_tables().await });
+        let mut server = Server::start(&fresh, &["--workers", "1", "--store", "s3://bucket/server"]);
+        let admin = server.admin();
+        server.course(&admin, "physics");
+        let ada = server.member(&admin, "physics", "ada", "student");
+        let id = ada.submit("physics", &program("WA", 40));
+        ada.wait_for_grade("physics", id);
+        let path = format!("/api/v1/courses/physics/submissions/{id}");
+        assert_eq!(ada.get(&format!("{path}/upload")).expect(200).body, program("WA", 40));
+        assert!(ada.get(&format!("{path}/files/report.txt")).expect(200).text().contains("by"));
+        assert!(!server.folder.join("store").exists());
+    }
+}

@@ -9,7 +9,12 @@ use crate::support::{
 };
 use serde_json::{Value, json};
 
-on_both_engines!(a_course_of_a_platform, a_platform_with_troubles, rosters_are_read_to_their_end);
+on_both_engines!(
+    a_course_of_a_platform,
+    a_platform_with_troubles,
+    rosters_are_read_to_their_end,
+    many_scores_make_one_column,
+);
 
 const CONTEXT: &str = "https://purl.imsglobal.org/spec/lti/claim/context";
 const RESOURCE: &str = "https://purl.imsglobal.org/spec/lti/claim/resource_link";
@@ -176,6 +181,23 @@ async fn a_platform_with_troubles(fresh: Fresh) {
     }
     let log = server.log();
     assert!(!log.contains('\u{1b}'), "words of a platform give no orders to terminals");
+}
+
+async fn many_scores_make_one_column(fresh: Fresh) {
+    let (server, _admin, platform) = start(&fresh, &[]).await;
+    connect(&server, &platform);
+    platform.inside().slow_columns = true;
+    let students: Vec<Client> =
+        (0..8).map(|number| arrive(&server, &platform, (&format!("student{number}"), LEARNER), |_| {}).0).collect();
+    let handed_in: Vec<i64> = students.iter().map(|student| student.submit("physics", &program("WA", 40))).collect();
+    for (student, id) in students.iter().zip(handed_in) {
+        student.wait_for_grade("physics", id);
+    }
+    for number in 0..8 {
+        platform.wait_for(&format!("student{number}"), |score| score["scoreGiven"] == 40.0);
+    }
+    let columns = platform.inside().line_items.clone();
+    assert_eq!(columns.len(), 1, "{columns:?}");
 }
 
 async fn rosters_are_read_to_their_end(fresh: Fresh) {
