@@ -1,7 +1,7 @@
 //! Goes through a trace once more, beside the reference.
 use crate::{
     close_up::{CloseUp, Watch, Which},
-    rulings::Ruling,
+    rulings::StepRuling,
     track::{Track, Window},
 };
 use fosssim_judge::{Detail, Finding, budget::Budget};
@@ -115,7 +115,7 @@ pub struct Evidence {
 pub fn gather<R: Read>(
     scene: &Scene,
     mut trace: R,
-    rulings: &[Ruling],
+    rulings: &[StepRuling],
     fair: bool,
     focus: &[Focus],
     budget: usize,
@@ -127,13 +127,13 @@ pub fn gather<R: Read>(
 fn gather_from(
     scene: &Scene,
     trace: &mut dyn Read,
-    rulings: &[Ruling],
+    rulings: &[StepRuling],
     fair: bool,
     focus: &[Focus],
     budget: usize,
 ) -> Evidence {
     let layout = Layout::of(scene);
-    let wrong = |ruling: &Ruling| if fair { ruling.wrong_by_fair } else { ruling.wrong_by_parity };
+    let wrong = |ruling: &StepRuling| if fair { ruling.wrong_by_fair } else { ruling.wrong_by_parity };
     let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
     let centre = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
     let window = Window::around(centre, layout, budget);

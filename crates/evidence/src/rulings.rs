@@ -6,7 +6,7 @@ use fosssim_judge::{
 
 /// What the rule books say of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Ruling {
+pub struct StepRuling {
     /// Whether the original's rules find something wrong in it.
     pub wrong_by_parity: bool,
     /// Whether the fair rules do; `false` also if they were not asked.
@@ -16,12 +16,12 @@ pub struct Ruling {
 }
 
 /// Keeps the rulings on all steps and passes on what it hears.
-pub struct Rulings<'a> {
+pub struct StepRulings<'a> {
     inner: &'a mut dyn Progress,
-    steps: Vec<Ruling>,
+    steps: Vec<StepRuling>,
 }
 
-impl<'a> Rulings<'a> {
+impl<'a> StepRulings<'a> {
     /// Nothing heard yet.
     pub fn new(inner: &'a mut dyn Progress) -> Self {
         Self { inner, steps: Vec::new() }
@@ -29,7 +29,7 @@ impl<'a> Rulings<'a> {
 
     /// The rulings in the order of the steps, once the trace has been judged.
     #[must_use]
-    pub fn into_steps(mut self, outcome: &Outcome) -> Vec<Ruling> {
+    pub fn into_steps(mut self, outcome: &Outcome) -> Vec<StepRuling> {
         // Damage lasts to the end.
         let sound = outcome.steps_judged.saturating_sub(outcome.damaged_steps) as usize;
         self.steps.iter_mut().skip(sound).for_each(|step| step.damaged = true);
@@ -37,7 +37,7 @@ impl<'a> Rulings<'a> {
     }
 }
 
-impl Progress for Rulings<'_> {
+impl Progress for StepRulings<'_> {
     fn begins(&mut self) {
         self.inner.begins();
     }
@@ -47,7 +47,7 @@ impl Progress for Rulings<'_> {
     }
 
     fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
-        self.steps.push(Ruling::default());
+        self.steps.push(StepRuling::default());
         self.inner.step_judged(step, remarks);
     }
 

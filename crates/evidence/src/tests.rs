@@ -16,7 +16,7 @@ fn asset(name: &str) -> Scene {
 fn judged(scene: &Scene, trace: &[u8]) -> (Outcome, Evidence) {
     let options = parity::Options { fair: true, ..Default::default() };
     let mut nobody = ();
-    let mut rulings = Rulings::new(&mut nobody);
+    let mut rulings = StepRulings::new(&mut nobody);
     let outcome = parity::judge(scene, trace, &options, &mut rulings);
     let focus: Vec<Focus> = outcome.account(Book::Fair).examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, trace, &rulings.into_steps(&outcome), true, &focus, BUDGET);

@@ -1,7 +1,7 @@
 //! Cards: what a report shows of a wrong trace beyond its result. They are drawn while the trace is at hand and kept under the
 //! digest of what they say, so that the journal's result names them and the trace itself need not be kept.
 use super::{config::Hints, result::SceneResult, task::SceneTask};
-use fosssim_evidence::Ruling;
+use fosssim_evidence::StepRuling;
 use fosssim_judge::{Outcome, Rules};
 use std::{
     fs,
@@ -25,7 +25,7 @@ pub struct Judged<'a> {
     /// What judging yielded; it tells more than hints may let through.
     pub outcome: &'a Outcome,
     /// What the rule books say of each step.
-    pub rulings: &'a [Ruling],
+    pub rulings: &'a [StepRuling],
     /// The trace, or its beginning.
     pub trace: &'a [u8],
     /// Whether the trace goes on beyond that.

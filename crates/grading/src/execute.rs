@@ -6,13 +6,13 @@ use super::{
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
-    result::{Failure, Reason, SceneResult, Stage},
+    result::{Doing, Failure, Reason, SceneResult},
     staging::Staged,
     task::SceneTask,
     temporary::Temporary,
     verdict::Verdict,
 };
-use fosssim_evidence::Rulings;
+use fosssim_evidence::StepRulings;
 use fosssim_judge::{
     Outcome, Rules,
     parity::{self, Options, Progress, Remark},
@@ -100,12 +100,12 @@ impl Runner<'_> {
         let options =
             Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
         let mut watch = Watch { on_step };
-        let mut rulings = Rulings::new(&mut watch);
+        let mut rulings = StepRulings::new(&mut watch);
         let judged = match running.trace() {
             Some(inner) => {
                 let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep: KEPT_TRACE };
                 let judged = guarded(|| {
-                    fault::injected(Stage::Judging, &program.program);
+                    fault::injected(Doing::Judging, &program.program);
                     self.judge(task, &mut trace, &options, &mut rulings)
                 });
                 // What the judge did not want is read all the same, within the limit: a program must not die of our
@@ -119,7 +119,7 @@ impl Runner<'_> {
         let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, &kept);
         let judged = match judged {
             Ok(judged) => judged?,
-            Err(fault) => return Ok(failed(Stage::Judging, &fault)),
+            Err(fault) => return Ok(failed(Doing::Judging, &fault)),
         };
         let run = Run {
             scene: &task.name,
@@ -133,15 +133,15 @@ impl Runner<'_> {
         let result = guarded(|| conclude(&run));
         let result = match result {
             Ok(result) => result,
-            Err(fault) => return Ok(failed(Stage::Judging, &fault)),
+            Err(fault) => return Ok(failed(Doing::Judging, &fault)),
         };
         let explained = guarded(|| {
-            fault::injected(Stage::Explaining, &program.program);
+            fault::injected(Doing::Explaining, &program.program);
             self.hints.cut(explain(&result, self.rules, task, &kept))
         });
         let result = match explained {
             Ok(explanations) => SceneResult { explanations, ..result },
-            Err(fault) => return Ok(failed(Stage::Explaining, &fault)),
+            Err(fault) => return Ok(failed(Doing::Explaining, &fault)),
         };
         let mut result = result;
         if let Some(cards) = self.cards
@@ -160,7 +160,7 @@ impl Runner<'_> {
             };
             match guarded(|| cards.keep(&judged)) {
                 Ok(card) => result.card = card.map_err(ExecuteError::Folder)?,
-                Err(fault) => return Ok(failed(Stage::Reporting, &fault)),
+                Err(fault) => return Ok(failed(Doing::Reporting, &fault)),
             }
         }
         if let Some(path) = self.traces.map(|path| path(task))
@@ -170,7 +170,7 @@ impl Runner<'_> {
         }
         match guarded(|| (self.rehearse)(&result)) {
             Ok(()) => Ok(result),
-            Err(fault) => Ok(failed(Stage::Reporting, &fault)),
+            Err(fault) => Ok(failed(Doing::Reporting, &fault)),
         }
     }
 

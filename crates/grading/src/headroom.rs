@@ -4,7 +4,7 @@
 //! polynomials fails as soon as one unit in the last place of a coefficient exceeds the bound (numerics.md 1.4). The
 //! scene is made larger by powers of two, which changes no bit but exponents, and the reference's trace is judged by
 //! parity at each size. This says nothing against a submission, and all about whether the scene can be graded fairly.
-use super::recording::{self, RecordingError};
+use super::recording::{self, CannotRecord};
 use fosssim_judge::{
     Finding, Overall,
     parity::{self, Options},
@@ -67,7 +67,7 @@ impl Headroom {
 ///
 /// # Errors
 /// When the scene can't be simulated at some size.
-pub fn headroom(scene: &Scene) -> Result<Headroom, RecordingError> {
+pub fn headroom(scene: &Scene) -> Result<Headroom, CannotRecord> {
     if !Layout::of(scene).polynomials {
         return Ok(Headroom { largest: None, failure: None });
     }

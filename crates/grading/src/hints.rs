@@ -1,7 +1,7 @@
 //! How much a report tells a student, and what of findings and explanations that lets through.
 //!
 //! What is not to be told is cut here, before a report or the journal sees it, so that no format can let it out.
-use super::told::{Account, Place, Told, ToldFinding};
+use super::told::{Place, Told, ToldBook, ToldFinding};
 use fosssim_judge::{Book, Detail, Finding, Outcome, Rules};
 use fosssim_mistakes::{diagnose::Explanation, student::find};
 use serde::Deserialize;
@@ -64,9 +64,9 @@ impl Hints {
         })
     }
 
-    fn account(self, judged: &Outcome, book: Book) -> Account {
+    fn account(self, judged: &Outcome, book: Book) -> ToldBook {
         let found = judged.account(book);
-        Account {
+        ToldBook {
             ruling: judged.ruling(book),
             wrong_steps: found.wrong_steps,
             counts: *found.counts,

@@ -3,7 +3,7 @@ use super::{
     assignments,
     config::{self, BuildStep, Hints, Patience, RunLimits, Suite, SuiteError},
     library,
-    score::Stakes,
+    score::Marking,
     task::SceneTask,
 };
 use fosssim_judge::Rules;
@@ -39,7 +39,7 @@ pub struct PlannedGroup {
     /// Its name.
     pub name: String,
     /// Its points, credit and visibility.
-    pub stakes: Stakes,
+    pub marking: Marking,
     /// Its scenes, in the order of the patterns, each pattern's in alphabetical order.
     pub scenes: Vec<SceneTask>,
 }
@@ -60,7 +60,7 @@ impl Plan {
             group.scenes.retain(|task| takes(&task.name));
             #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
             if group.scenes.len() < before {
-                group.stakes.points *= group.scenes.len() as f64 / before as f64;
+                group.marking.points *= group.scenes.len() as f64 / before as f64;
             }
         }
         self.groups.retain(|group| !group.scenes.is_empty());
@@ -74,7 +74,7 @@ impl Plan {
     /// Points that can be reached.
     #[must_use]
     pub fn max_points(&self) -> f64 {
-        self.groups.iter().map(|group| group.stakes.points).sum()
+        self.groups.iter().map(|group| group.marking.points).sum()
     }
 }
 
@@ -126,8 +126,8 @@ pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
                 Err(message) => problems.push((position, message)),
             }
         }
-        let stakes = Stakes { points: group.points, credit: group.credit, visibility: group.visibility };
-        groups.push(PlannedGroup { name: group.name.clone(), stakes, scenes });
+        let marking = Marking { points: group.points, credit: group.credit, visibility: group.visibility };
+        groups.push(PlannedGroup { name: group.name.clone(), marking, scenes });
     }
     if !problems.is_empty() {
         return Err(SuiteError { problems });
@@ -222,7 +222,7 @@ mod tests {
         assert_eq!((part.groups.len(), part.scenes().count()), (1, 1));
         let group = whole.groups.iter().find(|group| group.name == part.groups[0].name).expect("its group");
         #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-        let worth = group.stakes.points / group.scenes.len() as f64;
+        let worth = group.marking.points / group.scenes.len() as f64;
         assert!((part.max_points() - worth).abs() < 1e-12);
         assert_eq!(part.name, format!("{} (1 of {all} scenes)", whole.name));
         assert_eq!(plan().part(|_| true).name, whole.name);

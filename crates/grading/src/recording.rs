@@ -29,7 +29,7 @@ pub struct Recording {
 
 /// Why a scene can't be recorded.
 #[derive(Debug, thiserror::Error)]
-pub enum RecordingError {
+pub enum CannotRecord {
     /// The scene has errors.
     #[error("the scene has errors:\n{0}")]
     Scene(#[from] Problems),
@@ -46,7 +46,7 @@ impl Recording {
     ///
     /// # Errors
     /// When the scene has errors, or a step has no result.
-    pub fn of(name: &str, xml: &[u8]) -> Result<Self, RecordingError> {
+    pub fn of(name: &str, xml: &[u8]) -> Result<Self, CannotRecord> {
         let scene = scene::read(name, xml)?.scene;
         let trace = trace(&scene)?;
         let digests = Digests::of(&trace[..], Layout::of(&scene));
@@ -105,7 +105,7 @@ pub fn diff(name: &str, recorded: &str, now: &str) -> String {
 }
 
 /// The trace of a scene.
-pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, RecordingError> {
+pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
     for _ in 0..scene.steps() {

@@ -220,7 +220,7 @@ pub enum Failure {
     /// Itself: a panic, with its words and its place in the source.
     Panic {
         /// What it was doing; nothing, where that is not known.
-        stage: Option<Stage>,
+        stage: Option<Doing>,
         /// The panic.
         fault: String,
         /// Where the trace is that it failed on.
@@ -230,7 +230,7 @@ pub enum Failure {
 
 /// What the grader was doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Stage {
+pub enum Doing {
     /// Comparing the trace with the reference.
     Judging,
     /// Looking for the likely mistake.

@@ -8,7 +8,7 @@ use super::{
 
 /// What of a group decides its points.
 #[derive(Debug, Clone, Copy)]
-pub struct Stakes {
+pub struct Marking {
     /// Points of the whole group.
     pub points: f64,
     /// How partial success counts.
@@ -24,27 +24,27 @@ pub struct Stakes {
 /// finding, never all; any other verdict but accepted gets nothing. With [`Credit::All`] every scene has to be accepted.
 /// Scenes on which the grader failed, or which it did not come to run, have no points, nor has their group.
 #[must_use]
-pub fn group(name: &str, stakes: Stakes, results: Vec<(SceneResult, bool)>) -> GroupGrade {
+pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-    let each = if results.is_empty() { 0.0 } else { stakes.points / results.len() as f64 };
+    let each = if results.is_empty() { 0.0 } else { marking.points / results.len() as f64 };
     let all_accepted = results.iter().all(|(result, _)| result.verdict.is_accepted());
     let scenes: Vec<SceneGrade> = results
         .into_iter()
         .map(|(result, cached)| {
-            let points = share(stakes.credit, &result, all_accepted).map(|share| each * share);
+            let points = share(marking.credit, &result, all_accepted).map(|share| each * share);
             SceneGrade { result, points, max_points: each, cached }
         })
         .collect();
     // The full score is exact: sums of rounded shares would make 99.99999 of 100.
     let points = match all_accepted && !scenes.is_empty() {
-        true => Some(stakes.points),
+        true => Some(marking.points),
         false => scenes.iter().map(|scene| scene.points).sum(),
     };
     GroupGrade {
         name: name.to_owned(),
-        visibility: stakes.visibility,
+        visibility: marking.visibility,
         points,
-        max_points: stakes.points,
+        max_points: marking.points,
         verdict: scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun),
         scenes,
     }
@@ -75,8 +75,8 @@ mod tests {
     }
 
     fn points(credit: Credit, scenes: Vec<(SceneResult, bool)>) -> f64 {
-        let stakes = Stakes { points: 30.0, credit, visibility: Visibility::Visible };
-        group("g", stakes, scenes).points.expect("points")
+        let marking = Marking { points: 30.0, credit, visibility: Visibility::Visible };
+        group("g", marking, scenes).points.expect("points")
     }
 
     #[test]
@@ -92,10 +92,10 @@ mod tests {
 
     #[test]
     fn the_worst_scene_names_the_group_and_nothing_run_gives_nothing() {
-        let stakes = Stakes { points: 5.0, credit: Credit::Scenes, visibility: Visibility::Hidden };
-        let graded = group("g", stakes, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
+        let marking = Marking { points: 5.0, credit: Credit::Scenes, visibility: Visibility::Hidden };
+        let graded = group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
         assert_eq!(graded.verdict, Verdict::RuntimeError);
-        let empty = group("g", stakes, Vec::new());
+        let empty = group("g", marking, Vec::new());
         assert_eq!((empty.points, empty.verdict), (Some(0.0), Verdict::NotRun));
     }
 
@@ -110,8 +110,8 @@ mod tests {
     fn what_was_not_run_or_not_judged_has_no_points_and_its_group_neither() {
         for missing in [Verdict::NotRun, Verdict::JudgeError] {
             for credit in [Credit::Scenes, Credit::Steps, Credit::All] {
-                let stakes = Stakes { points: 30.0, credit, visibility: Visibility::Visible };
-                let graded = group("g", stakes, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
+                let marking = Marking { points: 30.0, credit, visibility: Visibility::Visible };
+                let graded = group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
                 assert_eq!((graded.points, graded.scenes[1].points), (None, None));
                 assert!(graded.scenes[0].points.is_some());
             }

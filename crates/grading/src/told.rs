@@ -11,9 +11,9 @@ pub struct Told {
     #[serde(with = "mirror::BookForm")]
     pub official: Book,
     /// What the original's rules found.
-    pub parity: Account,
+    pub parity: ToldBook,
     /// What the fair rules found, if they were asked.
-    pub fair: Option<Account>,
+    pub fair: Option<ToldBook>,
     /// The residuals (oracle-behaviour.md 6.3), which are values: with full hints only.
     #[serde(with = "mirror::residuals")]
     pub residuals: Option<Residuals>,
@@ -27,7 +27,7 @@ pub struct Told {
 impl Told {
     /// What the book whose verdict counts found; the original's, if the fair one was not asked.
     #[must_use]
-    pub fn account(&self) -> &Account {
+    pub fn account(&self) -> &ToldBook {
         match (self.official, &self.fair) {
             (Book::Fair, Some(fair)) => fair,
             _ => &self.parity,
@@ -37,7 +37,7 @@ impl Told {
 
 /// What one rule book found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Account {
+pub struct ToldBook {
     /// Its verdict.
     #[serde(with = "mirror::RulingForm")]
     pub ruling: Ruling,

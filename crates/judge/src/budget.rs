@@ -98,8 +98,8 @@ fn of_scene(scene: &Scene) -> u64 {
 mod tests {
     use super::*;
     use crate::{
+        options::Options,
         outcome::{Outcome, Overall, Stop},
-        parity::Options,
         replay::judge_within,
         samples::{changed, run, scene, written},
     };

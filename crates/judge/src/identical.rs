@@ -124,7 +124,8 @@ impl Identical {
 #[cfg(test)]
 mod tests {
     use crate::{
-        parity::{self, Options},
+        options::Options,
+        parity,
         samples::{BOUNCE, ZONES, changed, relog, scene},
     };
     use fosssim_model::{scene::Scene, trace::Frame};

@@ -7,12 +7,15 @@
 
 pub mod budget;
 mod contacts;
+mod counts;
 mod differing;
 pub mod fair;
 mod finding;
 mod identical;
+mod options;
 mod outcome;
 pub mod parity;
+mod progress;
 pub mod recorded;
 mod replay;
 mod rules;
@@ -23,8 +26,9 @@ pub mod study;
 mod tally;
 mod words;
 
+pub use counts::Counts;
 pub use differing::{differing, factor};
 pub use finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Role};
-pub use outcome::{Counts, Damage, Outcome, Overall, Residuals, Stop, Unreadable};
+pub use outcome::{Damage, Outcome, Overall, Residuals, Stop, Unreadable};
 pub use rules::{Account, Book, Rules, Ruling};
 pub use words::{PairWords, PassWords, Power, passes};

@@ -1,7 +1,8 @@
 //! The verdict on one trace.
 use super::{
+    counts::Counts,
     fair::{Judgement, Refusal},
-    finding::{Finding, Kind},
+    finding::Finding,
 };
 use fosssim_model::sim::{SearchCounts, StepError};
 use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
@@ -41,43 +42,6 @@ impl Residuals {
             (self.maximum_position, PARITY_MAXIMUM),
             (self.maximum_velocity, PARITY_MAXIMUM),
         ]
-    }
-}
-
-/// How often each kind of finding occurred.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts([u64; Kind::ALL.len()]);
-
-impl Counts {
-    /// The count of one kind.
-    #[must_use]
-    pub fn get(&self, kind: Kind) -> u64 {
-        self.0[kind as usize]
-    }
-
-    /// Adds `count` findings of one kind.
-    pub fn add(&mut self, kind: Kind, count: u64) {
-        self.0[kind as usize] += count;
-    }
-
-    /// Findings that fail the original's collision verdict: collisions and polynomials.
-    #[must_use]
-    pub fn collisions(&self) -> u64 {
-        self.total() - self.get(Kind::Position) - self.get(Kind::Velocity)
-    }
-
-    /// The sum over all kinds.
-    #[must_use]
-    pub fn total(&self) -> u64 {
-        self.0.iter().sum()
-    }
-}
-
-impl std::ops::AddAssign for Counts {
-    fn add_assign(&mut self, other: Self) {
-        for (own, others) in self.0.iter_mut().zip(other.0) {
-            *own += others;
-        }
     }
 }
 
@@ -143,7 +107,7 @@ pub struct Outcome {
     pub counts: Counts,
     /// Steps with at least one finding.
     pub wrong_steps: u64,
-    /// The first finding of each kind that occurred, in the order of [`Kind::ALL`].
+    /// The first finding of each kind that occurred, in the order of [`Kind::ALL`](super::Kind::ALL).
     pub examples: Vec<Finding>,
     /// The very first finding.
     pub first_divergence: Option<Finding>,

@@ -7,7 +7,7 @@
 use super::{
     finding::{PolynomialPlace, Role},
     outcome::{Damage, Outcome, Stop, Unreadable},
-    parity::Progress,
+    progress::Progress,
     tally::{self, Buffers, StepResult, Tally},
 };
 use fosssim_model::{

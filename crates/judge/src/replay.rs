@@ -10,8 +10,9 @@ use super::{
     budget::{Budget, FLOOR},
     fair::{self, Context, Reach, Records, StepJudgement},
     identical::Identical,
+    options::Options,
     outcome::{Damage, Outcome, Stop, Unreadable},
-    parity::{Options, Progress, StepFindings, WrongStep},
+    progress::{Progress, StepFindings, WrongStep},
     rules::Book,
     tally::{self, StepResult},
 };

@@ -2,9 +2,10 @@
 //!
 //! The parity book is always computed, because everything else builds on its replay; the fair one only on demand.
 use super::{
+    counts::Counts,
     fair,
     finding::Finding,
-    outcome::{Counts, Outcome, Overall},
+    outcome::{Outcome, Overall},
 };
 
 /// A rule book.

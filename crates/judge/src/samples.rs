@@ -1,8 +1,5 @@
 //! Scenes and traces for the tests of this crate.
-use super::{
-    outcome::Outcome,
-    parity::{self, Options},
-};
+use super::{options::Options, outcome::Outcome, parity};
 use fosssim_model::{
     scene::{Scene, original},
     sim::{Observer, RootSearch, Simulation},

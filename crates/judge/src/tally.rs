@@ -5,10 +5,11 @@
 //! two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
 use super::{
     contacts::{Contacts, key, logged_key},
+    counts::Counts,
     differing::{differing, factor},
     finding::{Detail, Finding, Kind, PolynomialPlace, Rescaled, Role},
-    outcome::{Counts, Residuals},
-    parity::Remark,
+    outcome::Residuals,
+    progress::Remark,
 };
 use fosssim_model::{
     scene::Scene,

@@ -98,10 +98,10 @@ fn head(plan: &Plan, style: Style) -> String {
 }
 
 fn of_group(group: &PlannedGroup, style: Style) -> String {
-    let stakes = &group.stakes;
-    let (points, visibility) = (counted_points(stakes.points), stakes.visibility.key().replace('_', " "));
+    let marking = &group.marking;
+    let (points, visibility) = (counted_points(marking.points), marking.visibility.key().replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
-    let mut text = format!("\n{name}: {points}, {}, {visibility}\n", credit(stakes.credit));
+    let mut text = format!("\n{name}: {points}, {}, {visibility}\n", credit(marking.credit));
     for task in &group.scenes {
         let particles = counted(task.scene.particles.len() as u64, "particle");
         let steps = counted(task.scene.steps().into(), "step");

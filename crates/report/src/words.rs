@@ -2,10 +2,10 @@
 use fosssim_grading::{
     Grade, Unfit, Verdict,
     result::{
-        BadTrace, BuildEnd, Ended, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, SceneResult, Stage,
+        BadTrace, BuildEnd, Doing, Ended, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, SceneResult,
         Unusable, Wrong,
     },
-    told::{Account, Place, ToldFinding},
+    told::{Place, ToldBook, ToldFinding},
 };
 use fosssim_judge::{Kind, PairWords, Unreadable, share};
 
@@ -189,9 +189,9 @@ fn of_failure(failure: &Failure) -> String {
         Failure::Panic { stage: None, fault, .. } => format!("the grader failed: {fault}; please report this"),
         Failure::Panic { stage: Some(stage), fault, .. } => {
             let doing = match stage {
-                Stage::Judging => "judging",
-                Stage::Explaining => "explaining",
-                Stage::Reporting => "reporting",
+                Doing::Judging => "judging",
+                Doing::Explaining => "explaining",
+                Doing::Reporting => "reporting",
             };
             format!("the grader failed while {doing} this scene: {fault}")
         }
@@ -216,7 +216,7 @@ pub(crate) fn first_divergence(first: &ToldFinding) -> String {
 }
 
 /// `12 wrong coefficients, 3 missed collisions`, when there is more than the first finding tells.
-fn counts(account: &Account) -> Option<String> {
+fn counts(account: &ToldBook) -> Option<String> {
     let counts = &account.counts;
     // What is found in damaged records alone has no example, and says nothing about the program.
     let has_example = |kind: Kind| account.examples.iter().any(|example| example.kind() == kind);

@@ -10,7 +10,7 @@ use crate::{
         output::Output,
     },
     diagnose,
-    evidence::{self, Rulings},
+    evidence::{self, StepRulings},
     judge::{
         Outcome, Overall, Rules, Stop, Unreadable, fair,
         parity::{self, Progress, Remark, WrongStep},
@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let draws = is_page || pictures.is_some();
     let most = if lasting || !(explain || draws) { 0 } else { KEPT };
     let mut reader = Kept { inner: &mut trace.reader, bytes: Vec::new(), most };
-    let mut rulings = Rulings::new(&mut heard);
+    let mut rulings = StepRulings::new(&mut heard);
     let outcome = parity::judge(&scene.scene, &mut reader, &options, &mut rulings);
     let kept = reader.bytes;
     let rulings = if draws { rulings.into_steps(&outcome) } else { Vec::new() };

@@ -11,7 +11,7 @@ use crate::{
         output::Output,
     },
     diagnose::{self, Explanation},
-    evidence::Rulings,
+    evidence::StepRulings,
     judge::{
         Rules,
         fair::Verdict,
@@ -89,7 +89,7 @@ fn case(
     let hints: Hints = arguments.hints.into();
     let options = Options { fair: true, ..Options::default() };
     let mut nobody = ();
-    let mut rulings = Rulings::new(&mut nobody);
+    let mut rulings = StepRulings::new(&mut nobody);
     let outcome = parity::judge(scene, bytes, &options, &mut rulings);
     let rulings = rulings.into_steps(&outcome);
     // How the program ended tells more than how its trace did.

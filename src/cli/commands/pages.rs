@@ -3,7 +3,7 @@ use super::ending::file_name;
 use crate::{
     cli::output,
     diagnose::Explanation,
-    evidence::{self, Evidence, Focus, Rulings, Track},
+    evidence::{self, Evidence, Focus, StepRulings, Track},
     judge::{Outcome, Rules, parity},
     report::{
         check::{Check, Shown, WrongSteps},
@@ -123,7 +123,7 @@ pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: b
         let again = guarded(|| {
             let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
             let mut nobody = ();
-            let mut rulings = Rulings::new(&mut nobody);
+            let mut rulings = StepRulings::new(&mut nobody);
             let outcome = parity::judge(&judged.task.scene, judged.trace, &options, &mut rulings);
             (rulings.into_steps(&outcome), outcome)
         });
@@ -159,7 +159,7 @@ pub(super) struct Source<'a> {
     pub(super) scene: &'a Scene,
     pub(super) trace: &'a [u8],
     pub(super) outcome: &'a Outcome,
-    pub(super) rulings: &'a [evidence::Ruling],
+    pub(super) rulings: &'a [evidence::StepRuling],
     pub(super) explanations: &'a [Explanation],
     pub(super) rules: Rules,
     pub(super) hints: Hints,

@@ -174,7 +174,7 @@ fn digest(plan: &Plan, arguments: &Arguments) -> String {
     add(words.as_bytes());
     for group in &plan.groups {
         add(group.name.as_bytes());
-        add(format!("{:?}", group.stakes).as_bytes());
+        add(format!("{:?}", group.marking).as_bytes());
         for scene in &group.scenes {
             add(scene.name.as_bytes());
             add(&scene.xml);

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
     diagnose,
-    evidence::Rulings,
+    evidence::StepRulings,
     judge::{
         Rules,
         parity::{self, Options},
@@ -88,7 +88,7 @@ fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
         .iter()
         .map(|group| {
             let own = results.by_ref().take(group.scenes.len()).map(|result| (result, false)).collect();
-            score::group(&group.name, group.stakes, own)
+            score::group(&group.name, group.marking, own)
         })
         .collect();
     let scenes = || groups.iter().flat_map(|group| &group.scenes).zip(&tasks);
@@ -137,7 +137,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
     let options =
         Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
     let mut quiet = ();
-    let mut rulings = Rulings::new(&mut quiet);
+    let mut rulings = StepRulings::new(&mut quiet);
     let outcome = parity::judge(&task.scene, &trace[..], &options, &mut rulings);
     // As if a program had ended well after it wrote this.
     let program = sandbox::Outcome {

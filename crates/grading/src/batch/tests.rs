@@ -3,7 +3,7 @@ use crate::{
     cast::{SMALL_TRACE, Stage, right_trace, small_plan},
     grader::Options,
     plan::Plan,
-    result::{BadTrace, Failure, KeptTrace, LeftOut, Reason, Stage as Doing},
+    result::{BadTrace, Doing, Failure, KeptTrace, LeftOut, Reason},
     results::Folder,
     told::ToldFinding,
     verdict::Verdict,

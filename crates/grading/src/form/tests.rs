@@ -1,8 +1,8 @@
 use super::*;
 use crate::{
     Key, Verdict,
-    result::{BadTrace, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, Stage as Doing, Unusable, Wrong},
-    told::{Account, Place, Told, ToldFinding},
+    result::{BadTrace, Doing, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, Unusable, Wrong},
+    told::{Place, Told, ToldBook, ToldFinding},
 };
 use fosssim_judge::{
     Book, Counts, Damage, Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role, Ruling,
@@ -94,7 +94,7 @@ fn wrong() -> SceneResult {
     for (number, kind) in Kind::ALL.into_iter().enumerate() {
         counts.add(kind, u64::MAX / 20 * (number as u64 % 2));
     }
-    let account = Account {
+    let account = ToldBook {
         ruling: Ruling::WrongAnswer,
         wrong_steps: u64::MAX,
         counts,
@@ -102,7 +102,7 @@ fn wrong() -> SceneResult {
         examples,
     };
     let told = |place| ToldFinding::Place { step: 0, kind: Kind::MixedForms, place };
-    let fair = Account {
+    let fair = ToldBook {
         ruling: Ruling::BadTrace,
         first_divergence: None,
         examples: places.map(told).into(),

@@ -35,7 +35,7 @@ impl Grading<'_> {
         let groups: Vec<_> = plan
             .groups
             .iter()
-            .map(|group| score::group(&group.name, group.stakes, results.by_ref().take(group.scenes.len()).collect()))
+            .map(|group| score::group(&group.name, group.marking, results.by_ref().take(group.scenes.len()).collect()))
             .collect();
         let refuted = self.refuted(&groups);
         let active = self.grader.backend.layers().iter().filter(|report| report.active);

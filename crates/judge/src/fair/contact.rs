@@ -1,8 +1,9 @@
 //! Contacts and states: how far they may be off, and which decisions hang on round-off.
 use super::{
+    context::{Context, Records, largest},
     formulas::{Expected, Motion},
-    probe::Deviation,
-    step::{Context, Records, StepJudgement, largest},
+    sensitivity::Deviation,
+    step_judgement::StepJudgement,
 };
 use crate::finding::{Detail, Finding};
 use fosssim_model::{

@@ -1,10 +1,9 @@
 //! The fair verdict on one trace.
-use super::step::{Pending, StepJudgement};
+use super::step_judgement::{Borderline, Pending, Scales, Shares, StepJudgement};
 use crate::{
+    counts::Counts,
     finding::{Detail, Finding},
-    outcome::Counts,
 };
-use fosssim_model::sim::{ByKind, Pair, PairKind, Pass};
 
 /// So many examples of borderline decisions are kept.
 const EXAMPLES: usize = 8;
@@ -49,46 +48,6 @@ pub enum Form {
     Right,
 }
 
-/// A decision that round-off may flip, and that the trace has the other way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Borderline {
-    /// The step, from 1.
-    pub step: u32,
-    /// The detection pass.
-    pub pass: Pass,
-    /// The pair.
-    pub pair: Pair,
-    /// Whether the trace takes it for a collision.
-    pub collides: bool,
-}
-
-/// The largest shares of their tolerances that were used by what is right, 0 to 1; 0 where nothing differed.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Shares {
-    /// Polynomial coefficients.
-    pub coefficient: f64,
-    /// Contact normals.
-    pub normal: f64,
-    /// Positions.
-    pub position: f64,
-    /// Velocities.
-    pub velocity: f64,
-}
-
-impl Shares {
-    /// The larger one of each.
-    pub(super) fn widen(&mut self, other: &Self) {
-        self.coefficient = self.coefficient.max(other.coefficient);
-        self.normal = self.normal.max(other.normal);
-        self.position = self.position.max(other.position);
-        self.velocity = self.velocity.max(other.velocity);
-    }
-}
-
-/// Smallest and largest factor of the polynomials, by kind of pair and number of the polynomial; `None` where no
-/// polynomial differs from the reference's bits.
-pub type Scales = ByKind<[Option<[f64; 2]>; PairKind::MOST_POLYNOMIALS]>;
-
 /// Everything that the fair rules say about a trace.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
@@ -119,12 +78,12 @@ pub struct Judgement {
     /// Used shares of the tolerances.
     pub shares: Shares,
     /// What hangs on the factors of polynomials, step by step.
-    pending: Vec<Hanging>,
+    pending: Vec<PendingOfStep>,
 }
 
 /// Polynomials of one step and kind that hang on the program's factors.
 #[derive(Debug, Clone, Copy)]
-struct Hanging {
+struct PendingOfStep {
     polynomials: Pending,
     /// Whether the step is wrong anyway.
     is_wrong: bool,
@@ -182,8 +141,8 @@ impl Judgement {
             let (kind, number) = pending.place;
             self.scales[kind][number].is_none_or(|range| pending.finding(range).is_some())
         };
-        let hanging: Vec<Hanging> =
-            step.pending.iter().filter(hangs).map(|&polynomials| Hanging { polynomials, is_wrong }).collect();
+        let hanging: Vec<PendingOfStep> =
+            step.pending.iter().filter(hangs).map(|&polynomials| PendingOfStep { polynomials, is_wrong }).collect();
         self.pending.extend(hanging);
     }
 
@@ -201,7 +160,7 @@ impl Judgement {
     /// Charges what is no round-off with the factors that the trace uses for polynomials of the same kind; with 1, if none tells.
     fn settle_pending(&mut self) {
         let mut last_wrong = 0;
-        for Hanging { polynomials, is_wrong } in std::mem::take(&mut self.pending) {
+        for PendingOfStep { polynomials, is_wrong } in std::mem::take(&mut self.pending) {
             let (kind, number) = polynomials.place;
             let Some(finding) = polynomials.finding(self.scales[kind][number].unwrap_or([1.0; 2])) else { continue };
             // Steps come in their order, so the polynomials of one stand together.

@@ -27,6 +27,7 @@ mod borderline;
 mod cause;
 pub mod compare;
 mod contact;
+mod context;
 mod follow;
 #[cfg(test)]
 mod forged_tests;
@@ -34,14 +35,20 @@ pub mod formulas;
 #[cfg(test)]
 mod hostile_tests;
 mod judgement;
+mod ordinary;
 mod probe;
 mod reach;
+mod sensitivity;
 mod step;
+mod step_judgement;
 
 pub(super) use ahead::Ahead;
 pub use borderline::borderline;
 pub use cause::{Cause, cause};
 pub use contact::decides;
-pub use judgement::{Borderline, Form, Judgement, Refusal, Shares, Verdict};
+pub(super) use context::{Context, Records};
+pub use judgement::{Form, Judgement, Refusal, Verdict};
 pub(super) use reach::Reach;
-pub(super) use step::{Context, Records, StepJudgement, judge, judge_initial};
+pub(super) use step::{judge, judge_initial};
+pub(super) use step_judgement::StepJudgement;
+pub use step_judgement::{Borderline, Shares};

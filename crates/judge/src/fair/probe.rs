@@ -4,9 +4,9 @@
 //! deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994), so contacts that
 //! graze, stiff springs and zones of nearly no extent get the room that they need, and nothing else gets any.
 use super::{
-    follow::Followed,
+    context::{Context, Followed, Records},
     formulas::Motion,
-    step::{Context, Records},
+    sensitivity::{Deviation, Sensitivity},
 };
 use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, Time};
 use fosssim_num::{
@@ -18,28 +18,6 @@ use fosssim_num::{
 
 /// So many perturbed repetitions.
 const RUNS: u64 = 8;
-
-/// Largest deviations, component by component.
-#[derive(Debug, Clone)]
-pub(super) struct Deviation {
-    /// Of positions, 2N.
-    pub positions: Vec<f64>,
-    /// Of velocities, 2N.
-    pub velocities: Vec<f64>,
-}
-
-/// What is known of a step's sensitivity.
-#[derive(Debug, Clone)]
-pub(super) struct Sensitivity {
-    /// For each detection pass the deviation of the positions that it sees, 2N each.
-    pub passes: Vec<Vec<f64>>,
-    /// Deviation of the state at the synchronisation point.
-    pub mid: Deviation,
-    /// Deviation of the state at the end.
-    pub end: Deviation,
-    /// Calls whose decisions flip.
-    pub flipped: Vec<usize>,
-}
 
 /// Repeats a step whose decisions are known. Where the reference's own polynomials can't be solved from here (the trace's
 /// can, else nobody would ask), nothing is known, and nothing deviates: each value's own bounds are all that counts.

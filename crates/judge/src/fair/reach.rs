@@ -4,47 +4,18 @@
 //! numbers that are none, that are so large that everything else is round-off, or that are all the same. Such steps
 //! are never right, unless the reference itself gets there from the scene's start.
 use super::{
+    context::{Context, Records},
     formulas::extent,
-    step::{Context, Records, StepJudgement, judge},
+    ordinary::{Range, beyond, spread},
+    step::judge,
+    step_judgement::StepJudgement,
 };
 use crate::finding::Detail;
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation, State},
 };
-use fosssim_num::{
-    tolerances::FAIR_REACH,
-    vector::{Vec2, at},
-};
-
-impl Range {
-    /// What the scene's start tells.
-    fn of(scene: &Scene) -> Self {
-        let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);
-        let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| extent(half_plane.point)));
-        let position = Some(sizes.fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
-        let fastest = scene.particles.iter().map(|particle| extent(particle.velocity)).fold(0.0, f64::max);
-        let velocity = fastest.max(position / scene.time_step);
-        let places = scene.particles.iter().map(|particle| particle.position);
-        Self { position, velocity, spread: spread(places) }
-    }
-}
-
-/// What a step's states are compared with at once; most need nothing else.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Ordinary(Range);
-
-impl Ordinary {
-    /// What the scene's start leads one to expect.
-    pub fn of(scene: &Scene) -> Self {
-        Self(Range::of(scene))
-    }
-
-    /// Whether nothing in a state is out of the ordinary.
-    pub fn holds(&self, state: &State) -> bool {
-        beyond(&self.0, state).is_none()
-    }
-}
+use fosssim_num::vector::at;
 
 /// Compares states with the reference's own run, which is simulated as far as it is needed: for ordinary states not at all.
 #[derive(Debug)]
@@ -54,17 +25,6 @@ pub(crate) struct Reach<'a> {
     run: Option<Run>,
     /// Judges steps that are extraordinary for the reference, too.
     other: Option<Simulation>,
-}
-
-/// What the sizes of states lie between.
-#[derive(Debug, Clone, Copy)]
-struct Range {
-    /// The largest position.
-    position: f64,
-    /// The largest velocity.
-    velocity: f64,
-    /// The least extent of all particles together.
-    spread: f64,
 }
 
 /// The reference's own run so far.
@@ -138,27 +98,4 @@ impl<'a> Reach<'a> {
             self.range.spread = self.range.spread.min(spread(places));
         }
     }
-}
-
-/// The first particle whose state is beyond what the range allows.
-fn beyond(range: &Range, state: &State) -> Option<usize> {
-    let particles = state.positions.len() / 2;
-    let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);
-    let far = (0..particles).find(|&particle| {
-        is_far(extent(at(&state.positions, particle)), range.position)
-            || is_far(extent(at(&state.velocities, particle)), range.velocity)
-    });
-    let places = || (0..particles).map(|particle| at(&state.positions, particle));
-    far.or_else(|| (spread(places()) * FAIR_REACH < range.spread).then_some(0))
-}
-
-/// The extent of all points together; 0 of one point.
-fn spread(points: impl Iterator<Item = Vec2>) -> f64 {
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let [x, y] = points.fold([none; 2], |[x, y], point| [widened(x, point.x), widened(y, point.y)]);
-    (x[1] - x[0]).max(y[1] - y[0]).max(0.0)
-}
-
-fn widened([low, high]: [f64; 2], value: f64) -> [f64; 2] {
-    [low.min(value), high.max(value)]
 }

@@ -2,7 +2,7 @@
 use super::{Batch, Shape, Slot, copy_state};
 use crate::{
     fair::{self, Ahead, Records},
-    parity::Options,
+    options::Options,
     tally::{Buffers, Tally},
 };
 use fosssim_model::{

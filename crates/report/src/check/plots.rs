@@ -49,7 +49,7 @@ fn differ(expected: &[f64], own: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fosssim_evidence::{BUDGET, Focus, Rulings, gather};
+    use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
     use fosssim_judge::parity;
     use fosssim_mistakes::student::{self, Student};
     use fosssim_model::scene::original;
@@ -61,7 +61,7 @@ mod tests {
         let mistake = id.map(|id| student::find(id).expect("a mistake").mistake);
         let trace = student::trace(&scene, Student::new(mistake)).unwrap_or_else(|(trace, _)| trace);
         let mut nobody = ();
-        let mut rulings = Rulings::new(&mut nobody);
+        let mut rulings = StepRulings::new(&mut nobody);
         let options = parity::Options { fair: true, ..Default::default() };
         let outcome = parity::judge(&scene, &trace[..], &options, &mut rulings);
         let focus: Vec<Focus> = outcome.examples.iter().map(Focus::from).collect();

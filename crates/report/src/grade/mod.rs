@@ -17,7 +17,7 @@ use crate::page::{Graded, Reader};
 use fosssim_grading::{
     Grade, SceneResult,
     config::{Credit, Visibility},
-    score::{self, Stakes},
+    score::{self, Marking},
 };
 use fosssim_judge::Rules;
 
@@ -139,8 +139,8 @@ pub use text::{Advice, Shown, Text, changes, score, table as text_table};
 /// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at hand,
 /// and not when a whole class's reports are written.
 pub fn rehearse(result: &SceneResult) {
-    let stakes = Stakes { points: 1.0, credit: Credit::Steps, visibility: Visibility::Visible };
-    let group = score::group("group", stakes, vec![(result.clone(), false)]);
+    let marking = Marking { points: 1.0, credit: Credit::Steps, visibility: Visibility::Visible };
+    let group = score::group("group", marking, vec![(result.clone(), false)]);
     let grade = Grade {
         submission: "submission".to_owned(),
         suite: "suite".to_owned(),

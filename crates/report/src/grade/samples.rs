@@ -3,8 +3,8 @@ use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Visibility},
     result::{BuildEnd, Ended, Failure, Found, Unusable},
-    score::{self, Stakes},
-    told::{Account, Place, Told, ToldFinding},
+    score::{self, Marking},
+    told::{Place, Told, ToldBook, ToldFinding},
 };
 use fosssim_judge::{Book, Counts, Kind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
@@ -27,7 +27,7 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
 
 fn group(name: &str, visibility: Visibility, scenes: Vec<SceneResult>) -> GroupGrade {
     let scenes = scenes.into_iter().map(|scene| (scene, false)).collect();
-    score::group(name, Stakes { points: 10.0, credit: Credit::Scenes, visibility }, scenes)
+    score::group(name, Marking { points: 10.0, credit: Credit::Scenes, visibility }, scenes)
 }
 
 fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
@@ -77,7 +77,7 @@ pub(crate) fn bad() -> Grade {
     counts.add(Kind::Coefficient, 1);
     wrong.told = Some(Told {
         official: Book::Parity,
-        parity: Account {
+        parity: ToldBook {
             ruling: Ruling::WrongAnswer,
             wrong_steps: 40,
             counts,

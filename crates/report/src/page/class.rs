@@ -290,11 +290,11 @@ mod tests {
     use fosssim_grading::{
         GroupGrade, Reason, SceneResult,
         config::{Credit, Visibility},
-        score::{self, Stakes},
+        score::{self, Marking},
     };
 
     fn grade(name: &str, fails: impl Fn(usize) -> Option<String>) -> Grade {
-        let stakes = Stakes { points: 20.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+        let marking = Marking { points: 20.0, credit: Credit::Scenes, visibility: Visibility::Visible };
         let groups: Vec<GroupGrade> = (0..5)
             .map(|group| {
                 let scenes = (0..16).map(|number| {
@@ -305,7 +305,7 @@ mod tests {
                     };
                     (SceneResult::without_run(&format!("Group/a-scene-of-number-{scene}"), 100, verdict, why), false)
                 });
-                score::group(&format!("Group {group}"), stakes, scenes.collect())
+                score::group(&format!("Group {group}"), marking, scenes.collect())
             })
             .collect();
         Grade {

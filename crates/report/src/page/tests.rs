@@ -1,10 +1,10 @@
 use super::*;
-use fosssim_evidence::{BUDGET, Focus, Rulings, gather};
+use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
 use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
     config::{Credit, Visibility},
     result::Wrong,
-    score::{self, Stakes},
+    score::{self, Marking},
 };
 use fosssim_judge::{Outcome, Rules, parity};
 use fosssim_mistakes::{
@@ -25,7 +25,7 @@ fn page(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8]) -> Stri
 fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: Hints) -> String {
     let options = parity::Options { fair: true, ..Default::default() };
     let mut nobody = ();
-    let mut rulings = Rulings::new(&mut nobody);
+    let mut rulings = StepRulings::new(&mut nobody);
     let outcome: Outcome = parity::judge(scene, trace, &options, &mut rulings);
     let explanations = hints.cut(diagnose::explain(scene, trace));
     let focus: Vec<Focus> = outcome.examples.iter().map(Focus::from).collect();
@@ -123,7 +123,7 @@ fn the_motion_is_exact() {
 fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let trace = of_mistake(scene, id);
     let mut nobody = ();
-    let mut rulings = Rulings::new(&mut nobody);
+    let mut rulings = StepRulings::new(&mut nobody);
     let options = parity::Options { fair: true, ..Default::default() };
     let outcome = parity::judge(scene, &trace[..], &options, &mut rulings);
     let focus: Vec<Focus> = outcome.examples.iter().map(Focus::from).collect();
@@ -156,9 +156,9 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
 
 /// The page of a submission with these results, all of which have the same card.
 fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
-    let stakes = Stakes { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
     let grade = Grade {
-        groups: vec![score::group("Group", stakes, results.into_iter().map(|result| (result, false)).collect())],
+        groups: vec![score::group("Group", marking, results.into_iter().map(|result| (result, false)).collect())],
         verdict: Verdict::WrongAnswer,
         shows_output: true,
         ..crate::grade::samples::good()
@@ -265,9 +265,9 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let card = |scene: &fosssim_grading::SceneGrade| {
         scenes.iter().find(|(result, _)| result.scene == scene.scene).and_then(|(_, card)| card.clone())
     };
-    let stakes = Stakes { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
     let grade = Grade {
-        groups: vec![with_results(stakes, results)],
+        groups: vec![with_results(marking, results)],
         verdict: Verdict::RuntimeError,
         ..crate::grade::samples::good()
     };
@@ -283,8 +283,8 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     assert!(html.matches(&place).count() == 2 && html.contains(&format!("id=\"scene-{}\"", graded::key(small))));
 }
 
-fn with_results(stakes: Stakes, results: Vec<SceneResult>) -> fosssim_grading::GroupGrade {
-    score::group("Group", stakes, results.into_iter().map(|result| (result, false)).collect())
+fn with_results(marking: Marking, results: Vec<SceneResult>) -> fosssim_grading::GroupGrade {
+    score::group("Group", marking, results.into_iter().map(|result| (result, false)).collect())
 }
 
 /// Nothing on a page to hand out tells of groups that students do not see: no name, no points, no mistake, no output.
@@ -303,13 +303,13 @@ fn a_student_s_page_has_no_hidden_group() {
             crate::grade::samples::saying("a secret fall"),
         )
     };
-    let stakes = |points, visibility| Stakes { points, credit: Credit::Scenes, visibility };
+    let marking = |points, visibility| Marking { points, credit: Credit::Scenes, visibility };
     let named = |name: &str, group| fosssim_grading::GroupGrade { name: name.to_owned(), ..group };
     let grade = Grade {
         groups: vec![
-            named("Shown", with_results(stakes(7.0, Visibility::Visible), vec![seen])),
-            named("Veiled", with_results(stakes(13.0, Visibility::Hidden), vec![secret.clone(), crash])),
-            named("Later", with_results(stakes(17.0, Visibility::AfterDueDate), vec![secret])),
+            named("Shown", with_results(marking(7.0, Visibility::Visible), vec![seen])),
+            named("Veiled", with_results(marking(13.0, Visibility::Hidden), vec![secret.clone(), crash])),
+            named("Later", with_results(marking(17.0, Visibility::AfterDueDate), vec![secret])),
         ],
         verdict: Verdict::RuntimeError,
         points: Some(0.0),

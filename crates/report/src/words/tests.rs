@@ -60,7 +60,7 @@ fn details_are_what_is_told_and_nothing_else() {
     counts.add(Kind::Velocity, 1);
     let told = Told {
         official: Book::Fair,
-        parity: Account {
+        parity: ToldBook {
             ruling: Ruling::WrongAnswer,
             wrong_steps: 7,
             counts,

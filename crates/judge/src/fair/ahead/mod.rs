@@ -6,7 +6,7 @@
 mod fits;
 mod look;
 
-use super::{formulas::extent, step::Context};
+use super::{context::Context, formulas::extent};
 use fosssim_model::{
     scene::Scene,
     sim::{ByKind, Pair, PairKind, Pairs, Stage, pairs},

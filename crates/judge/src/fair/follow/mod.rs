@@ -10,9 +10,10 @@ mod polynomials;
 use super::{
     ahead::Ahead,
     contact,
+    context::{Context, Followed, Records},
     formulas::{Expected, Motion},
-    probe::Sensitivity,
-    step::{Context, Records, StepJudgement},
+    sensitivity::Sensitivity,
+    step_judgement::StepJudgement,
 };
 use crate::{
     contacts::Contacts,
@@ -21,14 +22,6 @@ use crate::{
 use decisions::Own;
 use fosssim_model::sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone};
 use fosssim_num::polynomial::Polynomial;
-
-/// A decision as it was followed.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Followed {
-    pub pair: Pair,
-    pub pass: Pass,
-    pub decision: Decision,
-}
 
 /// A polynomial that does not tell its factor.
 struct Deferred {

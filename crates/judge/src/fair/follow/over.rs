@@ -1,6 +1,9 @@
 //! Takes over what was seen of calls before they are made.
-use super::{Followed, Follower};
-use crate::{contacts::key, fair::ahead::Likeness};
+use super::Follower;
+use crate::{
+    contacts::key,
+    fair::{ahead::Likeness, context::Followed},
+};
 use fosssim_model::sim::{Decision, Pair, Stage, Time};
 
 impl Follower<'_> {

@@ -4,7 +4,7 @@ use crate::{
     fair::{
         compare::{Match, Mismatch, compare, possible_factors},
         formulas::{Expected, Motion},
-        step::Pending,
+        step_judgement::Pending,
     },
     finding::{Detail, Finding, PolynomialPlace, Role},
 };

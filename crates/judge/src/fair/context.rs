@@ -1,0 +1,94 @@
+//! What a step is judged by: the scene, and the trace's records.
+use super::{formulas::extent, ordinary::Ordinary};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{Decision, Pair, PairKind, Pass, State, pairs},
+    trace::{Layout, LenientFrame},
+};
+use fosssim_num::vector::at;
+
+/// What all steps share.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Context<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Polynomials of one detection pass over all pairs (trace-format.md 2).
+    pub per_pass: usize,
+    /// Pairs of one detection pass.
+    pub pairs: usize,
+    /// Records of one step.
+    pub records_per_step: u32,
+    /// States that need no look at the reference's own run.
+    pub ordinary: Ordinary,
+}
+
+impl<'a> Context<'a> {
+    /// The context of a scene.
+    pub fn new(scene: &'a Scene) -> Self {
+        let pairs = pairs(scene);
+        let (per_pass, pairs) = (pairs.polynomials(), pairs.count());
+        let records_per_step = Layout::of(scene).records_per_step();
+        Self { scene, per_pass, pairs, records_per_step, ordinary: Ordinary::of(scene) }
+    }
+
+    /// The particles of a pair: one, two, or three with an edge.
+    pub(super) fn particles(&self, pair: Pair) -> [Option<usize>; 3] {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        match pair.kind {
+            PairKind::ParticleParticle => [Some(first), Some(second), None],
+            PairKind::ParticleEdge => {
+                let edge = &self.scene.edges[second];
+                [Some(first), Some(edge.first), Some(edge.second)]
+            }
+            PairKind::ParticleHalfPlane => [Some(first), None, None],
+        }
+    }
+
+    /// The size of the largest position: roundings of positions are of this size.
+    pub(super) fn size(&self, state: &State) -> f64 {
+        largest(&state.positions)
+    }
+}
+
+impl Records<'_> {
+    /// Whether it starts from states that are nothing out of the ordinary; the geometric part starts from the mid record.
+    pub fn start_ordinarily(&self, context: &Context<'_>) -> bool {
+        let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
+        let mid = self.mid.filter(|_| is_hybrid);
+        context.ordinary.holds(self.before) && mid.is_none_or(|mid| context.ordinary.holds(&mid.state))
+    }
+
+    /// The states that the step is about.
+    pub fn states(&self) -> impl Iterator<Item = &State> {
+        [self.before, &self.end.state].into_iter().chain(self.mid.map(|mid| &mid.state))
+    }
+}
+
+/// One step of the trace.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Records<'a> {
+    /// Its number, from 1.
+    pub step: u32,
+    /// The number of its end record, from 0.
+    pub frame: u64,
+    /// The state that it starts from, the trace's own.
+    pub before: &'a State,
+    /// The mid record, where the layout has one.
+    pub mid: Option<&'a LenientFrame>,
+    /// The end record.
+    pub end: &'a LenientFrame,
+}
+
+/// A decision as it was followed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Followed {
+    pub pair: Pair,
+    pub pass: Pass,
+    pub decision: Decision,
+}
+
+/// The size of the largest vector, in whatever directions the axes point.
+pub(super) fn largest(vectors: &[f64]) -> f64 {
+    let all = (0..vectors.len() / 2).map(|index| extent(at(vectors, index)));
+    all.fold(0.0, f64::max)
+}

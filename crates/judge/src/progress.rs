@@ -1,0 +1,59 @@
+//! What judging tells while it goes on.
+use super::{
+    counts::Counts,
+    finding::{Finding, Kind},
+};
+use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
+
+/// Hears how judging goes, in the order of the steps whatever the number of threads. Methods do nothing by default.
+pub trait Progress {
+    /// The initial record has been read; judging begins.
+    fn begins(&mut self) {}
+    /// A step is about to be judged (from 1).
+    fn step_begins(&mut self, _step: u32) {}
+    /// A step has been judged.
+    fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {}
+    /// The same step holds something wrong; not called for what is left of damaged records.
+    fn step_wrong(&mut self, _wrong: &WrongStep<'_>) {}
+}
+
+/// A step in which a book has found something.
+#[derive(Debug, Clone, Copy)]
+pub struct WrongStep<'a> {
+    /// The step, from 1.
+    pub step: u32,
+    /// What the original's rules have found.
+    pub parity: StepFindings<'a>,
+    /// What the fair rules have found; empty when they were not asked. What only the whole trace tells, such as mixed forms, is
+    /// not among it.
+    pub fair: StepFindings<'a>,
+}
+
+/// What one book has found in one step.
+#[derive(Debug, Clone, Copy)]
+pub struct StepFindings<'a> {
+    /// The first finding of each kind, in the order in which they were made.
+    pub firsts: &'a [Finding],
+    /// How many there are of each kind besides.
+    pub more: Counts,
+}
+
+impl Progress for () {}
+
+/// What the original prints about a step, in its order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Remark {
+    /// A collision that the trace lacks.
+    Missed(Impulse),
+    /// A collision that the trace should not have.
+    Superfluous(LoggedImpulse),
+    /// A collision with another normal.
+    WrongNormal {
+        /// The trace's.
+        actual: LoggedImpulse,
+        /// The reference's.
+        expected: Impulse,
+    },
+    /// So many findings of one kind about polynomials, one after the other.
+    Polynomials(Kind, u32),
+}
