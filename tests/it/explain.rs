@@ -7,7 +7,7 @@ use fosssim_oracle::{
     diagnose::{Explanation, common, explain, formula_in, known},
     judge::{fair::Verdict, parity},
     scene::Scene,
-    student::{self, KNOWN_ACCUSED, Kind, Row},
+    student::{self, KNOWN_ACCUSED, Row, RowKind},
 };
 use fosssim_testing::{Need, skip};
 use rayon::prelude::*;
@@ -56,7 +56,7 @@ fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
 #[test]
 fn nine_of_ten_mistakes_are_named_first() {
     let scenes = suite();
-    let rows = rows(Kind::Wrong);
+    let rows = rows(RowKind::Wrong);
     let named: Vec<Option<String>> = rows
         .par_iter()
         .map(|row| {
@@ -79,7 +79,7 @@ fn nine_of_ten_mistakes_are_named_first() {
 #[test]
 fn correct_variants_are_not_accused() {
     let scenes = suite();
-    let accused: Vec<(&str, Vec<String>)> = rows(Kind::Variant)
+    let accused: Vec<(&str, Vec<String>)> = rows(RowKind::Variant)
         .into_par_iter()
         .map(|row| {
             let accusations = scenes.iter().filter_map(|(name, scene)| {

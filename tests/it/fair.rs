@@ -49,7 +49,7 @@ pub fn assets() -> Vec<(String, Scene)> {
     scenes
 }
 
-pub fn rows(kind: student::Kind) -> Vec<&'static Row> {
+pub fn rows(kind: student::RowKind) -> Vec<&'static Row> {
     CATALOGUE.iter().filter(|row| row.kind == kind).collect()
 }
 
@@ -65,7 +65,7 @@ pub fn simulated(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
 #[test]
 fn no_mistake_passes_the_fair_rules() {
     let scenes = assets();
-    let missed: Vec<&str> = rows(student::Kind::Wrong)
+    let missed: Vec<&str> = rows(student::RowKind::Wrong)
         .into_par_iter()
         .filter(|row| {
             // Where the mistake makes the program go on for ever, there is no whole trace to pass.
@@ -84,8 +84,10 @@ fn no_mistake_passes_the_fair_rules() {
 #[test]
 fn every_correct_variant_passes_the_fair_rules() {
     let scenes = assets();
-    let cases: Vec<(&Row, &(String, Scene))> =
-        rows(student::Kind::Variant).into_iter().flat_map(|row| scenes.iter().map(move |scene| (row, scene))).collect();
+    let cases: Vec<(&Row, &(String, Scene))> = rows(student::RowKind::Variant)
+        .into_iter()
+        .flat_map(|row| scenes.iter().map(move |scene| (row, scene)))
+        .collect();
     assert!(cases.len() > 2000);
     let refused: Vec<String> = cases
         .into_par_iter()

@@ -2,7 +2,7 @@
 use fosssim_oracle::{
     judge::parity::{self, Options},
     scene::original,
-    student::{self, CATALOGUE, Kind, Row, Student},
+    student::{self, CATALOGUE, Row, RowKind, Student},
     suite::library,
 };
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ fn compare(row: &Row, name: &str) {
 
 #[test]
 fn other_arithmetic_is_judged_the_same_one_by_one() {
-    let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.kind == Kind::Variant).collect();
+    let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).collect();
     let names: Vec<&str> = library::names().collect();
     rows.par_iter().for_each(|row| names.par_iter().for_each(|name| compare(row, name)));
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use fosssim_oracle::{
     diagnose::known,
     scene::{Scene, original},
-    student::{self, CATALOGUE, Kind, Student},
+    student::{self, CATALOGUE, RowKind, Student},
 };
 use rayon::prelude::*;
 
@@ -50,7 +50,7 @@ fn most_mistakes_are_named_on_their_best_scene() {
     let scenes = scenes();
     let recognised: Vec<(&str, Recognised)> = CATALOGUE
         .par_iter()
-        .filter(|row| row.kind == Kind::Wrong)
+        .filter(|row| row.kind == RowKind::Wrong)
         .map(|row| {
             let outcomes = scenes.iter().map(|(_, scene, correct)| {
                 let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
@@ -80,7 +80,7 @@ fn no_correct_variant_is_accused() {
     let accused: Vec<String> = scenes()
         .par_iter()
         .flat_map_iter(|(name, scene, _)| {
-            CATALOGUE.iter().filter(|row| row.kind == Kind::Variant).filter_map(move |row| {
+            CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).filter_map(move |row| {
                 let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
                 let first = known(scene, &trace[..]).into_iter().next()?;
                 Some(format!("{} on {name}: {}", row.id, first.key))
@@ -101,7 +101,7 @@ fn a_right_approach_hides_no_mistake() {
     };
     let correct = trace(None);
     assert_eq!(known(scene, &correct[..]), []);
-    let rows = CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong && !row.id.starts_with("pe-approach"));
+    let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && !row.id.starts_with("pe-approach"));
     let mut seen = 0;
     let mut unnamed = Vec::new();
     for row in rows {

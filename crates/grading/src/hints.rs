@@ -1,7 +1,7 @@
 //! How much a report tells a student, and what of findings and explanations that lets through.
 //!
 //! What is not to be told is cut here, before a report or the journal sees it, so that no format can let it out.
-use super::told::{Place, Told, ToldBook, ToldFinding};
+use super::told::{Told, ToldBook, ToldFinding, ToldPlace};
 use fosssim_judge::{Book, Detail, Finding, Outcome, Rules};
 use fosssim_mistakes::{diagnose::Explanation, student::find};
 use serde::Deserialize;
@@ -89,28 +89,28 @@ impl Hints {
 }
 
 /// Where in its step a finding lies.
-const fn place(detail: &Detail) -> Place {
+const fn place(detail: &Detail) -> ToldPlace {
     match detail {
         Detail::MissedCollision { expected }
         | Detail::WrongNormal { expected, .. }
-        | Detail::ContactTime { expected, .. } => Place::Pair(expected.pair),
+        | Detail::ContactTime { expected, .. } => ToldPlace::Pair(expected.pair),
         Detail::PolynomialDegree { place, .. }
         | Detail::VanishingPolynomial { place, .. }
         | Detail::Coefficient { place, .. }
         | Detail::PassPositions { place }
         | Detail::TrimmedDecision { place, .. }
         | Detail::TrimmedTime { place, .. }
-        | Detail::MixedForms { place } => Place::Polynomial(*place),
+        | Detail::MixedForms { place } => ToldPlace::Polynomial(*place),
         Detail::Position { particle, .. }
         | Detail::Velocity { particle, .. }
-        | Detail::BeyondReach { particle, .. } => Place::Particle(*particle),
+        | Detail::BeyondReach { particle, .. } => ToldPlace::Particle(*particle),
         Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
-            Place::Objects(actual.first, actual.second)
+            ToldPlace::Objects(actual.first, actual.second)
         }
         Detail::PolynomialCount { .. }
         | Detail::PassCount { .. }
         | Detail::RecordsDiffer { .. }
-        | Detail::ImpossibleLog => Place::Step,
+        | Detail::ImpossibleLog => ToldPlace::Step,
     }
 }
 
@@ -120,7 +120,7 @@ mod tests {
     use fosssim_judge::parity;
     use fosssim_mistakes::{
         diagnose::{About, Example, explain, formula_in},
-        student::{self, CATALOGUE, Kind, Student},
+        student::{self, CATALOGUE, RowKind, Student},
     };
     use fosssim_model::scene::original;
 
@@ -153,7 +153,7 @@ mod tests {
     fn values_are_told_in_full_only() {
         let detail = Detail::Position { particle: 2, expected: [1.5, 0.0], actual: [1.25, 0.0], residual: 0.25 };
         let finding = Finding { step: 4, frame: 8, detail };
-        let place = ToldFinding::Place { step: 4, kind: finding.kind(), place: Place::Particle(2) };
+        let place = ToldFinding::Place { step: 4, kind: finding.kind(), place: ToldPlace::Particle(2) };
         assert_eq!(Hints::None.finding(&finding), None);
         assert_eq!(Hints::Where.finding(&finding), Some(place.clone()));
         assert_eq!(Hints::What.finding(&finding), Some(place));
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn what_is_told_of_a_trace_grows_with_the_hints_and_holds_no_value_below_full() {
         let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
-        let row = CATALOGUE.iter().find(|row| row.kind == Kind::Wrong).expect("a mistake");
+        let row = CATALOGUE.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
         let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
         let options = parity::Options { fair: true, ..parity::Options::default() };
         let judged = parity::judge(&scene, &trace[..], &options, &mut ());
@@ -198,7 +198,7 @@ mod tests {
     fn no_mistake_of_the_catalogue_gives_a_formula_away_below_full() {
         let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
         let mut told = 0;
-        for row in CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong) {
+        for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong) {
             let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
             for one in Hints::What.cut(explain(&scene, &trace)) {
                 let others = one.same_as.iter().map(|key| find(key).expect("a known mistake").sentence());

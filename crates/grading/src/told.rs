@@ -63,7 +63,7 @@ pub enum ToldFinding {
         #[serde(with = "mirror::kind")]
         kind: Kind,
         /// Where in the step.
-        place: Place,
+        place: ToldPlace,
     },
     /// Everything.
     Full(#[serde(with = "mirror::FindingForm")] Finding),
@@ -91,7 +91,7 @@ impl ToldFinding {
 
 /// Where in its step a finding lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Place {
+pub enum ToldPlace {
     /// In no place that could be named.
     Step,
     /// At a pair of the scene.

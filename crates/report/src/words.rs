@@ -5,7 +5,7 @@ use fosssim_grading::{
         BadTrace, BuildEnd, Doing, Ended, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, SceneResult,
         Unusable, Wrong,
     },
-    told::{Place, ToldBook, ToldFinding},
+    told::{ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{Kind, PairWords, Unreadable, share};
 
@@ -204,11 +204,11 @@ pub(crate) fn first_divergence(first: &ToldFinding) -> String {
         ToldFinding::Full(finding) => format!("first divergence: {finding}"),
         ToldFinding::Place { step, kind, place } => {
             let place = match place {
-                Place::Step => String::new(),
-                Place::Pair(pair) => format!(", {}", PairWords(*pair)),
-                Place::Polynomial(place) => format!(", {place}"),
-                Place::Particle(particle) => format!(", particle {particle}"),
-                Place::Objects(first, second) => format!(", objects {first} and {second}"),
+                ToldPlace::Step => String::new(),
+                ToldPlace::Pair(pair) => format!(", {}", PairWords(*pair)),
+                ToldPlace::Polynomial(place) => format!(", {place}"),
+                ToldPlace::Particle(particle) => format!(", particle {particle}"),
+                ToldPlace::Objects(first, second) => format!(", objects {first} and {second}"),
             };
             format!("first divergence: step {step}{place}: {kind}")
         }

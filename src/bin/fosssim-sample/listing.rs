@@ -1,7 +1,7 @@
 //! The catalogue as a table or as JSON.
 use std::io::{self, Write};
 
-use fosssim_oracle::student::{CATALOGUE, Kind, Row};
+use fosssim_oracle::student::{CATALOGUE, Row, RowKind};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -44,9 +44,9 @@ pub fn print(json: bool) -> anyhow::Result<u8> {
 fn table() -> String {
     let mut text = String::new();
     for (kind, title) in [
-        (Kind::Wrong, "Mistakes: the result is wrong."),
-        (Kind::Variant, "Variants: other arithmetic, the same mathematics."),
-        (Kind::Hostile, "Hostile programs."),
+        (RowKind::Wrong, "Mistakes: the result is wrong."),
+        (RowKind::Variant, "Variants: other arithmetic, the same mathematics."),
+        (RowKind::Hostile, "Hostile programs."),
     ] {
         let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.kind == kind).collect();
         text += &format!("{title} ({})\n\n", rows.len());

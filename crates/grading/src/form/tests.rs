@@ -2,7 +2,7 @@ use super::*;
 use crate::{
     Key, Verdict,
     result::{BadTrace, Doing, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, Unusable, Wrong},
-    told::{Place, Told, ToldBook, ToldFinding},
+    told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{
     Book, Counts, Damage, Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role, Ruling,
@@ -88,8 +88,12 @@ fn findings() -> Vec<Finding> {
 
 fn wrong() -> SceneResult {
     let examples: Vec<_> = findings().into_iter().map(ToldFinding::Full).collect();
-    let places =
-        [Place::Step, Place::Pair(pair(PairKind::ParticleHalfPlane)), Place::Particle(3), Place::Objects(-1, i32::MAX)];
+    let places = [
+        ToldPlace::Step,
+        ToldPlace::Pair(pair(PairKind::ParticleHalfPlane)),
+        ToldPlace::Particle(3),
+        ToldPlace::Objects(-1, i32::MAX),
+    ];
     let mut counts = Counts::default();
     for (number, kind) in Kind::ALL.into_iter().enumerate() {
         counts.add(kind, u64::MAX / 20 * (number as u64 % 2));

@@ -14,7 +14,7 @@ use fosssim_oracle::{
     diagnose::{Explanation, common, known},
     judge::parity,
     scene::{Scene, original},
-    student::{self, CATALOGUE, Kind, Student},
+    student::{self, CATALOGUE, RowKind, Student},
 };
 use rayon::prelude::*;
 
@@ -38,14 +38,14 @@ fn main() -> anyhow::Result<ExitCode> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
     let part = std::env::args().nth(2).unwrap_or_default();
     let scenes = scenes(&folder)?;
-    let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.kind != Kind::Hostile && row.id.contains(&part)).collect();
+    let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.kind != RowKind::Hostile && row.id.contains(&part)).collect();
     let results: Vec<Vec<(Outcome, Duration, Vec<Explanation>)>> =
         rows.par_iter().map(|row| scenes.iter().map(|case| explain(case, row)).collect()).collect();
     let mut accused = false;
     let (mut wrong, mut best_first, mut best_among, mut unseen) = (0, 0, 0, 0_usize);
     let (mut traces, mut first, mut among, mut other, mut nothing) = (0_usize, 0_usize, 0_usize, 0_usize, 0_usize);
     for (row, outcomes) in rows.iter().zip(&results) {
-        let is_wrong = row.kind == Kind::Wrong;
+        let is_wrong = row.kind == RowKind::Wrong;
         let mut confusions = Vec::new();
         let (mut is_first, mut is_among) = (false, false);
         for ((name, ..), (outcome, ..)) in scenes.iter().zip(outcomes) {
@@ -105,7 +105,7 @@ fn main() -> anyhow::Result<ExitCode> {
 /// What all traces of a mistake say together.
 fn together(rows: &[&student::Row], results: &[Vec<(Outcome, Duration, Vec<Explanation>)>]) {
     let mut confused = Vec::new();
-    let wrong = rows.iter().zip(results).filter(|(row, _)| row.kind == Kind::Wrong);
+    let wrong = rows.iter().zip(results).filter(|(row, _)| row.kind == RowKind::Wrong);
     for (row, outcomes) in wrong.clone() {
         match common(outcomes.iter().map(|(.., explanations)| explanations.as_slice())) {
             Some(first) if first.key == row.id => {}

@@ -81,7 +81,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let part = std::env::args().nth(2).unwrap_or_default();
     let cases = cases(&folder)?;
     let rows: Vec<&Row> =
-        CATALOGUE.iter().filter(|row| row.kind != student::Kind::Hostile && row.id.contains(&part)).collect();
+        CATALOGUE.iter().filter(|row| row.kind != student::RowKind::Hostile && row.id.contains(&part)).collect();
     let matrix: Vec<Vec<Cell>> =
         rows.par_iter().map(|row| cases.iter().map(|case| cell(row, case)).collect()).collect();
     for (book, (name, _)) in RULE_BOOKS.iter().enumerate() {
@@ -90,17 +90,19 @@ fn main() -> anyhow::Result<ExitCode> {
     let invisible: Vec<&str> = rows
         .iter()
         .zip(&matrix)
-        .filter(|(row, cells)| row.kind == student::Kind::Wrong && cells.iter().all(|cell| matches!(cell, Cell::Same)))
+        .filter(|(row, cells)| {
+            row.kind == student::RowKind::Wrong && cells.iter().all(|cell| matches!(cell, Cell::Same))
+        })
         .map(|(row, _)| row.id)
         .collect();
     print_list("mistakes that change no trace (must be none)", &invisible);
-    let uncaught = ids(&rows, &matrix, FAIR, student::Kind::Wrong, false).len();
+    let uncaught = ids(&rows, &matrix, FAIR, student::RowKind::Wrong, false).len();
     let accused = accused(FAIR, &rows, &cases, &matrix).iter().any(|(row, scene)| !is_known(row.id, scene));
     Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accused)))
 }
 
 /// The rows of a kind that some scene catches under a rule book, or that none does.
-fn ids(rows: &[&Row], matrix: &[Vec<Cell>], book: usize, kind: student::Kind, caught: bool) -> Vec<&'static str> {
+fn ids(rows: &[&Row], matrix: &[Vec<Cell>], book: usize, kind: student::RowKind, caught: bool) -> Vec<&'static str> {
     rows.iter()
         .zip(matrix)
         .filter(|(row, cells)| row.kind == kind && caught == cells.iter().any(|cell| refused(cell, book)))
@@ -112,7 +114,7 @@ fn ids(rows: &[&Row], matrix: &[Vec<Cell>], book: usize, kind: student::Kind, ca
 fn accused<'a>(book: usize, rows: &[&'a Row], cases: &'a [Case], matrix: &[Vec<Cell>]) -> Vec<(&'a Row, &'a str)> {
     rows.iter()
         .zip(matrix)
-        .filter(|(row, _)| row.kind == student::Kind::Variant)
+        .filter(|(row, _)| row.kind == student::RowKind::Variant)
         .flat_map(|(row, cells)| cases.iter().zip(cells).map(move |(case, cell)| (*row, case, cell)))
         .filter(|(.., cell)| refused(cell, book))
         .map(|(row, case, _)| (row, case.name.as_str()))
@@ -191,8 +193,8 @@ fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[Case], matrix: &[
         println!("  {:36} {marks}", row.id);
     }
     println!();
-    println!("  {} mistakes caught\n", ids(rows, matrix, book, student::Kind::Wrong, true).len());
-    print_list("mistakes that no scene catches", &ids(rows, matrix, book, student::Kind::Wrong, false));
+    println!("  {} mistakes caught\n", ids(rows, matrix, book, student::RowKind::Wrong, true).len());
+    print_list("mistakes that no scene catches", &ids(rows, matrix, book, student::RowKind::Wrong, false));
     let mut scenes: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for (row, scene) in accused(book, rows, cases, matrix) {
         let known = if book == FAIR && is_known(row.id, scene) { " (known)" } else { "" };
@@ -219,7 +221,7 @@ fn print_list(title: &str, names: &[&str]) {
 fn sufficient(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<Cell>]) -> BTreeSet<usize> {
     let caught = |scene: usize| -> BTreeSet<usize> {
         (0..rows.len())
-            .filter(|&row| rows[row].kind == student::Kind::Wrong && refused(&matrix[row][scene], book))
+            .filter(|&row| rows[row].kind == student::RowKind::Wrong && refused(&matrix[row][scene], book))
             .collect()
     };
     let caught: Vec<BTreeSet<usize>> = (0..scenes).map(caught).collect();

@@ -34,7 +34,7 @@ mod step_failure;
 mod world;
 mod zones;
 
-pub use crate::assignments::t2m2::{Area, CATALOGUE, Kind, Mistake, Row, find};
+pub use crate::assignments::t2m2::{Area, CATALOGUE, Mistake, Row, RowKind, find};
 pub use author::Student;
 pub use objects::{Contact, Object, Pair, State};
 pub use record::{Record, trace};

@@ -1,5 +1,5 @@
 //! Theme 1 and Theme 2, Milestone 1.
-use super::{CollisionType, Definition, Dropping, Handling, ImpulseList, Records};
+use super::{CollisionType, Definition, Dropping, Handling, ImpulseList, RecordLists};
 
 /// No detection logs polynomials; the course's root finder comes with the next milestone.
 pub(super) const DEFINITION: Definition = Definition {
@@ -8,17 +8,17 @@ pub(super) const DEFINITION: Definition = Definition {
     handlings: &[
         Handling {
             collision: CollisionType::None,
-            records: Records { impulses: ImpulseList::Absent, polynomials: false },
+            records: RecordLists { impulses: ImpulseList::Absent, polynomials: false },
             heading: "Collisions disabled",
         },
         Handling {
             collision: CollisionType::Simple,
-            records: Records { impulses: ImpulseList::Responses, polynomials: false },
+            records: RecordLists { impulses: ImpulseList::Responses, polynomials: false },
             heading: "Simple Collision Handling",
         },
         Handling {
             collision: CollisionType::Penalty,
-            records: Records { impulses: ImpulseList::Absent, polynomials: false },
+            records: RecordLists { impulses: ImpulseList::Absent, polynomials: false },
             heading: "Collisions disabled",
         },
     ],

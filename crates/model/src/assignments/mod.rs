@@ -101,14 +101,14 @@ pub struct Handling {
     /// The collision type.
     pub collision: CollisionType,
     /// What its records hold.
-    pub records: Records,
+    pub records: RecordLists,
     /// How the original calls it above a run (oracle-behaviour.md 3).
     pub heading: &'static str,
 }
 
 /// What the records of a step hold besides positions and velocities (trace-format.md 1, 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Records {
+pub struct RecordLists {
     /// The list of impulses.
     pub impulses: ImpulseList,
     /// Whether there is a list of polynomials, and a mid record in each step.

@@ -1,5 +1,5 @@
 //! Theme 2, Milestone 2 (trace-format.md 2, collisions.md).
-use super::{CollisionType, Definition, Dropping, Handling, ImpulseList, PairKind, Records};
+use super::{CollisionType, Definition, Dropping, Handling, ImpulseList, PairKind, RecordLists};
 
 pub(super) const DEFINITION: Definition = Definition {
     key: "t2m2",
@@ -7,12 +7,12 @@ pub(super) const DEFINITION: Definition = Definition {
     handlings: &[
         Handling {
             collision: CollisionType::ContinuousTime,
-            records: Records { impulses: ImpulseList::Responses, polynomials: true },
+            records: RecordLists { impulses: ImpulseList::Responses, polynomials: true },
             heading: "Continuous-Time Collision Handling",
         },
         Handling {
             collision: CollisionType::Hybrid,
-            records: Records { impulses: ImpulseList::Empty, polynomials: true },
+            records: RecordLists { impulses: ImpulseList::Empty, polynomials: true },
             heading: "Hybrid Collision Handling",
         },
     ],

@@ -4,7 +4,7 @@ use fosssim_grading::{
     config::{Credit, Visibility},
     result::{BuildEnd, Ended, Failure, Found, Unusable},
     score::{self, Marking},
-    told::{Place, Told, ToldBook, ToldFinding},
+    told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{Book, Counts, Kind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
@@ -71,7 +71,7 @@ pub(crate) fn bad() -> Grade {
     wrong.explanations = crate::explain::tests::explanations();
     let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
     let pass = Pass { stage: Stage::Impulses { round: 0 }, index: 0 };
-    let place = Place::Polynomial(PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 });
+    let place = ToldPlace::Polynomial(PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 });
     let first = ToldFinding::Place { step: 3, kind: Kind::Coefficient, place };
     let mut counts = Counts::default();
     counts.add(Kind::Coefficient, 1);

@@ -51,8 +51,8 @@ fn a_wrong_trace_says_how_many_steps_and_where_first() {
 fn details_are_what_is_told_and_nothing_else() {
     let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(Wrong::Untold));
     assert_eq!(details(&result), [""; 0]);
-    let first = ToldFinding::Place { step: 4, kind: Kind::Position, place: Place::Particle(2) };
-    let objects = ToldFinding::Place { step: 5, kind: Kind::SuperfluousCollision, place: Place::Objects(1, 2) };
+    let first = ToldFinding::Place { step: 4, kind: Kind::Position, place: ToldPlace::Particle(2) };
+    let objects = ToldFinding::Place { step: 5, kind: Kind::SuperfluousCollision, place: ToldPlace::Objects(1, 2) };
     let mut counts = Counts::default();
     counts.add(Kind::Position, 7);
     counts.add(Kind::SuperfluousCollision, 2);

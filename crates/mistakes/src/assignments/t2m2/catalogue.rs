@@ -5,7 +5,7 @@
 //! a mistake is made asks [`Student::makes`](crate::student::Student::makes).
 /// What is to be thought of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum RowKind {
     /// A mistake: the result is wrong.
     Wrong,
     /// No mistake: other arithmetic, the same mathematics.
@@ -45,7 +45,7 @@ pub enum Area {
     Process,
 }
 
-impl Kind {
+impl RowKind {
     /// Its name in listings.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -87,7 +87,7 @@ pub struct Row {
     /// The mistake, for the user.
     pub id: &'static str,
     /// Wrong, correct, or hostile.
-    pub kind: Kind,
+    pub kind: RowKind,
     /// Where it is made.
     pub area: Area,
     /// What is wrong, in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives nothing
@@ -155,7 +155,7 @@ macro_rules! catalogue {
         pub const CATALOGUE: &[Row] = &[$($(Row {
             mistake: Mistake::$mistake,
             id: $id,
-            kind: Kind::$kind,
+            kind: RowKind::$kind,
             area: Area::$area,
             what: $what,
             term: $term,

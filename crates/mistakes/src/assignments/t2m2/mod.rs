@@ -10,7 +10,7 @@ pub(super) mod probes;
 pub(crate) mod specials;
 mod subject;
 
-pub use catalogue::{Area, CATALOGUE, Kind, Mistake, Row, find};
+pub use catalogue::{Area, CATALOGUE, Mistake, Row, RowKind, find};
 pub(crate) use inputs::Inputs;
 pub use motion::{Body, Motion};
 pub(crate) use subject::Subject;

@@ -4,7 +4,7 @@ use super::{
     resimulate::{Correct, resimulate},
     scan::{Sample, Scan},
 };
-use crate::student::{Area, CATALOGUE, Kind, Mistake, Row, StepLog, World};
+use crate::student::{Area, CATALOGUE, Mistake, Row, RowKind, StepLog, World};
 use fosssim_model::scene::Scene;
 use std::{cell::Cell, collections::BTreeSet};
 
@@ -50,7 +50,7 @@ impl<'a> Candidates<'a> {
     pub(super) fn new(scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
         let candidates = CATALOGUE
             .iter()
-            .filter(|row| row.kind != Kind::Hostile)
+            .filter(|row| row.kind != RowKind::Hostile)
             .filter(|row| !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid))
             .map(|row| Candidate { row, world: World::new(scene.clone(), correct.with(Some(row.mistake))) })
             .collect();

@@ -28,7 +28,7 @@ pub(super) use scan::Sample;
 pub(super) use several::is_empty_stage;
 
 use super::{Explanation, about::About};
-use crate::student::{Kind, Mistake, Row, find};
+use crate::student::{Mistake, Row, RowKind, find};
 use candidates::{Candidates, Score};
 use fosssim_model::{scene::Scene, trace::Layout};
 use resimulate::Correct;
@@ -132,7 +132,7 @@ fn best(scene: &Scene, scan: &Scan, correct: Correct) -> Found {
     scores.sort_by_key(|score| plausibility(score.row));
     let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return Found::default() };
     let complete = best.reproduced == best.samples;
-    if scores.iter().any(|score| score.row.kind == Kind::Variant) {
+    if scores.iter().any(|score| score.row.kind == RowKind::Variant) {
         return Found { explanation: None, complete };
     }
     let mut explanation = explain(best.row, (best.reproduced, best.samples));

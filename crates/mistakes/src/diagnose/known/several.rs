@@ -8,7 +8,7 @@ use super::{
     resimulate::{Correct, resimulate},
     scan::{Sample, Scan},
 };
-use crate::student::{Area, CATALOGUE, Kind, Mistake, Object, Row, StepLog, Student, World};
+use crate::student::{Area, CATALOGUE, Mistake, Object, Row, RowKind, StepLog, Student, World};
 use fosssim_model::scene::{Collision, Scene};
 use std::{cell::Cell, collections::BTreeSet};
 
@@ -133,7 +133,7 @@ impl<'a> Search<'a> {
             return None;
         }
         let samples = self.confirmed(&set)?;
-        let is_variant = |row: &&'static Row| row.kind == Kind::Variant;
+        let is_variant = |row: &&'static Row| row.kind == RowKind::Variant;
         if set.iter().chain(alike.last().into_iter().flatten()).any(is_variant) {
             return None;
         }
@@ -233,7 +233,7 @@ impl<'a> Search<'a> {
     fn next(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
         let rows = CATALOGUE.iter().filter(|row| {
-            row.kind != Kind::Hostile
+            row.kind != RowKind::Hostile
                 && !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid)
                 && set.iter().all(|other| other.mistake != row.mistake)
         });

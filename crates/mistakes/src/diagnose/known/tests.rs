@@ -61,7 +61,7 @@ fn mistakes_of_all_stages_are_named() {
 
 #[test]
 fn correct_variants_are_never_accused() {
-    for row in student::CATALOGUE.iter().filter(|row| row.kind == student::Kind::Variant) {
+    for row in student::CATALOGUE.iter().filter(|row| row.kind == student::RowKind::Variant) {
         assert_eq!(first(row.id), None, "{}", row.id);
     }
 }
@@ -177,7 +177,7 @@ fn half_done_work_with_a_mistake_has_both() {
 /// Programs are made of any two rows: none of them may bring the search down.
 #[test]
 fn an_empty_detection_goes_with_every_other_mistake() {
-    for row in student::CATALOGUE.iter().filter(|row| row.kind != student::Kind::Hostile) {
+    for row in student::CATALOGUE.iter().filter(|row| row.kind != student::RowKind::Hostile) {
         for empty in ["pp-empty", "pe-empty", "ph-empty"] {
             let _trace = made(&scene(), &[empty, row.id]);
         }

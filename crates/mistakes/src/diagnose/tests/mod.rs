@@ -4,7 +4,7 @@ use super::{
     outside::{Rated, Rating, rated, told_of},
     probe_scenes, several,
 };
-use crate::student::{self, Area, CATALOGUE, Kind, Row, Student, mutants::mutants};
+use crate::student::{self, Area, CATALOGUE, Row, RowKind, Student, mutants::mutants};
 use fosssim_model::assignments::Assignment;
 
 mod probes;
@@ -24,7 +24,8 @@ enum Said {
 
 /// Programs with two or three mistakes of different parts of the assignment, every tenth of a long list.
 fn programs() -> Vec<Vec<&'static Row>> {
-    let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong && row.area != Area::Trace).collect();
+    let rows: Vec<&Row> =
+        CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && row.area != Area::Trace).collect();
     let mut programs = Vec::new();
     for number in 0..48_usize {
         let one = rows[(number * 37) % rows.len()];

@@ -1,6 +1,6 @@
 //! The probe scenes show what they are for, and a correct program passes on all of them.
 use crate::assignments::probe_scenes;
-use crate::student::{self, Area, CATALOGUE, KNOWN_REFUSED, Kind, Mistake, Row, Student};
+use crate::student::{self, Area, CATALOGUE, KNOWN_REFUSED, Mistake, Row, RowKind, Student};
 use fosssim_judge::{
     self as judging,
     fair::{Judgement, Verdict},
@@ -121,7 +121,7 @@ fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
     let scenes: Vec<(String, Scene)> = probe_scenes(Assignment::T2M2);
     let missed: Vec<&str> = CATALOGUE
         .iter()
-        .filter(|row| row.kind == Kind::Wrong && !matches!(row.area, Area::Trace | Area::Process))
+        .filter(|row| row.kind == RowKind::Wrong && !matches!(row.area, Area::Trace | Area::Process))
         .filter(|row| {
             // Where the mistake makes the program go on for ever, there is no whole trace to accept.
             scenes.iter().all(|(_, scene)| trace(scene, Some(row)).is_some_and(|trace| is_accepted(scene, &trace)))
@@ -138,7 +138,7 @@ fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
 /// at fault, and where a small factor makes the course's library drop what a decision hangs on.
 #[test]
 fn correct_programs_are_accepted_in_every_probe_scene() {
-    let rows = CATALOGUE.iter().filter(|row| row.kind == Kind::Variant).map(Some);
+    let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).map(Some);
     let refused: Vec<String> = rows
         .chain([None])
         .flat_map(|row| probe_scenes(Assignment::T2M2).into_iter().map(move |(name, scene)| (row, name, scene)))

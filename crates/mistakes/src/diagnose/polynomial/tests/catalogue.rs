@@ -1,7 +1,7 @@
 //! The students of the catalogue on small random scenes: a mistake is explained by what it is, a correct variant not at
 //! all.
 use super::{Body, Motion, Numbers, PairKind, Sample, explain};
-use crate::student::{Area, CATALOGUE, KNOWN_ACCUSED, Kind, Object, Row, StepLog, Student, World, find, step};
+use crate::student::{Area, CATALOGUE, KNOWN_ACCUSED, Object, Row, RowKind, StepLog, Student, World, find, step};
 use fosssim_model::{
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
     sim::Pair,
@@ -125,14 +125,14 @@ const ACCUSED_IF_ASKED: [&str; 4] =
 fn correct_variants_are_not_accused() {
     let is_known = |id: &str| KNOWN_ACCUSED.contains(&id) || ACCUSED_IF_ASKED.contains(&id);
     for style in [Style::General, Style::Slow, Style::Plain] {
-        for row in CATALOGUE.iter().filter(|row| row.kind == Kind::Variant && !is_known(row.id)) {
+        for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant && !is_known(row.id)) {
             assert_eq!(explain(&first_passes(row, style)), [], "{} {style:?}", row.id);
         }
     }
 }
 
 fn mistakes() -> impl Iterator<Item = &'static Row> {
-    CATALOGUE.iter().filter(|row| row.kind == Kind::Wrong && concerns_polynomials(row))
+    CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && concerns_polynomials(row))
 }
 
 /// Where nothing is like anything else, every mistake is told once and reproduced completely.
