@@ -24,7 +24,7 @@ pub enum StepError {
         /// The step, from 1.
         step: u32,
     },
-    /// More work than was allowed ([`Simulation::limit_work`]).
+    /// More work than was allowed ([`Simulation::limit_work`](super::Simulation::limit_work)).
     #[error("step {step}: from these states collision handling takes far longer than in a run of the scene")]
     Work {
         /// The step, from 1.
