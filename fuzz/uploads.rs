@@ -1,6 +1,9 @@
 //! What the fuzz target of the service does with its bytes; the service's tests replay the seeds, and what becomes of them when
 //! bytes change, through the same function.
-use fosssim_server::archive::{self, Limits};
+use fosssim_server::{
+    archive::{self, Limits},
+    web,
+};
 use std::{collections::BTreeSet, fs, path::Path};
 
 /// Small enough to be reached.
@@ -30,6 +33,30 @@ pub fn archive(bytes: &[u8]) -> bool {
     let told: BTreeSet<String> = files.iter().map(|file| file.to_string_lossy().into_owned()).collect();
     assert_eq!((told.len(), &told), (files.len(), &found), "told and unpacked are the same, each once");
     true
+}
+
+/// The largest file of a form.
+const LARGEST: u64 = 1 << 12;
+
+/// Receives a form as a browser sends it, in pieces whose size is the first byte. Whether it is accepted.
+pub fn form(bytes: &[u8]) -> bool {
+    let Some((pieces, body)) = bytes.split_first() else { return false };
+    let place = tempfile::tempdir().expect("a folder");
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().expect("a runtime");
+    let received = runtime.block_on(web::receive_form(place.path(), body, usize::from(*pieces), LARGEST));
+    // Whatever became of it: no more than allowed, and nothing lies around.
+    assert_eq!(fs::read_dir(place.path()).expect("a folder").count(), 0);
+    match received {
+        Ok((size, [_, kind, key])) => {
+            assert!(size <= LARGEST && size <= body.len() as u64, "{size} bytes of {}", body.len());
+            assert!([kind, key].into_iter().flatten().all(|word| (1..=200).contains(&word.len())));
+            true
+        }
+        Err(problem) => {
+            assert!((400..500).contains(&problem.status), "{problem:?}");
+            false
+        }
+    }
 }
 
 fn walk(root: &Path, folder: &Path, found: &mut BTreeSet<String>, size: &mut u64) {

@@ -2,6 +2,7 @@
 //! Fuzz target: see `archive` in `uploads.rs`.
 
 #[path = "../uploads.rs"]
+#[allow(dead_code)]
 mod uploads;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

@@ -41,6 +41,20 @@ pub fn openapi() -> String {
     text
 }
 
+/// Receives a form with an upload that came in pieces of so many bytes, into a folder that is empty again afterwards: what the fuzzer
+/// of uploads, and tests, hand bytes to. The size of the file, and what the form says: its name, its kind, and its key.
+///
+/// # Errors
+/// What is wrong with the form.
+pub async fn receive_form(
+    incoming: &std::path::Path,
+    body: &[u8],
+    pieces: usize,
+    most: u64,
+) -> Result<(u64, [Option<String>; 3]), Problem> {
+    upload::receive_form(incoming, body, pieces, most).await
+}
+
 /// Everything that is served.
 pub fn router(house: House) -> Router {
     let (api, _) = api_router();

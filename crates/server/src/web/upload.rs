@@ -57,14 +57,42 @@ pub(super) struct Received {
     pub(super) key: Option<String>,
 }
 
+/// Where uploads are put, and how long they may pause.
+struct Place<'a> {
+    incoming: &'a Path,
+    patience: Duration,
+}
+
 /// Receives the body of a request: the file itself, or a form with a field `file`.
 pub(super) async fn receive(house: &House, request: Request, most: u64) -> Result<Received, Problem> {
+    receive_at(&Place { incoming: house.incoming(), patience: house.patience() }, request, most).await
+}
+
+/// Receives a form that came in pieces of so many bytes, as fuzzers make them: the size of its file, and what it says of it.
+pub(super) async fn receive_form(
+    incoming: &Path,
+    body: &[u8],
+    pieces: usize,
+    most: u64,
+) -> Result<(u64, [Option<String>; 3]), Problem> {
+    let pieces: Vec<Result<Bytes, std::io::Error>> =
+        body.chunks(pieces.max(1)).map(|piece| Ok(Bytes::copy_from_slice(piece))).collect();
+    let request = Request::builder()
+        .header(header::CONTENT_TYPE, "multipart/form-data; boundary=x")
+        .body(Body::from_stream(futures_util::stream::iter(pieces)))
+        .map_err(|_| Problem::fault())?;
+    let received = receive_at(&Place { incoming, patience: Duration::from_secs(60) }, request, most).await?;
+    let size = std::fs::metadata(&received.file)?.len();
+    Ok((size, [received.name, received.form, received.key]))
+}
+
+async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Received, Problem> {
     let multipart = request
         .headers()
         .get(header::CONTENT_TYPE)
         .and_then(|value| value.to_str().ok())
         .is_some_and(|value| value.trim_start().to_ascii_lowercase().starts_with("multipart/form-data"));
-    let deadline = Instant::now() + house.patience() * PAUSES;
+    let deadline = Instant::now() + place.patience * PAUSES;
     if !multipart {
         let announced =
             request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse::<u64>().ok());
@@ -72,7 +100,7 @@ pub(super) async fn receive(house: &House, request: Request, most: u64) -> Resul
             return Err(Problem::too_large(most));
         }
         let body: Body = request.into_body();
-        let file = to_file(house, body.into_data_stream(), most, deadline, None).await?;
+        let file = to_file(place, body.into_data_stream(), most, deadline, None).await?;
         return Ok(Received { file, name: None, form: None, key: None });
     }
     let untaken = Untaken::default();
@@ -84,19 +112,19 @@ pub(super) async fn receive(house: &House, request: Request, most: u64) -> Resul
     });
     let request = Request::from_parts(parts, Body::from_stream(counted));
     let mut multipart =
-        Multipart::from_request(request, house).await.map_err(|error| Problem::invalid(error.body_text()))?;
+        Multipart::from_request(request, &()).await.map_err(|error| Problem::invalid(error.body_text()))?;
     let (mut file, mut name, mut form, mut key) = (None, None, None, None);
     loop {
-        let next = tokio::time::timeout(house.patience(), multipart.next_field()).await;
+        let next = tokio::time::timeout(place.patience, multipart.next_field()).await;
         let field = next.map_err(|_| Problem::too_slow())?.map_err(|error| Problem::invalid(error.body_text()))?;
         let Some(field) = field else { break };
         match field.name() {
             Some("file") if file.is_none() => {
                 name = field.file_name().map(str::to_owned);
-                file = Some(to_file(house, field, most, deadline, Some(&untaken)).await?);
+                file = Some(to_file(place, field, most, deadline, Some(&untaken)).await?);
             }
-            Some("form") => form = Some(short_text(house, field).await?),
-            Some("key") => key = Some(short_text(house, field).await?),
+            Some("form") => form = Some(short_text(place, field).await?),
+            Some("key") => key = Some(short_text(place, field).await?),
             _ => return Err(Problem::invalid("the form has a field file, and may have form and key")),
         }
     }
@@ -105,10 +133,10 @@ pub(super) async fn receive(house: &House, request: Request, most: u64) -> Resul
 }
 
 /// A short field of a form.
-async fn short_text(house: &House, mut field: axum::extract::multipart::Field<'_>) -> Result<String, Problem> {
+async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Field<'_>) -> Result<String, Problem> {
     let mut bytes = Vec::new();
     loop {
-        let chunk = tokio::time::timeout(house.patience(), field.chunk()).await.map_err(|_| Problem::too_slow())?;
+        let chunk = tokio::time::timeout(place.patience, field.chunk()).await.map_err(|_| Problem::too_slow())?;
         match chunk.map_err(|error| Problem::invalid(error.body_text()))? {
             Some(chunk) if bytes.len() + chunk.len() <= 200 => bytes.extend_from_slice(&chunk),
             Some(_) => return Err(Problem::invalid("a field is longer than 200 bytes")),
@@ -119,13 +147,13 @@ async fn short_text(house: &House, mut field: axum::extract::multipart::Field<'_
 
 /// Writes a stream into a file of the server's own.
 async fn to_file<E: Display>(
-    house: &House,
+    place: &Place<'_>,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
     most: u64,
     deadline: Instant,
     untaken: Option<&Untaken>,
 ) -> Result<TempPath, Problem> {
-    let (file, path) = tempfile::NamedTempFile::new_in(house.incoming())?.into_parts();
+    let (file, path) = tempfile::NamedTempFile::new_in(place.incoming)?.into_parts();
     let mut file = tokio::fs::File::from_std(file);
     let mut size = 0;
     loop {
@@ -133,7 +161,7 @@ async fn to_file<E: Display>(
         if left == Duration::ZERO {
             return Err(Problem::too_slow());
         }
-        let next = tokio::time::timeout(left.min(house.patience()), stream.next()).await;
+        let next = tokio::time::timeout(left.min(place.patience), stream.next()).await;
         match next.map_err(|_| Problem::too_slow())? {
             None => break,
             Some(Err(error)) => {

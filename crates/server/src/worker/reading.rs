@@ -45,6 +45,21 @@ struct Scene {
     summary: String,
     #[serde(default)]
     right_steps: u32,
+    /// Where it diverges first, and how many findings there are of each kind.
+    #[serde(default)]
+    details: Vec<String>,
+    #[serde(default)]
+    explanations: Vec<Explanation>,
+}
+
+/// A mistake that explains wrong steps.
+#[derive(Debug, Deserialize)]
+struct Explanation {
+    key: String,
+    #[serde(default)]
+    reproduced: u64,
+    #[serde(default)]
+    samples: u64,
 }
 
 /// Numbers keep their digits: the text that the grader wrote is what counts.
@@ -122,7 +137,13 @@ fn wrong(scenes: &[&Scene]) -> Vec<WrongScene> {
     }
     // Of a program that crashed or was too slow nobody knows what it would have answered.
     let answered = wrong.into_iter().filter(|scene| scene.code == "WA");
-    let answer = |scene: &Scene| format!("{} {} {}", scene.code, scene.right_steps, scene.summary);
+    let answer = |scene: &Scene| {
+        let explained =
+            scene.explanations.iter().map(|known| format!("{} {} {}", known.key, known.reproduced, known.samples));
+        let first = format!("{} {} {}", scene.code, scene.right_steps, scene.summary);
+        // What hints hide is not told here either: then the steps that are right, and the first that is not, have to do.
+        [vec![first], scene.details.clone(), explained.collect()].concat().join("\n")
+    };
     answered
         .map(|scene| WrongScene {
             scene: scene.scene.clone(),
@@ -168,6 +189,8 @@ mod tests {
             code: code.to_owned(),
             summary: "at step 3".to_owned(),
             right_steps,
+            details: vec!["counts: wrong coefficient: 11".to_owned()],
+            explanations: Vec::new(),
         };
         let (right, one, same, other, slow) =
             (scene("AC", 9), scene("WA", 2), scene("WA", 2), scene("WA", 3), scene("TLE", 2));
@@ -175,6 +198,12 @@ mod tests {
         let answer = |scenes: &[&Scene]| wrong(scenes).first().map(|wrong| wrong.answer.clone());
         assert_eq!(answer(&[&right, &one]), answer(&[&right, &same]));
         assert_ne!(answer(&[&right, &one]), answer(&[&right, &other]));
+        // As far right, and wrong in another way.
+        let other_way = Scene { details: vec!["counts: wrong coefficient: 12".to_owned()], ..scene("WA", 2) };
+        let explanation = Explanation { key: "a-mistake".to_owned(), reproduced: 6, samples: 6 };
+        let explained = Scene { explanations: vec![explanation], ..scene("WA", 2) };
+        assert_ne!(answer(&[&right, &one]), answer(&[&right, &other_way]));
+        assert_ne!(answer(&[&right, &one]), answer(&[&right, &explained]));
         assert_eq!(answer(&[&right, &slow]), None);
         assert_eq!(wrong(&[&one, &other, &right]), [], "two of three are not nearly right");
         assert_eq!(wrong(&[&[&one, &other], &[&right; 18][..]].concat()).len(), 2, "two of twenty are");

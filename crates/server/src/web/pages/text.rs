@@ -6,13 +6,20 @@ pub(super) fn moment(milliseconds: &i64) -> String {
     crate::calendar::minute(*milliseconds)
 }
 
-/// Points of the most that could be had; a dash where there are none.
+/// Points of the most that could be had, to two digits as in reports; a dash where there are none.
 pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     match (points, most) {
-        (Some(points), Some(most)) => format!("{points} / {most}"),
-        (Some(points), None) => points.clone(),
+        (Some(points), Some(most)) => format!("{} / {}", rounded(points), rounded(most)),
+        (Some(points), None) => rounded(points),
         _ => "\u{2013}".to_owned(),
     }
+}
+
+/// A number with two digits at most.
+fn rounded(number: &str) -> String {
+    let Ok(value) = number.parse::<f64>() else { return number.to_owned() };
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Points alone.
@@ -41,7 +48,7 @@ pub(super) fn suspicion(state: &str) -> &'static str {
 /// What a learning platform is to know.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
-        (Some(points), Some(most)) => format!("{points} / {most}"),
+        (Some(points), Some(most)) => format!("{} / {}", rounded(&points.to_string()), rounded(&most.to_string())),
         _ if score["gradingProgress"] == "Pending" => "being graded".to_owned(),
         _ => "somebody has to look".to_owned(),
     }
@@ -60,5 +67,16 @@ pub(super) fn state(state: &str) -> &'static str {
         "done" => "graded",
         "buried" => "the grader failed: nobody's fault here, and staff knows",
         _ => "taken out of the queue",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn points_have_two_digits_at_most() {
+        let points = |points: &str, most: &str| super::points(&Some(points.to_owned()), &Some(most.to_owned()));
+        assert_eq!(points("68.08974358974359", "100.0"), "68.09 / 100");
+        assert_eq!(points("0", "7.5"), "0 / 7.5");
+        assert_eq!(super::points(&None, &None), "\u{2013}");
     }
 }

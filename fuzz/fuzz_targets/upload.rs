@@ -1,0 +1,10 @@
+#![no_main]
+//! Fuzz target: see `form` in `uploads.rs`.
+
+#[path = "../uploads.rs"]
+#[allow(dead_code)]
+mod uploads;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let _ = uploads::form(bytes);
+});
