@@ -7,7 +7,7 @@ use fosssim_oracle::{
     scene::{self, Scene},
     sim::{RootSearch, Simulation},
     suite::library,
-    trace::{Layout, Recorder},
+    trace::{Frame, Layout, Reader, Recorder, Writer},
 };
 use std::{
     path::{Path, PathBuf},
@@ -121,6 +121,32 @@ fn parts() {
     };
     println!("- Judging on two threads: {:.1} times faster than on one.", ratio(judged(1), judged(2)));
     println!("- Judging on one thread takes {:.2} of the time of recording.", ratio(judged(1), with));
+    let rescaled: Vec<Vec<u8>> = scenes.iter().map(|(scene, trace)| rescaled(scene, trace)).collect();
+    let by_both = |of: &dyn Fn(usize) -> &'_ [u8]| {
+        let options = Options { threads: 1, fair: true, ..Options::default() };
+        time(|| {
+            for (number, (scene, _)) in scenes.iter().enumerate() {
+                drop(parity::judge(scene, of(number), &options, &mut ()));
+            }
+        })
+    };
+    let [own, other] = [by_both(&|number| &scenes[number].1), by_both(&|number| &rescaled[number])];
+    println!(
+        "- Judging right traces with a factor by both books takes {:.1} times as long as identical ones.",
+        ratio(other, own)
+    );
+}
+
+/// The same trace with every coefficient divided by three.
+fn rescaled(scene: &Scene, trace: &[u8]) -> Vec<u8> {
+    let layout = Layout::of(scene);
+    let (mut reader, mut writer) = (Reader::of_slice(trace, layout), Writer::new(Vec::new(), layout));
+    let mut frame = Frame::default();
+    while reader.next(&mut frame).expect("a sound trace") {
+        frame.polynomials.coefficients.iter_mut().for_each(|coefficient| *coefficient /= 3.0);
+        writer.frame(&frame);
+    }
+    writer.finish().expect("memory").0
 }
 
 fn simulate(scene: &Scene, search: RootSearch) -> Vec<u8> {

@@ -7,13 +7,20 @@ use super::{
     source::{Source, WINDOW},
 };
 use crate::sim::State;
-use fosssim_num::{polynomial::MAX_COEFFICIENTS, tolerances::LEADING_COEFFICIENT, vector::Vec2};
+use fosssim_num::{
+    polynomial::{MAX_COEFFICIENTS, trim},
+    tolerances::LEADING_COEFFICIENT,
+    vector::Vec2,
+};
 use std::io::Read;
 
 crate::drops_leading!();
 
 /// Bytes of memory that a decoded polynomial takes besides its coefficients.
 const POLYNOMIAL_MEMORY: usize = size_of::<usize>();
+
+/// Room is made for so many polynomials at a time.
+const TOGETHER: usize = 64;
 
 /// Bytes of memory that a decoded impulse takes.
 pub(crate) const IMPULSE_MEMORY: usize = size_of::<LoggedImpulse>();
@@ -79,6 +86,8 @@ pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut 
 /// Gives the bytes used, their number, and, with `TRIM`, whether any leading coefficient was dropped.
 pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut PolynomialLog) -> (usize, u64, bool) {
     let (mut at, mut done, mut trimmed) = (0, 0, false);
+    let PolynomialLog { coefficients, ends } = log;
+    let mut used = coefficients.len();
     while done < most
         && let Some((head, rest)) = bytes[at..].split_first_chunk::<4>()
     {
@@ -86,17 +95,30 @@ pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut P
         if size > MAX_COEFFICIENTS || 8 * size > rest.len() {
             break;
         }
-        let body = &rest[..8 * size];
-        let before = log.coefficients.len();
-        log.coefficients.extend(body.chunks_exact(8).map(number));
-        if TRIM && size > 0 && log.coefficients[before].abs() < LEADING_COEFFICIENT {
-            trim(&mut log.coefficients, before);
+        // A copy of constant length, of which a part counts, is the fastest; room for it is made for many at a time.
+        if coefficients.len() < used + MAX_COEFFICIENTS {
+            let more = usize::try_from(most - done).unwrap_or(usize::MAX).min(TOGETHER);
+            coefficients.resize(used + more * MAX_COEFFICIENTS, 0.0);
+        }
+        let places = &mut coefficients[used..used + MAX_COEFFICIENTS];
+        let numbers = rest.as_chunks::<8>().0;
+        match numbers.first_chunk::<MAX_COEFFICIENTS>() {
+            Some(six) => places.copy_from_slice(&six.map(f64::from_le_bytes)),
+            None => places.iter_mut().zip(numbers).for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes)),
+        }
+        let mut kept = size;
+        if TRIM && size > 0 && places[0].abs() < LEADING_COEFFICIENT {
+            let list = trim(&places[..size]);
+            kept = list.len();
+            places.copy_within(size - kept..size, 0);
             trimmed = true;
         }
-        log.ends.push(log.coefficients.len());
+        used += kept;
+        ends.push(used);
         at += 4 + 8 * size;
         done += 1;
     }
+    coefficients.truncate(used);
     (at, done, trimmed)
 }
 
@@ -114,12 +136,6 @@ pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64) {
         done += 1;
     }
     (at, done)
-}
-
-/// Drops the small leading coefficients of the polynomial that begins at `start`; a NaN stops the dropping.
-pub(crate) fn trim(coefficients: &mut Vec<f64>, start: usize) {
-    let small = coefficients[start..].iter().take_while(|c| c.abs() < LEADING_COEFFICIENT).count();
-    coefficients.drain(start..start + small);
 }
 
 /// Appends up to `count` coefficients from the window and gives their number; 0 only at the end of the source.

@@ -74,12 +74,14 @@ pub struct PolynomialLog {
 
 impl PolynomialLog {
     /// Number of polynomials.
+    #[inline]
     #[must_use]
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
     /// Whether there is none.
+    #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
@@ -101,6 +103,7 @@ impl PolynomialLog {
     ///
     /// # Panics
     /// When there is no such polynomial.
+    #[inline]
     #[must_use]
     pub fn get(&self, index: usize) -> &[f64] {
         let start = if index == 0 { 0 } else { self.ends[index - 1] };

@@ -95,8 +95,8 @@ impl Work for Look<'_> {
                 // The last lanes repeat the last call.
                 let member = &block[lane.min(block.len() - 1)];
                 match self.kind {
-                    PairKind::ParticleEdge => self.gather(member, lane, &mut logged, OF_EDGE),
-                    _ => self.gather(member, lane, &mut logged, OF_TWO),
+                    PairKind::ParticleEdge => self.gather::<4, 17>(member, lane, &mut logged, OF_EDGE),
+                    _ => self.gather::<2, 5>(member, lane, &mut logged, OF_TWO),
                 }
             }
             match self.kind {
@@ -119,25 +119,48 @@ impl Work for Look<'_> {
 }
 
 impl Look<'_> {
-    /// Takes a call's logged coefficients into a lane; complete polynomials have `lengths` of them.
+    /// Takes a call's logged coefficients into a lane; complete polynomials have `lengths` of them, `ALL` together.
     #[inline(always)]
-    fn gather<const COUNT: usize>(&self, member: &Member, lane: usize, logged: &mut Logged, lengths: [usize; COUNT]) {
-        let Logged { coefficients, missing } = logged;
+    fn gather<const COUNT: usize, const ALL: usize>(
+        &self,
+        member: &Member,
+        lane: usize,
+        logged: &mut Logged,
+        lengths: [usize; COUNT],
+    ) {
         let first = self.index + member.polynomial;
-        let ends = &self.log.ends[first..first + COUNT];
-        let mut begin = if first == 0 { 0 } else { self.log.ends[first - 1] };
-        let mut places = &mut coefficients[..];
-        for (number, (length, &end)) in lengths.into_iter().zip(ends).enumerate() {
-            let own;
-            (own, places) = places.split_at_mut(length);
-            let list = &self.log.coefficients[begin..end];
-            begin = end;
+        let begin = if first == 0 { 0 } else { self.log.ends[first - 1] };
+        let mut is_whole = true;
+        let mut end = begin;
+        for (number, length) in lengths.iter().enumerate() {
+            end += length;
+            is_whole &= self.log.ends[first + number] == end;
+            logged.missing[number][lane] = 0.0;
+        }
+        match self.log.coefficients[begin..].first_chunk::<ALL>() {
+            Some(list) if is_whole => {
+                for (number, coefficient) in list.iter().enumerate() {
+                    logged.coefficients[number][lane] = *coefficient;
+                }
+            }
+            _ => self.gather_parts(first, lane, logged, &lengths),
+        }
+    }
+
+    /// The same where coefficients were dropped, or there are too many.
+    #[inline(never)]
+    fn gather_parts(&self, first: usize, lane: usize, logged: &mut Logged, lengths: &[usize]) {
+        let mut at = 0;
+        for (number, &length) in lengths.iter().enumerate() {
+            let list = self.log.get(first + number);
             let dropped = length.checked_sub(list.len());
-            missing[number][lane] = dropped.unwrap_or(0) as f64;
+            logged.missing[number][lane] = dropped.unwrap_or(0) as f64;
             let filler = if dropped.is_some() { 0.0 } else { f64::NAN };
+            let own = &mut logged.coefficients[at..at + length];
             let (head, tail) = own.split_at_mut(dropped.unwrap_or(length));
             head.iter_mut().for_each(|place| place[lane] = filler);
             tail.iter_mut().zip(list).for_each(|(place, coefficient)| place[lane] = *coefficient);
+            at += length;
         }
     }
 
@@ -149,8 +172,9 @@ impl Look<'_> {
             let (one, two) = (&self.ways[first], &self.ways[second]);
             let radii = [first, second].map(|particle| self.scene.particles[particle].radius);
             let more = [one.size.max(two.size), radii[0] + radii[1], radii[0].abs() + radii[1].abs()];
-            let all = one.numbers.iter().chain(&two.numbers).chain(&more);
-            numbers.iter_mut().zip(all).for_each(|(place, number)| place[lane] = *number);
+            place(&mut numbers, 0, lane, &one.numbers);
+            place(&mut numbers, 7, lane, &two.numbers);
+            place(&mut numbers, 14, lane, &more);
         }
         let [size, value, bound] = loads(simd, &numbers, 14);
         let ([x1, d1], [x2, d2]) = (way(simd, &numbers, 0, size), way(simd, &numbers, 7, size));
@@ -167,8 +191,8 @@ impl Look<'_> {
             let (point, normal) = (half_plane.point, half_plane.normal);
             let (size, radius) = (own.size.max(extent(point)), self.scene.particles[first].radius);
             let more = [size, radius, point.x, point.y, extent(point), normal.x, normal.y, extent(normal)];
-            let all = own.numbers.iter().chain(&more);
-            numbers.iter_mut().zip(all).for_each(|(place, number)| place[lane] = *number);
+            place(&mut numbers, 0, lane, &own.numbers);
+            place(&mut numbers, 7, lane, &more);
         }
         let [size, value] = loads(simd, &numbers, 7);
         let [x, d] = way(simd, &numbers, 0, size);
@@ -218,8 +242,10 @@ impl Look<'_> {
             let radii = [self.scene.particles[particles[0]].radius, self.scene.edges[second].radius];
             let size = one.size.max(two.size).max(three.size);
             let more = [size, radii[0] + radii[1], radii[0].abs() + radii[1].abs()];
-            let all = one.numbers.iter().chain(&two.numbers).chain(&three.numbers).chain(&more);
-            numbers.iter_mut().zip(all).for_each(|(place, number)| place[lane] = *number);
+            place(&mut numbers, 0, lane, &one.numbers);
+            place(&mut numbers, 7, lane, &two.numbers);
+            place(&mut numbers, 14, lane, &three.numbers);
+            place(&mut numbers, 21, lane, &more);
         }
         let [size, value, bound] = loads(simd, &numbers, 21);
         let [x1, d1] = way(simd, &numbers, 0, size);
@@ -337,6 +363,20 @@ fn way<S: Simd, const COUNT: usize>(
         y: Bounded { value: dy, bound: moves * (both + of_y) },
     };
     [within([x, y, size]), shift]
+}
+
+/// Puts numbers into a lane, from one on.
+#[inline(always)]
+fn place<const LENGTH: usize, const COUNT: usize>(
+    block: &mut Block<COUNT>,
+    begin: usize,
+    lane: usize,
+    numbers: &[f64; LENGTH],
+) {
+    let places = &mut block[begin..begin + LENGTH];
+    for (place, number) in places.iter_mut().zip(numbers) {
+        place[lane] = *number;
+    }
 }
 
 /// Numbers from one on, of all lanes.

@@ -87,6 +87,8 @@ pub(crate) struct Ahead {
     known: Vec<Known>,
     /// The next call.
     at: usize,
+    /// How many calls were looked at; nothing is known of others.
+    seen: usize,
     /// The particle behind those whose calls were looked at in this pass.
     next_row: usize,
 }
@@ -104,14 +106,14 @@ impl Ahead {
             ways: Vec::new(),
             known: Vec::new(),
             at: 0,
+            seen: 0,
             next_row: 0,
         }
     }
 
     /// A pass begins.
     pub(super) fn begin_pass(&mut self) {
-        (self.at, self.next_row) = (0, 0);
-        self.known.clear();
+        (self.at, self.seen, self.next_row) = (0, 0, 0);
     }
 
     /// A call was made.
@@ -121,7 +123,8 @@ impl Ahead {
 
     /// The next call and what is known of it.
     pub(super) fn next(&self) -> Option<(Pair, &Known)> {
-        Some((*self.pairs.get(self.at)?, self.known.get(self.at)?))
+        let seen = self.at < self.seen;
+        seen.then(|| (self.pairs[self.at], &self.known[self.at]))
     }
 
     /// Looks at the next calls of a pass of this stage, if the last ones are over. `log` holds their polynomials from number
@@ -134,25 +137,24 @@ impl Ahead {
         share: f64,
         [q_start, q_end]: [&[f64]; 2],
     ) {
-        if self.at < self.known.len() {
+        if self.at < self.seen {
             return;
         }
         let scene = context.scene;
-        if !self.next_rows(context) || index + self.polynomials > log.len() {
-            self.known.clear();
+        (self.at, self.seen) = (0, 0);
+        if !self.next_rows(context) || index + self.polynomials > log.len() || !self.find_ways(scene, q_start, q_end) {
+            // Nothing more is looked at in this pass.
+            self.next_row = usize::MAX;
             return;
         }
-        self.at = 0;
-        self.known.clear();
-        self.known.resize(self.pairs.len(), Known::default());
-        if self.find_ways(scene, q_start, q_end) {
-            // Where responses move particles within the pass, what is seen may not be what is compared.
-            let is_certain = !matches!(stage, Stage::ContinuousTime);
-            for kind in PairKind::ALL {
-                let Self { instructions, members, ways, known, .. } = self;
-                let members = &members[kind];
-                instructions.run(Look { scene, kind, members, ways, log, index, share, is_certain, known });
-            }
+        self.seen = self.pairs.len();
+        self.known.resize(self.seen, Known::default());
+        // Where responses move particles within the pass, what is seen may not be what is compared.
+        let is_certain = !matches!(stage, Stage::ContinuousTime);
+        for kind in PairKind::ALL {
+            let Self { instructions, members, ways, known, .. } = self;
+            let members = &members[kind];
+            instructions.run(Look { scene, kind, members, ways, log, index, share, is_certain, known });
         }
     }
 

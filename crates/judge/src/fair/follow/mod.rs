@@ -23,6 +23,9 @@ use decisions::Own;
 use fosssim_model::sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone};
 use fosssim_num::polynomial::Polynomial;
 
+/// Room for so many decisions is made at first, at most.
+const DECISIONS: usize = 1 << 14;
+
 /// A polynomial that does not tell its factor.
 struct Deferred {
     place: PolynomialPlace,
@@ -98,7 +101,7 @@ impl<'a> Follower<'a> {
             sensitivity,
             flips,
             judged,
-            decisions: Vec::new(),
+            decisions: Vec::with_capacity(context.pairs.min(DECISIONS)),
             borderline: Vec::new(),
             pass: Pass { stage: Stage::Simple, index: 0 },
             passes: [0; 2],

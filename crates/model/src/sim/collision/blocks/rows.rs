@@ -39,15 +39,15 @@ impl Work for Pairs<'_> {
             let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
             let mut bytes = self.bytes.take();
             let mut output = Output::new(bytes.as_mut().map(|bytes| bytes.room(pairs)));
-            let hit = self.row(simd, &mut output)?;
-            let Output { used, polynomials, largest, .. } = output;
+            let ends = self.row(simd, &mut output);
+            let Output { used, polynomials, largest, found, .. } = output;
             if let Some(bytes) = &mut bytes {
                 bytes.added(used, polynomials);
                 bytes.raise(largest.max(self.group.largest));
             }
             self.bytes = bytes;
-            if hit.is_some() {
-                return Ok(hit);
+            if ends {
+                return found;
             }
             *self.place = Place { first: first + 1, kind: PairKind::ParticleParticle, second: first + 2 };
         }
@@ -56,20 +56,19 @@ impl Work for Pairs<'_> {
 }
 
 impl Pairs<'_> {
-    /// What is left of the pairs of one particle. At a hit the place is the next pair's.
+    /// What is left of the pairs of one particle. Whether something was found, which the output holds; at a hit the place is the
+    /// next pair's.
     #[inline(always)]
-    fn row<S: Simd>(&mut self, simd: S, output: &mut Output<'_>) -> Result<Option<Impulse>, StepError> {
+    fn row<S: Simd>(&mut self, simd: S, output: &mut Output<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
         let Place { first, kind, second } = *self.place;
         let bodies = self.setting.bodies;
         let from = |asked| if kind == asked { second } else { 0 };
-        if kind == PairKind::ParticleParticle
-            && let Some(hit) = self.particles(simd, first, second, output)?
-        {
-            return Ok(Some(hit));
+        if kind == PairKind::ParticleParticle && self.particles(simd, first, second, output) {
+            return true;
         }
         if bodies.edges.is_empty() && bodies.points.is_empty() {
-            return Ok(None);
+            return false;
         }
         if !self.group.particles.contains(&first) {
             self.group.fill(simd, self.lists, bodies, first);
@@ -87,40 +86,34 @@ impl Pairs<'_> {
                 }
                 let numbers = &self.group.edges[edge * OF_EDGE * width..(edge + 1) * OF_EDGE * width];
                 let pair = Numbers { numbers, width, lane };
-                if let Some(hit) = pair.settle::<17, 4, EDGE_BYTES>(
+                if pair.settle::<17, 4, EDGE_BYTES>(
                     (PairKind::ParticleEdge, [5, 3, 3, 6]),
                     [first, edge],
                     (self.setting, self.counts, self.place),
                     output,
-                )? {
-                    return Ok(Some(hit));
+                ) {
+                    return true;
                 }
             }
         }
         for half_plane in from(PairKind::ParticleHalfPlane)..bodies.points.len() {
             let numbers = &self.group.half_planes[half_plane * OF_TWO * width..(half_plane + 1) * OF_TWO * width];
             let pair = Numbers { numbers, width, lane };
-            if let Some(hit) = pair.settle::<5, 2, TWO_BYTES>(
+            if pair.settle::<5, 2, TWO_BYTES>(
                 (PairKind::ParticleHalfPlane, [3, 2]),
                 [first, half_plane],
                 (self.setting, self.counts, self.place),
                 output,
-            )? {
-                return Ok(Some(hit));
+            ) {
+                return true;
             }
         }
-        Ok(None)
+        false
     }
 
     /// A particle and later particles.
     #[inline(always)]
-    fn particles<S: Simd>(
-        &mut self,
-        simd: S,
-        first: usize,
-        begin: usize,
-        output: &mut Output<'_>,
-    ) -> Result<Option<Impulse>, StepError> {
+    fn particles<S: Simd>(&mut self, simd: S, first: usize, begin: usize, output: &mut Output<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
         let mut numbers = [0.0; OF_TWO * MOST_LANES];
         let mut largest = Lanes::all(simd, 0.0);
@@ -129,19 +122,19 @@ impl Pairs<'_> {
             largest = of_particles(simd, self.lists, [first, block], &mut numbers[..OF_TWO * width], largest);
             for lane in 0..width.min(particles - block) {
                 let pair = Numbers { numbers: &numbers[..OF_TWO * width], width, lane };
-                if let Some(hit) = pair.settle::<5, 2, TWO_BYTES>(
+                if pair.settle::<5, 2, TWO_BYTES>(
                     (PairKind::ParticleParticle, [3, 2]),
                     [first, block + lane],
                     (self.setting, self.counts, self.place),
                     output,
-                )? {
+                ) {
                     output.largest = output.largest.max(largest.largest());
-                    return Ok(Some(hit));
+                    return true;
                 }
             }
         }
         output.largest = output.largest.max(largest.largest());
-        Ok(None)
+        false
     }
 }
 
@@ -157,7 +150,7 @@ struct Numbers<'a> {
 
 impl Numbers<'_> {
     /// Decides about the pair and writes its polynomials: `COUNT` with `lengths` coefficients, which take `BYTES` where none
-    /// is dropped.
+    /// is dropped. Whether something was found, which the output holds.
     #[inline(always)]
     fn settle<const COEFFICIENTS: usize, const COUNT: usize, const BYTES: usize>(
         &self,
@@ -165,14 +158,14 @@ impl Numbers<'_> {
         [first, second]: [usize; 2],
         (setting, counts, place): (Setting<'_>, &mut SearchCounts, &mut Place),
         output: &mut Output<'_>,
-    ) -> Result<Option<Impulse>, StepError> {
+    ) -> bool {
         let Self { numbers, width, lane } = *self;
         let known = numbers[COEFFICIENTS * width + lane];
         if known == WHOLE || known == TRIMMED {
             counts.calls += 1;
             counts.excluded += 1;
             if output.room.is_none() {
-                return Ok(None);
+                return false;
             }
         }
         let mut coefficients = [0.0; COEFFICIENTS];
@@ -181,17 +174,17 @@ impl Numbers<'_> {
         }
         if known == WHOLE {
             output.write_whole::<COEFFICIENTS, COUNT, BYTES>(&coefficients, lengths);
-            return Ok(None);
+            return false;
         }
         let open = (known != TRIMMED).then_some((setting, counts, pair(kind, first, second)));
-        let hit = match kind {
+        let ends = match kind {
             PairKind::ParticleEdge => of_edge(&coefficients, open, output),
             PairKind::ParticleParticle | PairKind::ParticleHalfPlane => of_two(&coefficients, open, output),
-        }?;
-        if hit.is_some() {
+        };
+        if ends {
             *place = Place { first, kind, second: second + 1 };
         }
-        Ok(hit)
+        ends
     }
 }
 
@@ -200,13 +193,13 @@ type Open<'a> = Option<(Setting<'a>, &'a mut SearchCounts, Pair)>;
 
 /// Decides about a pair of particles, or with a half-plane, if it is open, and writes its polynomials.
 #[inline(never)]
-fn of_two(coefficients: &[f64], open: Open<'_>, output: &mut Output<'_>) -> Result<Option<Impulse>, StepError> {
+fn of_two(coefficients: &[f64], open: Open<'_>, output: &mut Output<'_>) -> bool {
     settle(coefficients, [3, 2], open, output)
 }
 
 /// Decides about a pair with an edge, if it is open, and writes its polynomials.
 #[inline(never)]
-fn of_edge(coefficients: &[f64], open: Open<'_>, output: &mut Output<'_>) -> Result<Option<Impulse>, StepError> {
+fn of_edge(coefficients: &[f64], open: Open<'_>, output: &mut Output<'_>) -> bool {
     settle(coefficients, [5, 3, 3, 6], open, output)
 }
 
@@ -216,11 +209,20 @@ fn settle<const COUNT: usize>(
     lengths: [usize; COUNT],
     open: Open<'_>,
     output: &mut Output<'_>,
-) -> Result<Option<Impulse>, StepError> {
-    let hit = match open {
-        Some((setting, counts, pair)) => decide(setting, counts, pair, coefficients, lengths)?,
-        None => None,
-    };
+) -> bool {
+    if let Some((setting, counts, pair)) = open {
+        match decide(setting, counts, pair, coefficients, lengths) {
+            Ok(None) => {}
+            found => {
+                let is_hit = found.is_ok();
+                output.found = found;
+                if is_hit {
+                    output.write(coefficients, lengths);
+                }
+                return true;
+            }
+        }
+    }
     output.write(coefficients, lengths);
-    Ok(hit)
+    false
 }

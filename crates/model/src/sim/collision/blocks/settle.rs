@@ -27,13 +27,15 @@ pub(super) struct Output<'a> {
     pub polynomials: usize,
     /// The largest modulus of coefficients.
     pub largest: f64,
+    /// The hit that was found, or why the search has no end. Handed on here, since it is seldom there and large.
+    pub found: Result<Option<Impulse>, StepError>,
 }
 
 impl<'a> Output<'a> {
     /// Nothing is written yet.
     #[inline(always)]
     pub fn new(room: Option<&'a mut [u8]>) -> Self {
-        Self { room, used: 0, polynomials: 0, largest: 0.0 }
+        Self { room, used: 0, polynomials: 0, largest: 0.0, found: Ok(None) }
     }
 
     /// Writes a pair's polynomials of which nothing is dropped.
