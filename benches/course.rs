@@ -122,15 +122,16 @@ fn parts() {
     println!("- Judging on two threads: {:.1} times faster than on one.", ratio(judged(1), judged(2)));
     println!("- Judging on one thread takes {:.2} of the time of recording.", ratio(judged(1), with));
     let rescaled: Vec<Vec<u8>> = scenes.iter().map(|(scene, trace)| rescaled(scene, trace)).collect();
-    let by_both = |of: &dyn Fn(usize) -> &'_ [u8]| {
+    let by_both = |traces: &[&[u8]]| {
         let options = Options { threads: 1, fair: true, ..Options::default() };
         time(|| {
-            for (number, (scene, _)) in scenes.iter().enumerate() {
-                drop(parity::judge(scene, of(number), &options, &mut ()));
+            for ((scene, _), trace) in scenes.iter().zip(traces) {
+                drop(parity::judge(scene, *trace, &options, &mut ()));
             }
         })
     };
-    let [own, other] = [by_both(&|number| &scenes[number].1), by_both(&|number| &rescaled[number])];
+    let own = by_both(&scenes.iter().map(|(_, trace)| &trace[..]).collect::<Vec<_>>());
+    let other = by_both(&rescaled.iter().map(Vec::as_slice).collect::<Vec<_>>());
     println!(
         "- Judging right traces with a factor by both books takes {:.1} times as long as identical ones.",
         ratio(other, own)
