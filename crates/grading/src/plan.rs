@@ -209,6 +209,8 @@ mod tests {
             assert!(plan.scenes().count() > 10, "{name}");
             assert!(plan.max_points() > 0.0);
             assert_eq!(plan.rules, Rules::Fair, "{name}");
+            let assignment = Assignment::named(name).expect("a suite is an assignment's");
+            assert_eq!(plan.name, assignment.definition().title);
         }
         load(config::TEMPLATE, Path::new("nowhere")).expect("the template");
     }
