@@ -41,12 +41,12 @@ pub enum Choice {
 pub enum Chosen {
     /// Go to the assignment.
     Assignment(String),
-    /// Send this to the platform: address, origin, and token.
+    /// Send this to the platform: address, origins, and token.
     Answer {
         /// Where.
         address: String,
-        /// Its origin, which a page may send forms to.
-        origin: String,
+        /// The platform's origins: a page may send forms there, and they may lead on among them.
+        origins: String,
         /// What.
         token: String,
     },
@@ -239,8 +239,8 @@ impl Person {
         let (launch, item) = (self.house.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
         let token =
             lti::deep_linking_response(&self.house.0.database, &pending.platform, arrival, &launch, item).await?;
-        let origin = address.origin().ascii_serialization();
-        Ok(Chosen::Answer { address: address.into(), origin, token })
+        let origins = pending.platform.origins(over_http);
+        Ok(Chosen::Answer { address: address.into(), origins, token })
     }
 }
 

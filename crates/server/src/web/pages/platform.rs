@@ -41,7 +41,7 @@ pub(super) struct Answer {
 #[template(path = "platform/window.html")]
 struct WindowPage {
     frame: Frame,
-    fields: Vec<(&'static str, String)>,
+    address: String,
 }
 
 #[derive(Template)]
@@ -153,8 +153,13 @@ async fn begin(visitor: &Visitor, headers: &HeaderMap, login: Login) -> Result<R
             ("client_id", login.client_id),
             ("lti_deployment_id", login.lti_deployment_id),
         ];
-        let fields = fields.into_iter().filter_map(|(name, value)| Some((name, value?))).collect();
-        let page = show(&WindowPage { frame: Frame::nobody(), fields })?.into_response();
+        let mut query = url::form_urlencoded::Serializer::new(String::new());
+        for (name, value) in fields {
+            value.map(|value| query.append_pair(name, &value));
+        }
+        // A link and no form: where a form may lead is asked of all redirections, too, and this one goes on to the platform.
+        let address = format!("/lti/login?{}", query.finish());
+        let page = show(&WindowPage { frame: Frame::nobody(), address })?.into_response();
         let origins = platform.origins(house.is_lti_over_http());
         let policy = format!(
             "default-src 'none'; style-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors {origins}"
@@ -241,10 +246,10 @@ pub(super) async fn choose_assignment(
 ) -> Result<Response, Problem> {
     match person.choose_assignment(&secret, &choice.assignment).await? {
         Chosen::Assignment(path) => Ok(see(&path).into_response()),
-        Chosen::Answer { address, origin, token } => {
+        Chosen::Answer { address, origins, token } => {
             let page = show(&AnswerPage { frame: Frame::of(person.account()), address, token })?.into_response();
             let policy = format!(
-                "default-src 'none'; style-src 'self'; form-action 'self' {origin}; base-uri 'none'; frame-ancestors 'none'"
+                "default-src 'none'; style-src 'self'; form-action 'self' {origins}; base-uri 'none'; frame-ancestors 'none'"
             );
             Ok(with_policy(page, &policy))
         }
