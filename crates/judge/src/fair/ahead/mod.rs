@@ -23,6 +23,9 @@ use look::Look;
 /// memory.
 const TOGETHER: usize = 4096;
 
+/// Where nearly all calls of a kind are open, it is not looked at so many times.
+const PAUSE: u32 = 15;
+
 /// What is known of a call beforehand.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Known {
@@ -85,6 +88,8 @@ pub(crate) struct Ahead {
     polynomials: usize,
     ways: Vec<Way>,
     known: Vec<Known>,
+    /// How many times a kind is not looked at.
+    pauses: ByKind<u32>,
     /// The next call.
     at: usize,
     /// How many calls were looked at; nothing is known of others.
@@ -105,6 +110,7 @@ impl Ahead {
             polynomials: 0,
             ways: Vec::new(),
             known: Vec::new(),
+            pauses: ByKind::default(),
             at: 0,
             seen: 0,
             next_row: 0,
@@ -152,9 +158,18 @@ impl Ahead {
         // Where responses move particles within the pass, what is seen may not be what is compared.
         let is_certain = !matches!(stage, Stage::ContinuousTime);
         for kind in PairKind::ALL {
-            let Self { instructions, members, ways, known, .. } = self;
+            let Self { instructions, members, ways, known, pauses, .. } = self;
             let members = &members[kind];
+            if pauses[kind] > 0 {
+                pauses[kind] -= 1;
+                members.iter().for_each(|member| known[member.call] = Known::default());
+                continue;
+            }
             instructions.run(Look { scene, kind, members, ways, log, index, share, is_certain, known });
+            let is_open = |member: &&Member| known[member.call].likeness == Likeness::Open;
+            if 4 * members.iter().filter(is_open).count() > 3 * members.len() {
+                pauses[kind] = PAUSE;
+            }
         }
     }
 
