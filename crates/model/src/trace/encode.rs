@@ -27,7 +27,7 @@ impl Encoded {
 }
 
 /// Appends `values` one after the other.
-#[inline]
+// Not for inlining: it would be compiled where a recorder is used, at that crate's level.
 pub(crate) fn numbers(out: &mut Vec<u8>, values: &[f64]) {
     let start = out.len();
     out.resize(start + 8 * values.len(), 0);
@@ -37,7 +37,6 @@ pub(crate) fn numbers(out: &mut Vec<u8>, values: &[f64]) {
 }
 
 /// Appends positions and velocities.
-#[inline]
 pub(crate) fn state(out: &mut Vec<u8>, state: &State) {
     numbers(out, &state.positions);
     numbers(out, &state.velocities);
