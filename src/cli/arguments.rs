@@ -300,8 +300,8 @@ Example:
   fosssim-oracle record --check
   fosssim-oracle record --assets my-scenes --references my-references
 
-Scenes are read from ASSETS/<Group>/<name>.xml. REFERENCES gets <Group>/<name>.bin.zst, a digest per step in \
-<Group>/<name>.steps, and manifest.txt.")]
+Scenes are read from ASSETS/<Group>/<name>.xml and ASSETS/<assignment>/<Group>/<name>.xml. REFERENCES gets the same \
+folders, with <name>.bin.zst, a digest per step in <name>.steps, and manifest.txt.")]
 pub(super) struct Record {
     /// Write nothing; simulate in memory, and fail with a diff when a byte differs. Without an assets folder this
     /// checks the scenes that come with the program.

@@ -1,4 +1,5 @@
 //! Scenes selected by name, as `grade --scene` and `scene list` take them.
+use crate::suite::library;
 use anyhow::{Context, Result, bail};
 use glob::Pattern;
 
@@ -33,9 +34,9 @@ impl Selection {
     }
 }
 
-/// A pattern is compared with the whole name, or with the name behind its group.
+/// A pattern is compared with the whole name (as [`library::takes`] does), or with the name behind its group.
 fn takes(pattern: &Pattern, name: &str) -> bool {
-    pattern.matches(name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
+    library::takes(pattern, name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
 }
 
 /// So many names are given as examples.

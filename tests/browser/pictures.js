@@ -12,7 +12,7 @@ const programs = process.env.FOSSSIM_BIN ?? join(root, "target/release");
 const folder = mkdtempSync(join(tmpdir(), "fosssim-pictures-"));
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
 try {
-  const scene = "assets/HolisticTests/balls-in-a-box.xml";
+  const scene = "assets/t2m2/HolisticTests/balls-in-a-box.xml";
   const trace = join(folder, "submission.bin");
   execFileSync(join(programs, "fosssim-sample"), ["--mistake", "response-halved", "-s", join(root, scene), "-d", "0", "-o", trace]);
   const html = join(folder, "report.html");

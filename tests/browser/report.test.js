@@ -24,9 +24,9 @@ function report(name, { traceName = `${name}.bin`, cut = null } = {}) {
   const [scene, mistake] = CASES[name];
   const trace = join(folder, traceName);
   const html = join(folder, `${name}.html`);
-  execFileSync(join(programs, "fosssim-sample"), [...(mistake ? ["--mistake", mistake] : []), "-s", join(root, "assets", `${scene}.xml`), "-d", "0", "-o", trace]);
+  execFileSync(join(programs, "fosssim-sample"), [...(mistake ? ["--mistake", mistake] : []), "-s", join(root, "assets/t2m2", `${scene}.xml`), "-d", "0", "-o", trace]);
   if (cut) execFileSync("truncate", ["-s", String(cut), trace]);
-  const run = spawnSync(join(programs, "fosssim-oracle"), ["check", join(root, "assets", `${scene}.xml`), trace, "--format", "html", "--output", html], { encoding: "utf8" });
+  const run = spawnSync(join(programs, "fosssim-oracle"), ["check", join(root, "assets/t2m2", `${scene}.xml`), trace, "--format", "html", "--output", html], { encoding: "utf8" });
   assert.ok(run.status === 0 || run.status === 1, run.stderr);
   return html;
 }
@@ -163,7 +163,7 @@ test("a contact that is missing lights up; findings and calls lead into the moti
 
 test("a link leads to a moment", async () => {
   const html = report("failsafe");
-  const scene = join(root, "assets", `${CASES.failsafe[0]}.xml`);
+  const scene = join(root, "assets/t2m2", `${CASES.failsafe[0]}.xml`);
   const { page, close } = await open(html, { hash: `#${new URLSearchParams({ scene, step: 3, t: 0.25 })}` });
   assert.equal(await page.locator(".stepbox").inputValue(), "3");
   assert.equal(await page.locator("output").first().innerText(), "0.250");

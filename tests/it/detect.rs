@@ -119,12 +119,8 @@ fn a_pair_of_a_trace_that_logs_too_little_is_found() {
     let workspace = Workspace::new();
     let scene = "asset:ContinuousTimeTests/spinning-edge-sweeps-balls";
     let row = fosssim_oracle::student::find("pairs-pruned").expect("a mistake");
-    let read = fosssim_oracle::scene::original::read(
-        &std::fs::read(
-            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(&scene[6..]).with_extension("xml"),
-        )
-        .expect("a scene"),
-    );
+    let scene_file = fosssim_oracle::suite::library::scene(&scene["asset:".len()..]).expect("a scene");
+    let read = fosssim_oracle::scene::original::read(scene_file);
     let student = fosssim_oracle::student::Student::new(Some(row.mistake));
     let trace = fosssim_oracle::student::trace(&read.expect("a scene").scene, student).expect("a trace");
     workspace.write("pruned.bin", trace);

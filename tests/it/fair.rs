@@ -8,10 +8,10 @@ use fosssim_oracle::{
     },
     scene::{Scene, original},
     student::{self, CATALOGUE, KNOWN_REFUSED, Row, Student},
+    suite::library,
     trace::{Frame, Layout, Reader, Writer},
 };
 use rayon::prelude::*;
-use std::path::{Path, PathBuf};
 
 /// Scenes that together catch nearly every mistake, so that few others need to be tried.
 const FIRST: [&str; 9] = [
@@ -28,22 +28,8 @@ const FIRST: [&str; 9] = [
 
 /// All built-in scenes by name; those of [`FIRST`] first.
 pub fn assets() -> Vec<(String, Scene)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
-        .unwrap()
-        .map(|group| group.unwrap().path())
-        .filter(|group| group.is_dir())
-        .flat_map(|group| std::fs::read_dir(group).unwrap().map(|file| file.unwrap().path()))
-        .filter(|file| file.extension().is_some_and(|extension| extension == "xml"))
-        .collect();
-    files.sort();
-    let mut scenes: Vec<(String, Scene)> = files
-        .iter()
-        .map(|file| {
-            let name = file.strip_prefix(&folder).unwrap().with_extension("").display().to_string();
-            (name, original::read(&std::fs::read(file).unwrap()).unwrap().scene)
-        })
-        .collect();
+    let scene = |name: &str| original::read(library::scene(name).unwrap()).unwrap().scene;
+    let mut scenes: Vec<(String, Scene)> = library::names().map(|name| (name.to_owned(), scene(name))).collect();
     scenes.sort_by_key(|(name, _)| FIRST.iter().position(|first| first == name).unwrap_or(FIRST.len()));
     assert!(FIRST.iter().all(|first| scenes.iter().any(|(name, _)| name == first)));
     scenes

@@ -1,10 +1,9 @@
-//! Known mistakes are recognised on the built-in scenes. `examples/explanation-matrix.rs` measures it on all of them.
-use std::path::Path;
-
+//! Known mistakes are recognised on the built-in scenes. `scripts/explanation-matrix` measures it on all of them.
 use fosssim_oracle::{
     diagnose::known,
     scene::{Scene, original},
     student::{self, CATALOGUE, RowKind, Student},
+    suite::library,
 };
 use rayon::prelude::*;
 
@@ -23,10 +22,8 @@ const SCENES: [&str; 10] = [
 ];
 
 fn scenes() -> Vec<(&'static str, Scene, Vec<u8>)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let read = |name: &&'static str| {
-        let text = std::fs::read(folder.join(name).with_extension("xml")).expect("a scene file");
-        let scene = original::read(&text).expect("a scene").scene;
+        let scene = original::read(library::scene(name).expect("a scene")).expect("a sound scene").scene;
         let correct = student::trace(&scene, Student::default()).expect("a trace");
         (*name, scene, correct)
     };

@@ -44,6 +44,31 @@ fn a_byte_that_differs_fails_the_check_with_a_diff() {
     assert!(!workspace.exists("references/Beams/beam.bin.zst") && !workspace.exists("references/Beams/beam.steps"));
 }
 
+/// Scenes may lie in a folder per assignment; their names are the same, and their recordings lie likewise.
+#[test]
+fn a_folder_per_assignment_changes_no_name() {
+    let workspace = assets();
+    workspace.run(["record"]);
+    let manifest = workspace.read("references/manifest.txt");
+    std::fs::create_dir(workspace.path("assets/t2m2")).unwrap();
+    std::fs::rename(workspace.path("assets/Balls"), workspace.path("assets/t2m2/Balls")).unwrap();
+    let check = workspace.run(["record", "--check"]);
+    assert_eq!(check.code, Some(1));
+    let words = "Balls/bounce: there is no recording\nBalls/bounce: there is a recording, but no scene\n";
+    assert_eq!(check.out(), words, "what was recorded lies elsewhere");
+    assert_eq!(workspace.run(["record"]).code, Some(0));
+    assert!(
+        workspace.exists("references/t2m2/Balls/bounce.steps") && !workspace.exists("references/Balls/bounce.steps")
+    );
+    assert_eq!(workspace.read("references/manifest.txt"), manifest);
+    assert_eq!(workspace.run(["record", "--check"]).out(), "2 recordings, 5 steps: all the same\n");
+    // One name stands for one scene.
+    workspace.write("assets/Balls/bounce.xml", BOUNCE);
+    let twice = workspace.run(["record", "--check"]);
+    assert_eq!(twice.code, Some(2));
+    assert!(twice.err().contains("would both be called Balls/bounce; rename one of them"), "{}", twice.err());
+}
+
 #[test]
 fn scenes_that_cannot_be_recorded_are_named() {
     let workspace = Workspace::new();

@@ -10,6 +10,7 @@ use std::{
 use fosssim_oracle::{
     scene::original,
     sim::{RootSearch, Simulation},
+    suite::scene_files,
     trace::{Layout, Recorder},
 };
 use rayon::prelude::*;
@@ -77,17 +78,8 @@ fn catalogue() -> Vec<Row> {
 /// All built-in scenes, in order.
 fn assets() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-    let mut scenes = Vec::new();
-    for group in std::fs::read_dir(folder).expect("assets") {
-        let group = group.expect("a folder").path();
-        if group.is_dir() {
-            for file in std::fs::read_dir(group).expect("a group") {
-                scenes.push(file.expect("a file").path());
-            }
-        }
-    }
-    scenes.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
-    scenes.sort();
+    let files = scene_files::list(&folder, ".xml").expect("assets");
+    let scenes: Vec<PathBuf> = files.into_iter().map(|file| file.path).collect();
     assert!(scenes.len() >= 20, "only {} scenes", scenes.len());
     scenes
 }

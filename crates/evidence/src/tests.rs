@@ -9,7 +9,7 @@ use fosssim_model::{
 
 #[expect(clippy::disallowed_methods, reason = "the scenes that come with the program")]
 fn asset(name: &str) -> Scene {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").join(name);
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2").join(name);
     original::read(&std::fs::read(path).expect("a scene")).expect("a scene").scene
 }
 

@@ -27,6 +27,7 @@ pub mod plan;
 pub mod recording;
 pub mod result;
 pub mod results;
+pub mod scene_files;
 pub mod score;
 mod shape;
 mod staging;

@@ -1,7 +1,10 @@
 //! The scenes and recordings that come with the program, embedded so that they are there wherever it runs.
 //!
-//! A scene's name is `Group/name`. Recordings are zstd files; `steps` are the digests of a recording's steps.
-use include_dir::{Dir, include_dir};
+//! They lie in a folder per assignment. A scene's name is `Group/name`, and no two assignments have one in common; written in
+//! full, `t2m2/Group/name`, it is understood as well. Recordings are zstd files; `steps` are the digests of a recording's steps.
+use fosssim_model::assignments::Assignment;
+use glob::Pattern;
+use include_dir::{Dir, File, include_dir};
 
 static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
@@ -14,13 +17,13 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// The XML of a scene.
 #[must_use]
 pub fn scene(name: &str) -> Option<&'static [u8]> {
-    file(&ASSETS, name, "xml")
+    contents(&ASSETS, &format!("{name}.xml"))
 }
 
 /// The recording of a scene, compressed with zstd.
 #[must_use]
 pub fn recording(name: &str) -> Option<&'static [u8]> {
-    file(&REFERENCES, name, "bin.zst")
+    contents(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
 /// The names of all embedded recordings, in alphabetical order.
@@ -31,16 +34,89 @@ pub fn recordings() -> impl Iterator<Item = &'static str> {
 /// A file of the folder of recordings: `manifest.txt`, `Group/name.steps` or `Group/name.bin.zst`.
 #[must_use]
 pub fn reference(path: &str) -> Option<&'static [u8]> {
-    REFERENCES.get_file(path).map(|file| file.contents())
+    contents(&REFERENCES, path)
 }
 
-fn stems(dir: &'static Dir<'static>, extension: &str) -> impl Iterator<Item = &'static str> {
-    let files = dir.dirs().flat_map(Dir::files);
-    let mut names: Vec<_> = files.filter_map(|file| file.path().to_str()?.strip_suffix(extension)).collect();
+/// The assignment in whose folder a scene lies.
+#[must_use]
+pub fn assignment(name: &str) -> Option<Assignment> {
+    let path = file(&ASSETS, &format!("{name}.xml"))?.path();
+    Assignment::named(path.components().next()?.as_os_str().to_str()?)
+}
+
+/// Whether a pattern takes a scene of this name. A pattern that begins with an assignment's folder, such as `t2m2/*`, takes
+/// scenes that lie there.
+#[must_use]
+pub fn takes(pattern: &Pattern, name: &str) -> bool {
+    let folder = pattern.as_str().split_once('/').and_then(|(first, _)| Assignment::named(first));
+    match folder {
+        Some(folder) => assignment(name) == Some(folder) && pattern.matches(&format!("{}/{name}", folder.key())),
+        None => pattern.matches(name),
+    }
+}
+
+fn stems(root: &'static Dir<'static>, extension: &str) -> impl Iterator<Item = &'static str> {
+    let files = root.dirs().flat_map(|assignment| {
+        let files = assignment.dirs().flat_map(Dir::files);
+        files.filter_map(|file| file.path().strip_prefix(assignment.path()).ok())
+    });
+    let mut names: Vec<_> = files.filter_map(|path| path.to_str()?.strip_suffix(extension)).collect();
     names.sort_unstable();
     names.into_iter()
 }
 
-fn file(dir: &'static Dir<'static>, name: &str, extension: &str) -> Option<&'static [u8]> {
-    dir.get_file(format!("{name}.{extension}")).map(|file| file.contents())
+fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
+    file(root, path).map(File::contents)
+}
+
+/// A file of an assignment by its path within the assignment's folder, or by its whole path.
+fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
+    let of = |assignment: Assignment| root.get_file(format!("{}/{path}", assignment.key()));
+    Assignment::ALL.into_iter().find_map(of).or_else(|| root.get_file(path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn folders_are_those_of_assignments_and_no_two_scenes_have_the_same_name() {
+        for root in [&ASSETS, &REFERENCES] {
+            for folder in root.dirs() {
+                let key = folder.path().to_str().expect("UTF-8");
+                assert!(Assignment::named(key).is_some(), "{key} is no assignment's key");
+            }
+        }
+        let all: Vec<&str> = names().collect();
+        assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len());
+        assert_eq!(recordings().collect::<Vec<_>>(), all, "each has its recording");
+    }
+
+    #[test]
+    fn a_scene_is_found_by_its_name_and_by_its_name_in_full() {
+        for name in names() {
+            let full = format!("{}/{name}", assignment(name).expect("an assignment").key());
+            assert!(scene(name).is_some() && scene(name) == scene(&full), "{name}");
+            assert!(recording(name).is_some() && recording(name) == recording(&full), "{name}");
+            assert_eq!(assignment(&full), assignment(name));
+        }
+        assert!(scene("NoSuchTests/none").is_none() && scene("t2m2/SimpleTests/one-ball-into-two").is_none());
+        assert!(reference("manifest.txt").is_some());
+    }
+
+    #[test]
+    fn patterns_take_names_or_an_assignments_folder() {
+        let taken = |pattern: &str| {
+            let pattern = Pattern::new(pattern).expect("a pattern");
+            names().filter(|name| takes(&pattern, name)).collect::<Vec<_>>()
+        };
+        let of = |key: &str| names().filter(|name| assignment(name) == Assignment::named(key)).collect::<Vec<_>>();
+        assert_eq!(taken("t2m2/*"), of("t2m2"));
+        assert_eq!(taken("earlier/*"), of("earlier"));
+        assert_eq!(taken("*").len(), of("t2m2").len() + of("earlier").len());
+        assert_eq!(taken("t2m2/GeometricTests/*"), taken("GeometricTests/*"));
+        assert!(taken("t2m2/SimpleTests/*").is_empty() && !taken("SimpleTests/*").is_empty());
+        assert!(taken("t*").is_empty(), "a pattern without a folder is compared with names alone");
+    }
 }

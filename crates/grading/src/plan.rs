@@ -166,7 +166,7 @@ type Found = Vec<(String, Vec<u8>)>;
 fn embedded(pattern: &str) -> Result<Found, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern asset:{pattern}: {error}"))?;
     let found: Found = library::names()
-        .filter(|name| glob.matches(name))
+        .filter(|name| library::takes(&glob, name))
         .filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())))
         .collect();
     if found.is_empty() {
@@ -201,6 +201,7 @@ fn files(pattern: &str, folder: &Path) -> Result<Found, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
 
     #[test]
     fn every_built_in_suite_finds_its_scenes() {
@@ -211,6 +212,12 @@ mod tests {
             assert_eq!(plan.rules, Rules::Fair, "{name}");
             let assignment = Assignment::named(name).expect("a suite is an assignment's");
             assert_eq!(plan.name, assignment.definition().title);
+            let own: BTreeSet<&str> =
+                library::names().filter(|name| library::assignment(name) == Some(assignment)).collect();
+            let planned: BTreeSet<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
+            assert_eq!(planned, own, "{name} grades what lies in its folder");
+            let all = format!("schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:{name}/*\"]\n");
+            assert_eq!(load(&all, Path::new("nowhere")).expect(name).scenes().count(), own.len());
         }
         load(config::TEMPLATE, Path::new("nowhere")).expect("the template");
     }

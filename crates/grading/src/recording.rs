@@ -1,8 +1,8 @@
 //! Recordings: the reference traces of scenes, with a manifest and digests per step that diff well.
 //!
 //! Knows no files: it takes scenes and gives bytes, and compares them with what was recorded before. Layout of the
-//! folder `references`: `<Group>/<name>.bin.zst` (the trace), `<Group>/<name>.steps` (a digest per step) and
-//! `manifest.txt` (name, steps, bytes, SHA-256).
+//! folder `references`: that of the folder of scenes, with `<name>.bin.zst` (the trace) and `<name>.steps` (a digest per step) for
+//! `<name>.xml`, and `manifest.txt` (name, steps, bytes, SHA-256).
 use fosssim_model::{
     scene::{self, Problems, Scene},
     sim::{RootSearch, Simulation, StepError},
@@ -93,8 +93,8 @@ impl Recording {
 
 /// The manifest of recordings in their order.
 #[must_use]
-pub fn manifest(recordings: &[Recording]) -> String {
-    recordings.iter().map(Recording::line).collect()
+pub fn manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> String {
+    recordings.into_iter().map(Recording::line).collect()
 }
 
 /// A unified diff from what was recorded to what is simulated now; empty when they are the same.

@@ -129,7 +129,7 @@ fn scaled(scene: &Scene, trace: &[u8], factor: f64) -> Vec<u8> {
 
 /// Instructions of single pieces of work, beside those that were stored.
 fn instructions(store: bool) {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/t2m2");
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.txt");
     let stored = std::fs::read_to_string(file).unwrap_or_default();
     let program = std::env::current_exe().expect("this program");

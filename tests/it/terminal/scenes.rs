@@ -17,13 +17,24 @@ fn every_scene_is_listed_with_a_line_about_it() {
     let names = workspace.run(["scene", "list", "--quiet", "Geometric*", "asset:HolisticTests/balls-in-a-box"]).out();
     let groups = |line: &str| line.starts_with("asset:GeometricTests/") || line == "asset:HolisticTests/balls-in-a-box";
     assert!(names.lines().count() > 2 && names.lines().all(groups), "{names}");
+    let of_assignments =
+        ["earlier/*", "t2m2/*"].map(|folder| workspace.run(["scene", "list", "--quiet", folder]).out());
+    assert!(of_assignments[0].contains("asset:SimpleTests/") && of_assignments[1].contains("asset:GeometricTests/"));
+    assert_eq!(of_assignments.concat().lines().count(), library::names().count());
+    let full = ["asset:t2m2/HolisticTests/balls-in-a-box"; 2];
+    assert_eq!(workspace.run(["check", full[0], full[1]]).code, Some(0));
 }
 
 #[test]
 fn a_scene_is_shown_as_it_is_and_can_be_judged_with() {
     let workspace = Workspace::new();
     let name = "HolisticTests/balls-in-a-box";
-    for word in ["HolisticTests/balls-in-a-box", "asset:HolisticTests/balls-in-a-box", "balls-in-a-box"] {
+    for word in [
+        "HolisticTests/balls-in-a-box",
+        "asset:HolisticTests/balls-in-a-box",
+        "balls-in-a-box",
+        "t2m2/HolisticTests/balls-in-a-box",
+    ] {
         let run = workspace.run(["scene", "show", word]);
         assert_eq!((run.code, run.stdout.as_slice()), (Some(0), library::scene(name).expect("a scene")), "{word}");
     }

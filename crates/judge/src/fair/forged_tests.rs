@@ -15,12 +15,12 @@ use std::path::Path;
 /// Built-in scenes with continuous-time detection, by name.
 #[expect(clippy::disallowed_methods, reason = "the built-in scenes are files")]
 fn assets() -> Vec<(String, Scene)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2");
     let mut scenes = Vec::new();
-    for group in ["ContinuousTimeTests", "GeometricTests", "HalfPlaneTests", "HolisticTests", "ImpulsesTests"] {
-        for file in std::fs::read_dir(folder.join(group)).expect("a group") {
+    for group in std::fs::read_dir(&folder).expect("the scenes") {
+        for file in std::fs::read_dir(group.expect("a group").path()).expect("a group") {
             let path = file.expect("a scene").path();
-            let name = format!("{group}/{}", path.file_stem().expect("a name").display());
+            let name = path.strip_prefix(&folder).expect("within").with_extension("").display().to_string();
             scenes.push((name, original::read(&std::fs::read(&path).expect("readable")).expect("a scene").scene));
         }
     }

@@ -1,7 +1,7 @@
 //! How well known mistakes are recognised: makes the traces of all mistakes and correct variants for the scenes of a
 //! folder, in memory, has each explained, and counts how often the first explanation is the mistake that was made.
 //!
-//! `cargo run --release --example explanation-matrix [FOLDER [PART-OF-AN-ID]]`. It prints every confusion, and ends with status 1 when a
+//! `scripts/explanation-matrix [FOLDER [PART-OF-AN-ID]]`. It prints every confusion, and ends with status 1 when a
 //! correct variant is accused.
 use std::{
     path::{Path, PathBuf},
@@ -15,6 +15,7 @@ use fosssim_oracle::{
     judge::parity,
     scene::{Scene, original},
     student::{self, CATALOGUE, RowKind, Student},
+    suite::scene_files::{self, SceneFile},
 };
 use rayon::prelude::*;
 
@@ -152,24 +153,14 @@ fn explain(
 
 /// The scenes of a folder of groups, with their correct traces.
 fn scenes(folder: &Path) -> anyhow::Result<Vec<(String, Scene, Vec<u8>)>> {
-    let mut paths = Vec::new();
-    for group in std::fs::read_dir(folder).with_context(|| format!("{}: can't be read", folder.display()))? {
-        let group = group?.path();
-        if group.is_dir() {
-            for file in std::fs::read_dir(&group)? {
-                paths.push(file?.path());
-            }
-        }
-    }
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
-    paths.sort();
-    ensure!(!paths.is_empty(), "{}: no group of this folder holds a scene", folder.display());
-    paths
+    let files = scene_files::list(folder, ".xml").with_context(|| format!("{}: can't be read", folder.display()))?;
+    ensure!(!files.is_empty(), "{}: no group of this folder holds a scene", folder.display());
+    files
         .into_iter()
-        .map(|path| {
+        .map(|SceneFile { name, path, .. }| {
             let scene = original::read(&std::fs::read(&path)?).with_context(|| path.display().to_string())?.scene;
             let correct = student::trace(&scene, Student::default()).unwrap_or_else(|(bytes, _)| bytes);
-            Ok((path.strip_prefix(folder)?.with_extension("").display().to_string(), scene, correct))
+            Ok((name, scene, correct))
         })
         .collect()
 }

@@ -17,6 +17,7 @@ use fosssim_oracle::{
     judge::{Kind, Outcome, Overall, fair::Verdict, parity::Options},
     scene::{Scene, original},
     student::{self, CATALOGUE, KNOWN_REFUSED, Row, Student},
+    suite::scene_files::{self, SceneFile},
 };
 use rayon::prelude::*;
 
@@ -127,26 +128,13 @@ fn is_known(id: &str, scene: &str) -> bool {
 }
 
 fn cases(folder: &Path) -> anyhow::Result<Vec<Case>> {
-    let mut paths = Vec::new();
-    let groups = std::fs::read_dir(folder).with_context(|| format!("{}: can't be read", folder.display()))?;
-    for group in groups {
-        let group = group?.path();
-        if group.is_dir() {
-            for file in std::fs::read_dir(&group)? {
-                paths.push(file?.path());
-            }
-        }
-    }
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
-    paths.sort();
-    ensure!(!paths.is_empty(), "{}: no group of this folder holds a scene", folder.display());
-    paths
+    let files = scene_files::list(folder, ".xml").with_context(|| format!("{}: can't be read", folder.display()))?;
+    ensure!(!files.is_empty(), "{}: no group of this folder holds a scene", folder.display());
+    files
         .into_par_iter()
-        .map(|path| {
-            let bytes = std::fs::read(&path)?;
-            let scene = original::read(&bytes).with_context(|| path.display().to_string())?.scene;
+        .map(|SceneFile { name, path, .. }| {
+            let scene = original::read(&std::fs::read(&path)?).with_context(|| path.display().to_string())?.scene;
             let correct = trace(&scene, None);
-            let name = path.strip_prefix(folder)?.with_extension("").display().to_string();
             Ok(Case { name, scene, correct })
         })
         .collect()

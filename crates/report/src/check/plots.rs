@@ -55,7 +55,7 @@ mod tests {
     use fosssim_model::scene::original;
 
     fn plots_of(id: Option<&str>) -> String {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/ContinuousTimeTests");
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2/ContinuousTimeTests");
         let bytes = std::fs::read(folder.join("spinning-edge-sweeps-balls.xml")).expect("a scene");
         let scene = original::read(&bytes).expect("a scene").scene;
         let mistake = id.map(|id| student::find(id).expect("a mistake").mistake);

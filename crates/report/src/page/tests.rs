@@ -14,7 +14,7 @@ use fosssim_mistakes::{
 use fosssim_model::scene::{Scene, original};
 
 fn asset(name: &str) -> Scene {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").join(name);
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2").join(name);
     original::read(&std::fs::read(path).expect("a scene")).expect("a scene").scene
 }
 

@@ -108,7 +108,7 @@ fn of_several_mistakes_some_are_named_and_no_other() {
 fn a_mistake_beside_another_is_told_once() {
     let rows = ["pe-radii-squared-apart", "failsafe-empty"].map(|id| student::find(id).expect("it is known"));
     let author = rows.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/HolisticTests");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2/HolisticTests");
     let explained = ["funnel-of-fractional-masses", "rope-bridge", "pendulum-into-a-wall-of-balls"].map(|name| {
         #[expect(clippy::disallowed_methods, reason = "a test reads the scenes that come with the program")]
         let xml = std::fs::read(folder.join(name).with_extension("xml")).expect("a bundled scene");

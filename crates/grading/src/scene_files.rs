@@ -1,0 +1,76 @@
+//! Folders of scenes, and of what is recorded of them: `<assignment>/<Group>/<name>`, or `<Group>/<name>` without assignments.
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+/// A file of such a folder.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SceneFile {
+    /// The scene's name, `Group/name`.
+    pub name: String,
+    /// Its path in the folder, without the extension: also that of its recording in the folder of recordings.
+    pub stem: String,
+    /// The file.
+    pub path: PathBuf,
+}
+
+/// The files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. What lies elsewhere, or
+/// has a name that is not UTF-8, is none of them.
+///
+/// # Errors
+/// When a folder can't be read.
+pub fn list(folder: &Path, extension: &str) -> io::Result<Vec<SceneFile>> {
+    let mut files = Vec::new();
+    for first in folders(folder)? {
+        gather(folder, &first, extension, &mut files)?;
+        for second in folders(&first)? {
+            gather(folder, &second, extension, &mut files)?;
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn folders(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut folders = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            folders.push(path);
+        }
+    }
+    Ok(folders)
+}
+
+fn gather(root: &Path, group: &Path, extension: &str, files: &mut Vec<SceneFile>) -> io::Result<()> {
+    for entry in fs::read_dir(group)? {
+        let path = entry?.path();
+        let stem = |above: Option<&Path>| path.strip_prefix(above?).ok()?.to_str()?.strip_suffix(extension);
+        if let (Some(name), Some(stem), true) = (stem(group.parent()), stem(Some(root)), path.is_file()) {
+            files.push(SceneFile { name: name.to_owned(), stem: stem.to_owned(), path: path.clone() });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_of_groups_are_listed_with_and_without_assignments() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for path in ["t2m2/Balls/b.xml", "Balls/a.xml", "t2m2/x.xml/c.xml", "a/b/c/d.xml", "top.xml", "Balls/a.txt"] {
+            let path = folder.path().join(path);
+            fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+            fs::write(path, "").expect("written");
+        }
+        let files = list(folder.path(), ".xml").expect("readable");
+        let found: Vec<_> = files.iter().map(|file| (file.name.as_str(), file.stem.as_str())).collect();
+        let expected = [("Balls/a", "Balls/a"), ("Balls/b", "t2m2/Balls/b"), ("x.xml/c", "t2m2/x.xml/c")];
+        assert_eq!(found, expected);
+        assert!(files.iter().all(|file| file.path == folder.path().join(format!("{}.xml", file.stem))));
+        assert!(list(&folder.path().join("none"), ".xml").is_err());
+    }
+}
