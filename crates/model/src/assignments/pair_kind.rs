@@ -79,4 +79,14 @@ impl PairKind {
             Self::ParticleHalfPlane => "half-plane",
         }
     }
+
+    /// What the original calls the second object (oracle-behaviour.md 6.1).
+    #[must_use]
+    pub const fn second_of_original(self) -> &'static str {
+        match self {
+            Self::ParticleParticle => "Particle",
+            Self::ParticleEdge => "Edge",
+            Self::ParticleHalfPlane => "Halfplane",
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The original's words about collisions that do not match (oracle-behaviour.md 6.1).
 use super::super::number::general;
 use fosssim_judge::parity::Remark;
-use fosssim_model::{sim::PairKind, trace::LoggedImpulse};
+use fosssim_model::trace::LoggedImpulse;
 use fosssim_num::vector::Vec2;
 
 /// The line above the collisions of a step.
@@ -22,12 +22,8 @@ pub(super) fn line(remark: &Remark) -> Option<String> {
 
 /// `Particle A - Edge B with normal = X Y`; nothing for an unknown kind of pair.
 fn words(impulse: &LoggedImpulse) -> String {
-    let second = match impulse.kind() {
-        Some(PairKind::ParticleParticle) => "Particle",
-        Some(PairKind::ParticleEdge) => "Edge",
-        Some(PairKind::ParticleHalfPlane) => "Halfplane",
-        None => return String::new(),
-    };
+    let Some(kind) = impulse.kind() else { return String::new() };
+    let second = kind.second_of_original();
     let normal = direction(impulse.normal);
     format!("Particle {} - {second} {} with normal = {normal}", impulse.first, impulse.second)
 }

@@ -1,8 +1,10 @@
 //! What the original program prints, byte for byte, as a function of events.
 //!
 //! [`Transcript`] hears how recording or grading goes and writes the original's standard output to any stream; it
-//! opens no file and decides nothing. Layout and words: `oracle-behaviour.md` 2, 3, 5 and 6. The colour codes are part
-//! of the text, in files and pipes, too.
+//! opens no file and decides nothing. What the original says of an assignment's things (its version, how it calls a collision
+//! type or the second object of a pair) stands in `assignments`; the rest is one program's, whichever assignment a scene
+//! belongs to. Layout and words: `oracle-behaviour.md` 2, 3, 5 and 6. The colour codes are part of the text, in files and
+//! pipes, too.
 
 mod collisions;
 mod transcript;
