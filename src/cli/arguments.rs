@@ -3,7 +3,7 @@ use super::{
     grading::{Demo, Doctor, Grade, Merge, Selftest, Suite},
     pictures::{Detect, Render},
     scenes::Scene,
-    values::{Rules, at_least_one},
+    values::{Rules, TextOrJson, at_least_one},
 };
 use crate::suite::config;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -68,15 +68,6 @@ fn step(word: &str) -> Result<u32, &'static str> {
     word.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
 }
 
-/// How a report is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Format {
-    /// For people.
-    Text,
-    /// For programs; one JSON object.
-    Json,
-}
-
 /// How the report on a trace is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum CheckFormat {
@@ -124,8 +115,8 @@ pub(super) struct Simulate {
     #[arg(long)]
     pub(super) audit: bool,
     /// How the summary is written.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(super) format: TextOrJson,
     #[command(flatten)]
     pub(super) quiet: Quiet,
 }
@@ -250,8 +241,8 @@ pub(super) struct TraceInfo {
     /// The trace.
     pub(super) trace: PathBuf,
     /// How the answer is written.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(super) format: TextOrJson,
 }
 
 /// Shows what one step logged, in words or as JSON.
@@ -268,8 +259,8 @@ pub(super) struct TraceShow {
     #[arg(long, short, value_name = "N", allow_negative_numbers = true, value_parser = step)]
     pub(super) step: u32,
     /// How the answer is written.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(super) format: TextOrJson,
 }
 
 /// Compares two traces of one scene bit by bit, and shows the first difference.
@@ -287,8 +278,8 @@ pub(super) struct TraceDiff {
     /// The other trace.
     pub(super) right: PathBuf,
     /// How the answer is written.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(super) format: TextOrJson,
     #[command(flatten)]
     pub(super) quiet: Quiet,
 }

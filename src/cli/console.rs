@@ -1,9 +1,10 @@
 //! The terminal: standard output that survives a closed pipe, the decision about colours, lines that fit, and progress
 //! bars that nothing is written across.
 use super::{
-    arguments::{Colour, Format},
+    arguments::Colour,
     interrupt,
     screen::{clear_bars, on_screen},
+    values::TextOrJson,
 };
 use crate::{
     judge::parity::{Progress, Remark},
@@ -82,10 +83,10 @@ pub(super) fn report(text: &str) -> Result<()> {
 ///
 /// # Errors
 /// As [`print`].
-pub(super) fn show(text: &str, format: Format) -> Result<()> {
+pub(super) fn show(text: &str, format: TextOrJson) -> Result<()> {
     match format {
-        Format::Text => report(text),
-        Format::Json => print(text.as_bytes()),
+        TextOrJson::Text => report(text),
+        TextOrJson::Json => print(text.as_bytes()),
     }
 }
 

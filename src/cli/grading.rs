@@ -1,5 +1,5 @@
 //! Arguments of the commands that run programs, as typed.
-use super::values::{Rules, at_least_one};
+use super::values::{Rules, TextOrJson, at_least_one};
 use crate::{
     assignments::Assignment,
     report::{grade::Format, page},
@@ -215,6 +215,7 @@ Example:
 pub(super) enum Suite {
     Init(SuiteInit),
     Check(SuiteCheck),
+    List(SuiteList),
     Scenes(SuiteScenes),
 }
 
@@ -236,6 +237,17 @@ Example:
 pub(super) struct SuiteCheck {
     /// The suite: a file, or one that comes with the program.
     pub(super) suite: String,
+}
+
+/// Lists the suites that come with the program; the first one is meant where none is named.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle suite list --format json")]
+pub(super) struct SuiteList {
+    /// How the list is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = TextOrJson::Text)]
+    pub(super) format: TextOrJson,
 }
 
 /// Lists the scenes that come with the program, as `scene list` does.

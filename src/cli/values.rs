@@ -8,6 +8,15 @@ pub(super) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
     word.trim().parse().map_err(|_| "it is a whole number, 1 or more")
 }
 
+/// How a report is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum TextOrJson {
+    /// For people.
+    Text,
+    /// For programs; one JSON object.
+    Json,
+}
+
 /// Which rule books are asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Rules {

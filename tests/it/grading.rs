@@ -430,6 +430,17 @@ fn suites_are_written_checked_and_explained() {
     let check = workspace.run(["suite", "check", "course.toml"]);
     assert_eq!(check.code, Some(0), "{}", check.shown());
     assert!(check.out().contains("Continuous-time detection: 40 points"), "{}", check.out());
+    let list: serde_json::Value =
+        serde_json::from_slice(&workspace.run(["suite", "list", "--format", "json"]).stdout).expect("JSON");
+    let text = workspace.run(["suite", "list"]).out();
+    let suites = list["suites"].as_array().expect("a list");
+    assert_eq!((suites.len(), suites[0]["default"].as_bool()), (text.lines().count(), Some(true)), "{list}");
+    for (suite, line) in suites.iter().zip(text.lines()) {
+        let (name, title) = (suite["name"].as_str().expect("a name"), suite["title"].as_str().expect("a title"));
+        assert!(line.starts_with(name) && line.contains(title), "{line}");
+        let checked = workspace.run(["suite", "check", name]).out();
+        assert!(checked.contains(&format!("{} scenes", suite["scenes"])), "{checked}");
+    }
     let scenes = workspace.run(["suite", "scenes"]);
     assert!(scenes.out().lines().count() >= 48 && scenes.out().starts_with("asset:"), "{}", scenes.out());
 }

@@ -133,6 +133,7 @@ fn every_command_has_help_with_an_example() {
         &["suite"],
         &["suite", "init"],
         &["suite", "check"],
+        &["suite", "list"],
         &["suite", "scenes"],
         &["scene"],
         &["scene", "list"],

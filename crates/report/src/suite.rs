@@ -1,4 +1,4 @@
-//! What a suite would grade, and what is worth knowing before it does: the text of `suite check`.
+//! What a suite would grade, and what is worth knowing before it does: the text of `suite check`. And which suites there are.
 use super::{
     grade::{one_line, points},
     number::counted,
@@ -9,7 +9,8 @@ use fosssim_grading::{
     plan::{Plan, PlannedGroup},
 };
 use fosssim_judge::{PairWords, PassWords, Rules, fair::Borderline};
-use fosssim_model::sim::StepError;
+use fosssim_model::{assignments::Assignment, sim::StepError};
+use serde_json::json;
 use std::fmt::Write;
 
 /// A scene and those of the reference's decisions that round-off may flip, or why it has no run.
@@ -34,6 +35,38 @@ pub fn text(plan: &Plan, undecided: &[Undecided], style: Style) -> String {
     };
     let _ = writeln!(text, "\n{}: {}{notes}", style.paint(Look::Good, "The suite is sound"), size(plan));
     text
+}
+
+/// The version of the JSON list; it changes when a field's meaning does.
+const SCHEMA: u32 = 1;
+
+/// The suites that come with the program, a line on each.
+#[must_use]
+pub fn list(suites: &[(&str, Plan)], style: Style) -> String {
+    let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let line = |(name, plan): &(&str, Plan)| {
+        let size = style.paint(Look::Faint, &format!("({})", size(plan)));
+        let default = if *name == Assignment::DEFAULT.key() { ", the default" } else { "" };
+        format!("{name:width$}  {}{default} {size}\n", plan.name)
+    };
+    suites.iter().map(line).collect()
+}
+
+/// The same as one JSON object: `name` is what `--suite` takes, `default` says which one is meant where none is named.
+#[must_use]
+pub fn list_json(suites: &[(&str, Plan)]) -> String {
+    let entry = |(name, plan): &(&str, Plan)| {
+        json!({
+            "name": name,
+            "title": plan.name,
+            "scenes": plan.scenes().count(),
+            "points": plan.max_points(),
+            "default": *name == Assignment::DEFAULT.key(),
+        })
+    };
+    let list = json!({ "schema": SCHEMA, "suites": suites.iter().map(entry).collect::<Vec<_>>() });
+    // Plain values always serialise.
+    serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 
 /// `12 scenes, 100 points`.

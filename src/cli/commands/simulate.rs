@@ -1,10 +1,6 @@
 //! `simulate`: simulates a scene and records its trace.
 use crate::{
-    cli::{
-        arguments::{Format, Simulate},
-        console, exit, input,
-        output::Output,
-    },
+    cli::{arguments::Simulate, console, exit, input, output::Output, values::TextOrJson},
     report::{describe::step_error, simulate::Summary, style::Style},
     sim::{RootSearch, Simulation},
     trace::{Counts, Layout, Recorder},
@@ -44,8 +40,8 @@ pub(super) fn run(arguments: &Simulate) -> Result<u8> {
     let summary = Summary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };
     let style = if to_stdout { Style::Plain } else { console::style() };
     let text = match arguments.format {
-        Format::Text => summary.text(style),
-        Format::Json => summary.json(),
+        TextOrJson::Text => summary.text(style),
+        TextOrJson::Json => summary.json(),
     };
     if to_stdout {
         console::remark(text.as_bytes());

@@ -3,10 +3,11 @@ use super::{grade::load_suite, scene};
 use crate::{
     cli::{
         console, exit,
-        grading::{Suite, SuiteCheck, SuiteInit},
+        grading::{Suite, SuiteCheck, SuiteInit, SuiteList},
+        values::TextOrJson,
     },
     judge::fair::borderline,
-    report::suite::{Undecided, text},
+    report::suite::{Undecided, list, list_json, text},
     suite::{config, plan},
 };
 use anyhow::{Result, bail};
@@ -26,9 +27,22 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
             let plan = load_suite(suite)?;
             console::report(&text(&plan, &undecided(&plan), console::style()))?;
         }
+        Suite::List(SuiteList { format }) => {
+            let suites = built_in()?;
+            let text = match format {
+                TextOrJson::Text => list(&suites, console::style()),
+                TextOrJson::Json => list_json(&suites),
+            };
+            console::show(&text, *format)?;
+        }
         Suite::Scenes(_) => return scene::list(&[], false),
     }
     Ok(exit::ACCEPTED)
+}
+
+/// The suites that come with the program, and what each is called by.
+fn built_in() -> Result<Vec<(&'static str, plan::Plan)>> {
+    plan::built_in_names().map(|name| Ok((name, load_suite(name)?))).collect()
 }
 
 /// Runs the reference on every scene, on all cores, and keeps those with something to say.

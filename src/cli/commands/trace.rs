@@ -1,9 +1,10 @@
 //! `trace info`, `trace show`, `trace diff`: what traces hold.
 use crate::{
     cli::{
-        arguments::{Format, TraceDiff, TraceInfo, TraceShow},
+        arguments::{TraceDiff, TraceInfo, TraceShow},
         console, exit,
         input::{self, SceneInput, TraceInput},
+        values::TextOrJson,
     },
     report::{
         number::counted,
@@ -21,8 +22,8 @@ pub(super) fn info(arguments: &TraceInfo) -> Result<u8> {
     let summary = Summary::of(&scene.scene, &mut trace.reader);
     no_failure(&trace)?;
     let text = match arguments.format {
-        Format::Text => summary.to_string(),
-        Format::Json => report::info_json(&scene.name, &trace.name, &summary),
+        TextOrJson::Text => summary.to_string(),
+        TextOrJson::Json => report::info_json(&scene.name, &trace.name, &summary),
     };
     console::show(&text, arguments.format)?;
     Ok(if summary.stopped.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
@@ -70,8 +71,8 @@ pub(super) fn show(arguments: &TraceShow) -> Result<u8> {
     let labels = if step > 0 { labels(&scene.scene, &before.state) } else { Vec::new() };
     let shown = Shown { step, steps, records: &records, labels: &labels };
     let text = match arguments.format {
-        Format::Text => shown.text(console::style()),
-        Format::Json => shown.json(&scene.name, &trace.name),
+        TextOrJson::Text => shown.text(console::style()),
+        TextOrJson::Json => shown.json(&scene.name, &trace.name),
     };
     console::show(&text, arguments.format)?;
     Ok(exit::ACCEPTED)
@@ -87,8 +88,8 @@ pub(super) fn diff(arguments: &TraceDiff) -> Result<u8> {
     no_failure(&right)?;
     let names = report::Names { scene: &scene.name, left: &left.name, right: &right.name };
     let text = match arguments.format {
-        Format::Text => report::diff_text(&names, &comparison, console::style()),
-        Format::Json => report::diff_json(&names, &comparison),
+        TextOrJson::Text => report::diff_text(&names, &comparison, console::style()),
+        TextOrJson::Json => report::diff_json(&names, &comparison),
     };
     console::show(&text, arguments.format)?;
     Ok(if report::same(&comparison) { exit::ACCEPTED } else { exit::NOT_ACCEPTED })

@@ -25,6 +25,7 @@ impl House {
             if known.int("courses")? > 0 {
                 return Err(Problem::conflict("this server has courses already", "start it without --example"));
             }
+            let settings = Settings::default().checked(self.suites())?;
             let course = transaction
                 .one(
                     "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now}) RETURNING id",
@@ -36,7 +37,7 @@ impl House {
                 .execute(
                     "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
                      VALUES (?, ?, ?, 1, ?, {now})",
-                    values![course, ASSIGNMENT.0, ASSIGNMENT.1, Settings::default().text()],
+                    values![course, ASSIGNMENT.0, ASSIGNMENT.1, settings.text()],
                 )
                 .await?;
             let made = transaction

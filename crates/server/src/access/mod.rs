@@ -7,6 +7,7 @@ mod account;
 mod admin;
 mod choice;
 mod example;
+mod file_name;
 mod identity;
 mod launch;
 mod member;
@@ -19,6 +20,7 @@ mod request;
 mod settings;
 mod staff;
 mod submit;
+mod suites;
 mod suspicion;
 mod throttle;
 mod view;
@@ -27,6 +29,7 @@ mod visitor;
 pub use account::Account;
 pub use admin::Admin;
 pub use choice::{Choice, Chosen};
+pub use file_name::is_file_name;
 pub use identity::{NewSecret, Session};
 pub use launch::{Launched, LoginAnswer, LoginRequest};
 pub use member::Member;
@@ -36,9 +39,10 @@ pub use platform::{RosterRead, ScoreInfo};
 pub use regrade::{Change, Regrade, RegradeState};
 pub use remote::{Claimed, Remote};
 pub use request::{Secrets, browser_cookie, cookie_name};
-pub use settings::{Settings, is_file_name};
+pub use settings::Settings;
 pub use staff::{MemberInfo, Staff, Standing};
 pub use submit::{Accepted, Upload};
+pub use suites::Suites;
 pub use suspicion::Suspicion;
 pub use view::{Assignment, Course, Event, Graded, History, Queue, QueueWorker, Submission};
 pub use visitor::{Metrics, Visitor};
@@ -67,6 +71,8 @@ pub struct Parts {
     pub bell: Bell,
     /// The queue's patience.
     pub policy: Policy,
+    /// The suites that come with the grader.
+    pub suites: Suites,
     /// Where uploads wait until they are stored.
     pub incoming: PathBuf,
     /// The address that people know the service by.
@@ -98,6 +104,12 @@ impl House {
     #[must_use]
     pub fn public(&self) -> &str {
         &self.0.public
+    }
+
+    /// The suites that come with the grader.
+    #[must_use]
+    pub fn suites(&self) -> &Suites {
+        &self.0.suites
     }
 
     /// Whether people come by HTTPS.

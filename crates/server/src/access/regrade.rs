@@ -83,8 +83,7 @@ impl Staff {
     pub async fn regrade(&self, slug: &str, reason: &str, settings: Option<&Settings>) -> Result<Regrade, Problem> {
         super::identity::check_title("a reason", reason)?;
         let assignment = self.member().assignment(slug).await?;
-        let settings = settings.unwrap_or(&assignment.settings);
-        settings.check()?;
+        let settings = settings.unwrap_or(&assignment.settings).checked(self.member().house().suites())?;
         let mut transaction = self.begin().await?;
         transaction.one("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
         let open = transaction
@@ -101,7 +100,6 @@ impl Staff {
             )
             .await?
             .int("id")?;
-        let settings = settings.clone();
         let newly = Assignment { settings, ..assignment };
         let count = enqueue_missing(&mut transaction, campaign, &newly).await?;
         let text = format!("regrade {campaign} of {count} submissions: {reason}");

@@ -1,4 +1,5 @@
 //! What an assignment asks for.
+use super::{Suites, file_name::is_file_name};
 use crate::{
     problem::Problem,
     store::Digest,
@@ -11,7 +12,7 @@ use utoipa::ToSchema;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// A suite that comes with the program, `t2m2` for example; one that was uploaded goes before it.
+    /// A suite that comes with the grader, `t2m2` for example; its default, if none is named. One that was uploaded goes before it.
     pub suite: String,
     /// The digest of an archive with a `suite.toml`; uploaded by its own request.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -42,7 +43,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            suite: "t2m2".to_owned(),
+            suite: String::new(),
             suite_archive: None,
             rules: None,
             hints: None,
@@ -75,11 +76,17 @@ impl Settings {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Whether they make sense.
+    /// The same with the suite's name filled in, where they make sense.
     ///
     /// # Errors
     /// What does not.
-    pub fn check(&self) -> Result<(), Problem> {
+    pub fn checked(&self, suites: &Suites) -> Result<Self, Problem> {
+        let settings = Self { suite: suites.or_default(&self.suite), ..self.clone() };
+        settings.check(suites)?;
+        Ok(settings)
+    }
+
+    fn check(&self, suites: &Suites) -> Result<(), Problem> {
         let one_of = |name: &str, value: &Option<String>, known: &[&str]| match value {
             Some(value) if !known.contains(&value.as_str()) => {
                 Err(Problem::invalid(format!("{name} is one of {}", known.join(", "))))
@@ -88,7 +95,7 @@ impl Settings {
         };
         one_of("rules", &self.rules, &["parity", "fair", "both"])?;
         one_of("hints", &self.hints, &["none", "where", "what", "full"])?;
-        one_of("suite", &Some(self.suite.clone()), &["t2m2", "earlier"])?;
+        suites.check(&self.suite)?;
         if let Some(archive) = &self.suite_archive {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
         }
@@ -121,11 +128,4 @@ impl Settings {
             None => Suite::Named(self.suite.clone()),
         }
     }
-}
-
-/// A name that is one file in a folder, on every system, and looks the same in every message.
-#[must_use]
-pub fn is_file_name(name: &str) -> bool {
-    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
-    (1..=100).contains(&name.len()) && name.chars().all(plain) && !name.starts_with(['.', '-'])
 }

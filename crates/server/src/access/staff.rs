@@ -183,7 +183,7 @@ impl Staff {
     ) -> Result<Assignment, Problem> {
         identity::check_slug("an assignment's name", slug)?;
         identity::check_title("a title", title)?;
-        settings.check()?;
+        let settings = settings.checked(self.0.house.suites())?;
         if let Some(digest) = settings.suite_archive.as_ref().and_then(|digest| digest.parse().ok())
             && !self.0.house.0.store.has(&digest).await?
         {

@@ -6,7 +6,7 @@ use super::{
     worker::{Local, grader, policy},
 };
 use crate::{
-    access::{House, Parts, Passwords, Throttle},
+    access::{House, Parts, Passwords, Suites, Throttle},
     db::{self, Address, Database},
     lti::{self, Lti, PlatformWish},
     queue::Bell,
@@ -29,6 +29,9 @@ const DAY: u64 = 24 * 3600;
 
 /// How long an upload that nobody finished may lie around.
 const FORGOTTEN: Duration = Duration::from_secs(DAY);
+
+/// How long the grader may take to list its suites.
+const ANSWER: Duration = Duration::from_secs(20);
 
 /// How often the server looks for what is not kept any longer.
 const GIVE_UP_EVERY: Duration = Duration::from_secs(DAY / 4);
@@ -56,6 +59,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         store: store.clone(),
         bell: bell.clone(),
         policy,
+        suites: suites(arguments.work.grader.as_deref()).await,
         incoming: folders.incoming(),
         public: public.clone(),
         patience,
@@ -144,6 +148,23 @@ async fn give_up(database: Database, store: Store, keep: Duration) {
     }
 }
 
+/// Asks the grader for the suites that come with it. A server whose workers are elsewhere may have none to ask.
+async fn suites(named: Option<&Path>) -> Suites {
+    let asked = async {
+        let mut command = tokio::process::Command::new(grader(named)?);
+        command.args(["suite", "list", "--format", "json"]).stdin(std::process::Stdio::null()).kill_on_drop(true);
+        let said = tokio::time::timeout(ANSWER, command.output()).await.context("it does not answer")??;
+        if !said.status.success() {
+            bail!("{}", String::from_utf8_lossy(&said.stderr).trim());
+        }
+        Ok(Suites::read(&said.stdout)?)
+    };
+    asked.await.unwrap_or_else(|error: anyhow::Error| {
+        tracing::warn!(error = format!("{error:#}"), "the grader can't be asked for its suites: any name is taken");
+        Suites::default()
+    })
+}
+
 /// Has the grader write a program with a mistake.
 async fn write_flawed_program(grader: Option<&Path>, program: &Path) -> Result<()> {
     let mut command = tokio::process::Command::new(self::grader(grader)?);
@@ -195,6 +216,7 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
         store: folders.store(&arguments.place)?,
         bell: Bell::default(),
         policy: crate::queue::Policy::default(),
+        suites: Suites::default(),
         incoming: folders.incoming(),
         public: arguments.public_url.clone(),
         patience: Duration::from_secs(30),

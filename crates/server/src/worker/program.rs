@@ -79,9 +79,11 @@ impl Program {
             Form::Traces => drop(command.arg("--traces")),
         }
         match &task.suite {
-            Suite::Named(name) => command.arg("--suite").arg(name),
-            Suite::Archive(_) => command.arg("--suite").arg(folder.join("suite/suite.toml")),
-        };
+            // The server could not ask the grader for its default, and leaves it to it.
+            Suite::Named(name) if name.is_empty() => {}
+            Suite::Named(name) => drop(command.arg("--suite").arg(name)),
+            Suite::Archive(_) => drop(command.arg("--suite").arg(folder.join("suite/suite.toml"))),
+        }
         if let Some(rules) = &task.rules {
             command.arg("--rules").arg(rules);
         }

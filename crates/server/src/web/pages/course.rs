@@ -59,6 +59,7 @@ struct SettingsPage {
     slug: String,
     assignment: Assignment,
     settings: String,
+    suites: String,
 }
 
 #[derive(Deserialize)]
@@ -160,7 +161,8 @@ pub(super) async fn settings(
         .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
         .then(format!("/c/{slug}/a/{}/settings", assignment.slug), "Settings");
     let settings = serde_json::to_string_pretty(&assignment.settings).map_err(|_| Problem::fault())?;
-    show(&SettingsPage { frame, slug, assignment, settings })
+    let suites = staff.member().house().suites().words();
+    show(&SettingsPage { frame, slug, assignment, settings, suites })
 }
 
 pub(super) async fn set_settings(

@@ -18,6 +18,11 @@ if [ "$1" = demo ]; then
     printf '#!grade WA 40\n' > "$3"
     exit 0
 fi
+if [ "$1 $2" = "suite list" ]; then
+    printf '{"schema": 1, "suites": [{"name": "t2m2", "title": "M2", "default": true},
+        {"name": "course-2027", "title": "New", "default": false}]}'
+    exit 0
+fi
 [ "$1" = grade ] || exit 2
 program=$2
 rules=of-the-suite

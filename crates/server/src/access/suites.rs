@@ -1,0 +1,86 @@
+//! The suites that come with the grader, by name. The grader lists them itself (`suite list --format json`), so that this program
+//! need not know them.
+use super::file_name::is_file_name;
+use crate::problem::Problem;
+use serde::Deserialize;
+
+/// The names of these suites. A server whose workers are elsewhere may have no grader to ask; then it takes any plain name, and the
+/// worker's grader says whether it has such a suite.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Suites {
+    names: Vec<String>,
+    default: String,
+}
+
+#[derive(Deserialize)]
+struct List {
+    suites: Vec<Entry>,
+}
+
+#[derive(Deserialize)]
+struct Entry {
+    name: String,
+    default: bool,
+}
+
+impl Suites {
+    /// Reads the grader's list.
+    ///
+    /// # Errors
+    /// When it is none.
+    pub fn read(json: &[u8]) -> Result<Self, serde_json::Error> {
+        let list: List = serde_json::from_slice(json)?;
+        let default = list.suites.iter().find(|suite| suite.default).map(|suite| suite.name.clone());
+        let names = list.suites.into_iter().map(|suite| suite.name).collect();
+        Ok(Self { names, default: default.unwrap_or_default() })
+    }
+
+    /// The name for settings that have none: that of the grader's default. Empty where the grader can't be asked here, which leaves
+    /// the choice to it.
+    pub(super) fn or_default(&self, name: &str) -> String {
+        if name.is_empty() { self.default.clone() } else { name.to_owned() }
+    }
+
+    /// Whether there is such a suite.
+    pub(super) fn check(&self, name: &str) -> Result<(), Problem> {
+        let is_known = if self.names.is_empty() {
+            name.is_empty() || is_file_name(name)
+        } else {
+            self.names.iter().any(|known| known == name)
+        };
+        if is_known { Ok(()) } else { Err(Problem::invalid(format!("suite is {}", self.words()))) }
+    }
+
+    /// Which names there are, in words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        match self.names.as_slice() {
+            [] => "a name that `fosssim-oracle suite list` shows".to_owned(),
+            [only] => only.clone(),
+            [some @ .., last] => format!("{} or {last}", some.join(", ")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_graders_list() {
+        let json = br#"{"schema": 1, "suites": [{"name": "new", "title": "New", "default": false}, {"name": "old", "title": "Old", "default": true}]}"#;
+        let suites = Suites::read(json).expect("a list");
+        assert_eq!(suites.words(), "new or old");
+        assert_eq!((suites.or_default("").as_str(), suites.or_default("new").as_str()), ("old", "new"));
+        assert!(suites.check("new").is_ok() && suites.check("old").is_ok());
+        assert_eq!(suites.check("other").expect_err("unknown").detail, "suite is new or old");
+        assert!(Suites::read(b"usage: ...").is_err());
+    }
+
+    #[test]
+    fn without_a_grader_any_plain_name_will_do() {
+        let suites = Suites::default();
+        assert!(suites.check("").is_ok() && suites.check("t9m9").is_ok());
+        assert!(suites.check("../../etc/passwd").is_err() && suites.check("--output").is_err());
+    }
+}
