@@ -62,8 +62,8 @@ pub(super) struct Grade {
     pub(super) format: Vec<String>,
     /// Whom HTML pages are for: students' hold no group that the suite hides from them, nor what tells of it. Into the output
     /// folder both kinds are written, those to hand out below students/.
-    #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Reader::Staff)]
-    pub(super) reader: Reader,
+    #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Audience::Staff)]
+    pub(super) reader: Audience,
     /// Runs at one time. One per core by default.
     #[arg(short, long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
     pub(super) jobs: Option<NonZeroUsize>,
@@ -141,18 +141,18 @@ impl FromStr for Shard {
 
 /// Whom a page is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Reader {
+pub(super) enum Audience {
     /// Staff: everything.
     Staff,
     /// The student: what the suite shows students at once.
     Student,
 }
 
-impl From<Reader> for page::Reader {
-    fn from(reader: Reader) -> Self {
+impl From<Audience> for page::Audience {
+    fn from(reader: Audience) -> Self {
         match reader {
-            Reader::Staff => Self::Staff,
-            Reader::Student => Self::Student,
+            Audience::Staff => Self::Staff,
+            Audience::Student => Self::Student,
         }
     }
 }
@@ -176,8 +176,8 @@ pub(super) struct Merge {
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
     pub(super) format: Vec<String>,
     /// Whom HTML pages are for: students' go to students/, beside those for staff.
-    #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Reader::Staff)]
-    pub(super) reader: Reader,
+    #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Audience::Staff)]
+    pub(super) reader: Audience,
     /// Show a line per submission only.
     #[arg(short, long)]
     pub(super) quiet: bool,

@@ -1,6 +1,6 @@
 //! Goes through a trace once more, beside the reference.
 use crate::{
-    close_up::{CloseUp, Watch, Which},
+    inspected_step::{InspectedStep, Inspector, WantedCalls},
     rulings::StepRuling,
     track::{Track, Window},
 };
@@ -21,7 +21,7 @@ const APART: f64 = 1e-10;
 
 /// What a step is, for the strip over all steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Class {
+pub enum StepClass {
     /// Right, and where the reference is.
     Right,
     /// Wrong by itself.
@@ -32,7 +32,7 @@ pub enum Class {
     Unknown,
 }
 
-impl Class {
+impl StepClass {
     /// The letter in a strip.
     #[must_use]
     pub const fn letter(self) -> char {
@@ -49,7 +49,7 @@ impl Class {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// What it is.
-    pub class: Class,
+    pub class: StepClass,
     /// Largest distance of a position coordinate from where the reference ends from the trace's own state; NaN where
     /// one of them is no number.
     pub position: f64,
@@ -105,7 +105,7 @@ pub struct Evidence {
     /// All steps, as far as trace and reference go.
     pub steps: Vec<Step>,
     /// The steps looked at closely, in their order.
-    pub close_ups: Vec<CloseUp>,
+    pub inspected: Vec<InspectedStep>,
 }
 
 /// Goes through a trace: `rulings` are the judge's in the order of the steps, `fair` says which book decides, and `focus` is
@@ -149,7 +149,7 @@ fn gather_from(
         reference: Track::default(),
         submission: Track::default(),
         steps: Vec::new(),
-        close_ups: Vec::new(),
+        inspected: Vec::new(),
     };
     if reader.next(&mut end).is_err() {
         return evidence;
@@ -184,25 +184,25 @@ fn gather_from(
         }
         own.state_mut().clone_from(&before);
         own.set_steps_done(step - 1);
-        let wanted: Vec<(Which, Pair)> = focus
+        let wanted: Vec<(WantedCalls, Pair)> = focus
             .iter()
             .filter(|focus| focus.step == step)
-            .filter_map(|focus| Some((focus.pass.map_or(Which::Hits, Which::In), focus.pair?)))
+            .filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?)))
             .collect();
         // Of `continuous-time` the mid record holds what the end record does: the step's own end is what it is held to.
         let mid_state = matches!(scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
         let is_close = close.contains(&step);
         let mut count = Count::new(mid_state);
         let done = if is_close {
-            let mut watch = Watch::new(scene, step, mid_state, (&end.polynomials, end.logged), &wanted);
+            let mut watch = Inspector::new(scene, step, mid_state, (&end.polynomials, end.logged), &wanted);
             let done = work.step(&mut own, &mut (&mut watch, &mut count)).is_ok();
             let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
-            watch.close_up.actual_contacts.clone_from(impulses);
+            watch.step.actual_contacts.clone_from(impulses);
             // Who watches comes first, and has the step go on with the trace's mid record: what it should hold is kept there.
-            if let (Some(expected), Some(mid)) = (&watch.close_up.expected_mid, mid_state) {
+            if let (Some(expected), Some(mid)) = (&watch.step.expected_mid, mid_state) {
                 count.apart = apart(expected, mid);
             }
-            evidence.close_ups.push(watch.finish());
+            evidence.inspected.push(watch.finish());
             done
         } else {
             work.step(&mut own, &mut count).is_ok()
@@ -215,11 +215,11 @@ fn gather_from(
         seen_wrong |= is_wrong;
         let is_apart = free_goes_on && largest(&free.state().positions, &end.state.positions) > APART;
         let class = match ruling {
-            None => Class::Unknown,
-            Some(ruling) if ruling.damaged => Class::Unknown,
-            Some(_) if is_wrong => Class::Wrong,
-            Some(_) if seen_wrong && is_apart => Class::Inherited,
-            Some(_) => Class::Right,
+            None => StepClass::Unknown,
+            Some(ruling) if ruling.damaged => StepClass::Unknown,
+            Some(_) if is_wrong => StepClass::Wrong,
+            Some(_) if seen_wrong && is_apart => StepClass::Inherited,
+            Some(_) => StepClass::Right,
         };
         evidence.steps.push(Step {
             class,

@@ -7,17 +7,17 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
-mod close_up;
 mod gather;
-mod look;
+mod inspected_pair;
+mod inspected_step;
 mod matching;
 mod rulings;
 #[cfg(test)]
 mod tests;
 mod track;
 
-pub use close_up::{Call, CloseUp, Logged, PassUp, Zones};
-pub use gather::{Class, Evidence, Focus, Step, gather};
-pub use look::{Look, Records, look};
+pub use gather::{Evidence, Focus, Step, StepClass, gather};
+pub use inspected_pair::{InspectedPair, Records, inspect};
+pub use inspected_step::{InspectedCall, InspectedPass, InspectedStep, Logged, MergedZones};
 pub use rulings::{StepRuling, StepRulings};
 pub use track::{BUDGET, Track, Window};

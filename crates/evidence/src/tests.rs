@@ -36,9 +36,9 @@ fn a_right_trace_moves_as_the_reference_to_the_last_bit() {
     let bits = |track: &Track| track.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&evidence.reference), bits(&evidence.submission));
     assert_eq!(evidence.reference.records as u64, Layout::of(&scene).records());
-    assert!(evidence.steps.iter().all(|step| step.class == Class::Right && step.position == 0.0), "{evidence:?}");
+    assert!(evidence.steps.iter().all(|step| step.class == StepClass::Right && step.position == 0.0), "{evidence:?}");
     assert!(evidence.steps.iter().all(|step| step.actual_passes == Some(step.expected_passes)));
-    assert!(evidence.close_ups.is_empty());
+    assert!(evidence.inspected.is_empty());
 }
 
 /// A wrong failsafe is charged where it happens; what follows from it is no error of its own.
@@ -55,7 +55,7 @@ fn own_errors_are_told_from_inherited_ones() {
     // Before the first wrong step both motions are the same.
     let before = (evidence.layout.end_record(first - 1) as usize + 1) * 4 * evidence.layout.particles;
     assert_eq!(evidence.reference.values[..before], evidence.submission.values[..before]);
-    let close = evidence.close_ups.iter().find(|up| up.step == first).expect("looked at");
+    let close = evidence.inspected.iter().find(|up| up.step == first).expect("looked at");
     let expected = close.expected_end.as_ref().expect("a result");
     let end = evidence.layout.end_record(first) as usize * 4 * evidence.layout.particles;
     let ours = &evidence.submission.values[end..end + expected.positions.len()];
@@ -70,7 +70,7 @@ fn a_finding_about_a_polynomial_has_its_call() {
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "pe-linear-one-ab"));
     let first = outcome.account(Book::Fair).first_divergence.expect("wrong");
     let fosssim_judge::Detail::Coefficient { place, .. } = &first.detail else { panic!("{first}") };
-    let close = evidence.close_ups.iter().find(|up| up.step == first.step).expect("looked at");
+    let close = evidence.inspected.iter().find(|up| up.step == first.step).expect("looked at");
     let call = close.calls.iter().find(|call| call.pair == place.pair && call.pass == place.pass).expect("the call");
     let study = call.study.as_ref().expect("an answer");
     let number = study.curves.iter().position(|curve| curve.role == place.role).expect("the role");
@@ -111,15 +111,15 @@ fn a_hybrid_step_whose_impulses_are_wrong_has_a_residual() {
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "decision-alpha-margin"));
     let first = outcome.account(Book::Fair).first_divergence.expect("wrong");
     let step = &evidence.steps[first.step as usize - 1];
-    assert!(step.class == Class::Wrong && step.position > 0.1 && step.velocity > 0.1, "{step:?}");
-    assert!(evidence.steps.iter().filter(|other| other.class != Class::Wrong).all(|other| other.position < 1e-10));
+    assert!(step.class == StepClass::Wrong && step.position > 0.1 && step.velocity > 0.1, "{step:?}");
+    assert!(evidence.steps.iter().filter(|other| other.class != StepClass::Wrong).all(|other| other.position < 1e-10));
 }
 
 /// Where polynomials are missing or too many, the pairs that they belong to are told.
 #[test]
 fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
-    let close = |id: &str| judged(&scene, &of_mistake(&scene, id)).1.close_ups.remove(0);
+    let close = |id: &str| judged(&scene, &of_mistake(&scene, id)).1.inspected.remove(0);
     let right = close("pe-linear-one-ab").passes.remove(0);
     assert!(right.missing.is_empty() && right.repeated.is_empty() && !right.differing.is_empty());
     let pruned = close("pairs-pruned");
@@ -145,7 +145,7 @@ fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
     let scene = asset("GeometricTests/pair-becomes-rigid.xml");
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "failsafe-angular-overwritten"));
     let step = outcome.account(Book::Fair).first_divergence.expect("wrong").step;
-    let close = evidence.close_ups.iter().find(|up| up.step == step).expect("looked at");
+    let close = evidence.inspected.iter().find(|up| up.step == step).expect("looked at");
     let state = |record: u64| {
         let size = 4 * scene.particles.len();
         let values = &evidence.submission.values[record as usize * size..][..size];
@@ -155,8 +155,8 @@ fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
     let (before, mid) = (state(evidence.layout.end_record(step - 1)), state(evidence.layout.end_record(step) - 1));
     let pair = close.passes[0].hits[0].pair;
     let records = Records { mid: Some(&mid), polynomials: &PolynomialLog::default() };
-    let seen = look(&scene, step, &before, Some(records), pair);
-    assert_eq!(seen.close_up.calls.len(), close.expected_passes);
-    assert!(seen.close_up.calls.iter().all(|call| call.pair == pair && call.logged == Logged::Nothing));
+    let seen = inspect(&scene, step, &before, Some(records), pair);
+    assert_eq!(seen.step.calls.len(), close.expected_passes);
+    assert!(seen.step.calls.iter().all(|call| call.pair == pair && call.logged == Logged::Nothing));
     assert_eq!((Some(&seen.end), seen.failed), (close.expected_end.as_ref(), None));
 }

@@ -4,12 +4,12 @@ use crate::shape::Point;
 
 /// A rectangle from `low` to `high`.
 #[derive(Debug, Clone, Copy)]
-pub struct Frame {
+pub struct ClipRectangle {
     pub low: Point,
     pub high: Point,
 }
 
-impl Frame {
+impl ClipRectangle {
     /// The part of a line inside (Liang and Barsky, ACM TOG 3, 1984); `None` if there is none.
     pub fn line(&self, from: Point, to: Point) -> Option<[Point; 2]> {
         if !from.iter().chain(&to).all(|value| value.is_finite()) {
@@ -70,7 +70,7 @@ impl Frame {
 mod tests {
     use super::*;
 
-    const FRAME: Frame = Frame { low: [0.0, 0.0], high: [10.0, 5.0] };
+    const FRAME: ClipRectangle = ClipRectangle { low: [0.0, 0.0], high: [10.0, 5.0] };
 
     #[test]
     fn lines_are_cut_at_the_frame() {

@@ -1,5 +1,5 @@
 //! A detection call as a picture: the assignment's figure 2 with the numbers of the pair.
-use crate::plot::{Curve, Curves, Embedding};
+use crate::plot::{Embedding, PlottedPolynomial, PolynomialPlot};
 use fosssim_judge::study::Study;
 
 /// The polynomials of a call on the step, where each is positive, where all are, and the time of impact. The mathematically
@@ -8,11 +8,11 @@ use fosssim_judge::study::Study;
 pub fn picture(study: &Study, title: &str, embedding: Embedding) -> String {
     let names: Vec<String> = study.curves.iter().map(|curve| curve.role.to_string()).collect();
     let zeros: Vec<Vec<f64>> = study.curves.iter().map(|curve| curve.real_zeros()).collect();
-    let curves: Vec<Curve<'_>> = study
+    let curves: Vec<PlottedPolynomial<'_>> = study
         .curves
         .iter()
         .zip(names.iter().zip(&zeros))
-        .map(|(curve, (name, zeros))| Curve {
+        .map(|(curve, (name, zeros))| PlottedPolynomial {
             name,
             coefficients: curve.logged.coefficients(),
             zeros,
@@ -20,5 +20,5 @@ pub fn picture(study: &Study, title: &str, embedding: Embedding) -> String {
         })
         .collect();
     let impact = study.answer.collides().then(|| study.answer.time());
-    Curves { title, curves: &curves, common: Some(&study.answer.positive), impact }.svg(embedding)
+    PolynomialPlot { title, curves: &curves, common: Some(&study.answer.positive), impact }.svg(embedding)
 }

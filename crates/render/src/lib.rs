@@ -23,7 +23,7 @@ pub mod svg;
 pub mod terminal;
 pub mod view;
 
-pub use painter::{Options, Painter};
+pub use painter::{Painter, PictureOptions};
 pub use raster::Raster;
 pub use size::Size;
 pub use view::{Extent, View};

@@ -1,6 +1,6 @@
 //! From the positions of a scene's bodies to the shapes of a picture.
 use crate::{
-    clip::Frame,
+    clip::ClipRectangle,
     colour::Colour,
     number::short,
     shape::{Paint, Point, Shape},
@@ -25,7 +25,7 @@ const LONGEST_PATH: usize = 2000;
 
 /// What a picture shows besides the bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Options {
+pub struct PictureOptions {
     /// The size of the picture.
     pub size: Size,
     /// Whether step and time stand in the lower left corner.
@@ -59,7 +59,7 @@ struct Trail {
 impl Painter {
     /// A painter whose pictures hold all of `extent`, or show the scene's own viewport.
     #[must_use]
-    pub fn new(scene: &Scene, extent: &Extent, options: Options) -> Self {
+    pub fn new(scene: &Scene, extent: &Extent, options: PictureOptions) -> Self {
         let display = &scene.display;
         // Later elements win; indices that name nothing are the original's undefined behaviour and colour nothing.
         let coloured = |count: usize, default: Colour, list: &[(usize, Color)]| {
@@ -166,9 +166,12 @@ impl Painter {
     }
 
     /// The picture's rectangle, widened by so many pixels.
-    fn frame(&self, margin: f64) -> Frame {
+    fn frame(&self, margin: f64) -> ClipRectangle {
         let size = self.size();
-        Frame { low: [-margin, -margin], high: [f64::from(size.width()) + margin, f64::from(size.height()) + margin] }
+        ClipRectangle {
+            low: [-margin, -margin],
+            high: [f64::from(size.width()) + margin, f64::from(size.height()) + margin],
+        }
     }
 
     fn disc(&self, center: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
@@ -262,7 +265,7 @@ impl Trail {
     }
 
     /// The path in pieces that lie in the picture.
-    fn draw(&self, view: &View, frame: &Frame, shapes: &mut Vec<Shape>) {
+    fn draw(&self, view: &View, frame: &ClipRectangle, shapes: &mut Vec<Shape>) {
         let mut piece: Vec<Point> = Vec::new();
         let mut finish = |piece: &mut Vec<Point>| {
             if piece.len() > 1 {
@@ -301,7 +304,7 @@ mod tests {
 
     fn painter(xml: &str) -> Painter {
         let scene = original::read(xml.as_bytes()).unwrap().scene;
-        Painter::new(&scene, &Extent::default(), Options { size: Size::new(400, 400).unwrap(), label: true })
+        Painter::new(&scene, &Extent::default(), PictureOptions { size: Size::new(400, 400).unwrap(), label: true })
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::{
         output::Output,
         pictures::{Detect, DetectFormat, Points},
     },
-    evidence::{self, Logged, Look, Records},
+    evidence::{self, InspectedPair, Logged, Records},
     judge::study::Study,
     render::{detection, plot::Embedding},
     report::{
@@ -101,9 +101,9 @@ fn of_scene(arguments: &Detect, name: &Path) -> Result<()> {
     };
     let records =
         traced.as_ref().map(|traced| Records { mid: Some(&traced.mid), polynomials: &traced.end.polynomials });
-    let Look { close_up, end, failed } = evidence::look(&scene.scene, step, &before, records, pair);
-    let passes = close_up.calls.len();
-    let call = close_up.calls.get(arguments.pass as usize - 1);
+    let InspectedPair { step: inspected, end, failed } = evidence::inspect(&scene.scene, step, &before, records, pair);
+    let passes = inspected.calls.len();
+    let call = inspected.calls.get(arguments.pass as usize - 1);
     if call.is_none() {
         match failed {
             Some(error) => {

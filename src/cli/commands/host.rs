@@ -13,7 +13,7 @@ use crate::{
     report::{
         grade::{Format, rehearse},
         number::counted,
-        page::Reader,
+        page::Audience,
     },
     sandbox::{self, selftest},
     student,
@@ -117,7 +117,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
         console::print(b"The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
         if let Some(grade) = &last {
-            output::write(&arguments.output, &[], pages.of_one(grade, None, Reader::Staff).as_bytes())?;
+            output::write(&arguments.output, &[], pages.of_one(grade, None, Audience::Staff).as_bytes())?;
             let words = format!("What is wrong with it, to look at in a browser: {}\n", arguments.output.display());
             console::print(words.as_bytes())?;
         }

@@ -7,7 +7,7 @@ use crate::{
     judge::{Outcome, Rules, parity},
     report::{
         check::{Check, Shown, WrongSteps},
-        page::{Card, Case, Class, Graded, Reader, WhatIf},
+        page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
     },
     scene::Scene,
     student,
@@ -73,37 +73,37 @@ impl Pages {
     }
 
     /// The page of one submission.
-    pub(super) fn of_one(&self, grade: &Grade, class: Option<&str>, reader: Reader) -> String {
-        Graded { grade, card: &|scene| self.card(scene), class, reader }.html()
+    pub(super) fn of_one(&self, grade: &Grade, class: Option<&str>, reader: Audience) -> String {
+        GradePage { grade, card: &|scene| self.card(scene), class, reader }.html()
     }
 
     /// Writes the pages for staff into the folder for results, and those to hand out beside them where they are asked for; the
     /// one to begin with.
-    pub(super) fn write(&self, grades: &[Grade], reader: Reader) -> Result<Option<PathBuf>> {
+    pub(super) fn write(&self, grades: &[Grade], reader: Audience) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
-        if reader == Reader::Student {
+        if reader == Audience::Student {
             let students = folder.join("students");
             fs::create_dir_all(&students).with_context(|| format!("cannot make {}", students.display()))?;
             for grade in grades {
                 let path = students.join(format!("{}.html", file_name(&grade.submission)));
-                output::write(&path, &[], self.of_one(grade, None, Reader::Student).as_bytes())?;
+                output::write(&path, &[], self.of_one(grade, None, Audience::Student).as_bytes())?;
             }
         }
         if let [grade] = grades {
             let path = folder.join("report.html");
-            output::write(&path, &[], self.of_one(grade, None, Reader::Staff).as_bytes())?;
+            output::write(&path, &[], self.of_one(grade, None, Audience::Staff).as_bytes())?;
             return Ok(Some(path));
         }
         let reports = folder.join("reports");
         fs::create_dir_all(&reports).with_context(|| format!("cannot make {}", reports.display()))?;
         for grade in grades {
             let path = reports.join(format!("{}.html", file_name(&grade.submission)));
-            output::write(&path, &[], self.of_one(grade, Some("../index.html"), Reader::Staff).as_bytes())?;
+            output::write(&path, &[], self.of_one(grade, Some("../index.html"), Audience::Staff).as_bytes())?;
         }
         // Names of files hold nothing that an address would have to write otherwise, but blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
         let index = folder.join("index.html");
-        output::write(&index, &[], Class { grades, page: &page }.html().as_bytes())?;
+        output::write(&index, &[], ClassPage { grades, page: &page }.html().as_bytes())?;
         Ok(Some(index))
     }
 }

@@ -4,7 +4,7 @@ use crate::{
     cli::{console, output},
     report::{
         grade::{self, Format},
-        page::Reader,
+        page::Audience,
         style::Style,
     },
     suite::{Grade, guarded},
@@ -61,7 +61,7 @@ pub(super) struct Results<'a> {
     pub(super) folder: Option<&'a Path>,
     pub(super) pages: Option<&'a Pages>,
     /// Whom the pages are for.
-    pub(super) reader: Reader,
+    pub(super) reader: Audience,
     /// Whether scenes of the suite were left out on purpose.
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],

@@ -2,7 +2,7 @@
 use super::arguments::Arguments;
 use crate::{
     cli::output::Folder,
-    render::{Extent, Options, Painter, Raster, Size, film::png, svg},
+    render::{Extent, Painter, PictureOptions, Raster, Size, film::png, svg},
     report::original::NO_PICTURE_FOLDER,
     scene::Scene,
 };
@@ -46,7 +46,7 @@ impl Pictures {
         }
         let size = Size::new(SIDE, SIDE).map_err(|error| error.to_string())?;
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
-        let painter = Painter::new(scene, &Extent::of(scene, &start), Options { size, label: false });
+        let painter = Painter::new(scene, &Extent::of(scene, &start), PictureOptions { size, label: false });
         Ok(Some(Self { painter, raster: Raster::new(size), png, svg }))
     }
 

@@ -1,5 +1,5 @@
 //! An animated PNG, which browsers play and other programs show the first picture of.
-use super::{Rate, changed::Part, png::rgb};
+use super::{Rate, changed::ChangedArea, png::rgb};
 use crate::{raster::Raster, size::Size};
 use std::io::{self, Write};
 
@@ -31,8 +31,8 @@ impl<'a> Apng<'a> {
     pub fn picture(&mut self, raster: &Raster) -> io::Result<()> {
         let after = rgb(raster);
         let part = match self.before.is_empty() {
-            true => Part::whole(self.size),
-            false => Part::changed::<3>(self.size, &self.before, &after),
+            true => ChangedArea::whole(self.size),
+            false => ChangedArea::changed::<3>(self.size, &self.before, &after),
         };
         if !self.before.is_empty() {
             self.writer.reset_frame_position()?;

@@ -3,14 +3,14 @@ use crate::size::Size;
 
 /// A rectangle of pixels, never empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
+pub struct ChangedArea {
     pub left: u32,
     pub top: u32,
     pub width: u32,
     pub height: u32,
 }
 
-impl Part {
+impl ChangedArea {
     /// The whole picture.
     pub const fn whole(size: Size) -> Self {
         Self { left: 0, top: 0, width: size.width(), height: size.height() }
@@ -80,7 +80,7 @@ mod tests {
         ] {
             let mut after = before.clone();
             dots.iter().for_each(|&(x, y)| after[y * 20 + x] = 1);
-            let part = Part::changed::<1>(size, &before, &after);
+            let part = ChangedArea::changed::<1>(size, &before, &after);
             assert_eq!([part.left, part.top, part.width, part.height], expected, "{dots:?}");
             assert_eq!(part.cut::<1>(size, &after).iter().filter(|&&byte| byte == 1).count(), dots.len());
         }

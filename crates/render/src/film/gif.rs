@@ -2,7 +2,7 @@
 //!
 //! Edges of shapes are blends of two colours; the palette holds the way from each colour to the background in steps, and a
 //! cube of all colours where there is room. What is not in it becomes the nearest that is.
-use super::{Rate, changed::Part};
+use super::{Rate, changed::ChangedArea};
 use crate::{colour::Colour, raster::Raster, size::Size};
 use std::{
     collections::{BTreeSet, HashMap},
@@ -52,8 +52,8 @@ impl<'a> Gif<'a> {
             })
             .collect();
         let part = match self.before.is_empty() {
-            true => Part::whole(self.size),
-            false => Part::changed::<1>(self.size, &self.before, &after),
+            true => ChangedArea::whole(self.size),
+            false => ChangedArea::changed::<1>(self.size, &self.before, &after),
         };
         // Delays are hundredths of a second: their sum stays true at every rate.
         let at = |pictures: u64| 100 * pictures / u64::from(self.rate.per_second());

@@ -9,7 +9,7 @@ use fosssim_num::{interval::Interval, polynomial::evaluate};
 
 /// A polynomial.
 #[derive(Debug, Clone, Copy)]
-pub struct Curve<'a> {
+pub struct PlottedPolynomial<'a> {
     /// What it is, in a few words.
     pub name: &'a str,
     /// Its coefficients, highest power first.
@@ -22,11 +22,11 @@ pub struct Curve<'a> {
 
 /// What the plot shows.
 #[derive(Debug, Clone, Copy)]
-pub struct Curves<'a> {
+pub struct PolynomialPlot<'a> {
     /// Its title.
     pub title: &'a str,
     /// The polynomials; four styles tell them apart.
-    pub curves: &'a [Curve<'a>],
+    pub curves: &'a [PlottedPolynomial<'a>],
     /// Where all are positive; `None` where that is not asked, as for an expected and an actual polynomial.
     pub common: Option<&'a [Interval]>,
     /// The time of impact.
@@ -43,7 +43,7 @@ const SAMPLES: u32 = 128;
 /// So many samples are between the ends of a piece of a curve.
 const PIECE: usize = 8;
 
-impl Curves<'_> {
+impl PolynomialPlot<'_> {
     /// The plot.
     #[must_use]
     pub fn svg(&self, embedding: Embedding) -> String {
@@ -106,7 +106,7 @@ fn x(time: f64) -> f64 {
 }
 
 /// A curve on `[0, 1]`, scaled to its largest modulus there: a positive factor moves no zero.
-fn draw(curve: &Curve<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
+fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
     let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
     let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();
     let slopes = derivative(curve.coefficients);
@@ -188,15 +188,20 @@ mod tests {
         let set = |lo, hi| Interval { lo, hi };
         let (one, both) = ([set(0.5, 1.5)], [set(0.5, 1.0)]);
         let curves = [
-            Curve { name: "overlap", coefficients: &[-0.25, 0.5, -0.1875], zeros: &[0.5, 1.5], positive: &one },
-            Curve {
+            PlottedPolynomial {
+                name: "overlap",
+                coefficients: &[-0.25, 0.5, -0.1875],
+                zeros: &[0.5, 1.5],
+                positive: &one,
+            },
+            PlottedPolynomial {
                 name: "approach",
                 coefficients: &[-0.25, 0.25],
                 zeros: &[1.0],
                 positive: &[set(f64::NEG_INFINITY, 1.0)],
             },
         ];
-        let plot = Curves { title: "A ball", curves: &curves, common: Some(&both), impact: Some(0.5) };
+        let plot = PolynomialPlot { title: "A ball", curves: &curves, common: Some(&both), impact: Some(0.5) };
         let svg = plot.svg(Embedding::Alone);
         assert!(svg.contains(
             "<desc>overlap is positive from 0.5 to 1; approach is positive from 0 to 1; all are positive from 0.5 to 1; the \
@@ -207,9 +212,10 @@ mod tests {
 
     #[test]
     fn nothing_to_show_is_no_failure() {
-        let nothing = Curve { name: "", coefficients: &[], zeros: &[], positive: &[] };
-        let endless = Curve { name: "", coefficients: &[f64::INFINITY, 1.0], zeros: &[f64::NAN], positive: &[] };
-        let svg = Curves { title: "", curves: &[nothing, endless], common: None, impact: Some(f64::INFINITY) }
+        let nothing = PlottedPolynomial { name: "", coefficients: &[], zeros: &[], positive: &[] };
+        let endless =
+            PlottedPolynomial { name: "", coefficients: &[f64::INFINITY, 1.0], zeros: &[f64::NAN], positive: &[] };
+        let svg = PolynomialPlot { title: "", curves: &[nothing, endless], common: None, impact: Some(f64::INFINITY) }
             .svg(Embedding::Inline);
         assert!(!svg.contains("NaN") && !svg.contains("style"), "{svg}");
     }

@@ -8,9 +8,9 @@ mod passes;
 mod residuals;
 mod sheet;
 
-pub use curves::{Curve, Curves};
-pub use passes::{PASSES_AXIS, Passes};
-pub use residuals::{RESIDUALS_AXIS, Residuals, Series};
+pub use curves::{PlottedPolynomial, PolynomialPlot};
+pub use passes::{PASSES_AXIS, PassPlot};
+pub use residuals::{RESIDUALS_AXIS, ResidualPlot, Series};
 
 /// Where a plot goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

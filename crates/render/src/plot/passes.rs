@@ -6,7 +6,7 @@ use super::{
 
 /// What the plot shows.
 #[derive(Debug, Clone, Copy)]
-pub struct Passes<'a> {
+pub struct PassPlot<'a> {
     /// Its title.
     pub title: &'a str,
     /// Detection passes of each step, from the first one on, as the reference makes them.
@@ -23,7 +23,7 @@ const TOP: f64 = 44.0;
 const BOTTOM: f64 = 150.0;
 const HEIGHT: f64 = 192.0;
 
-impl Passes<'_> {
+impl PassPlot<'_> {
     /// The plot.
     #[must_use]
     pub fn svg(&self, embedding: Embedding) -> String {
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn differing_steps_are_marked_and_said() {
-        let plot = Passes { title: "Passes", expected: &[1, 2, 2, 1], actual: &[Some(1), Some(2), Some(3), None] };
+        let plot = PassPlot { title: "Passes", expected: &[1, 2, 2, 1], actual: &[Some(1), Some(2), Some(3), None] };
         let svg = plot.svg(Embedding::Inline);
         let words = "2 of 4 steps have another number of detection passes; the first is step 3 with 3, expected 2";
         assert!(svg.contains(&format!("<desc>{words}</desc>")), "{svg}");
@@ -115,9 +115,9 @@ mod tests {
         let expected = vec![1; 100_000];
         let mut actual: Vec<_> = expected.iter().copied().map(Some).collect();
         actual[77_777] = Some(9);
-        let svg = Passes { title: "Passes", expected: &expected, actual: &actual }.svg(Embedding::Inline);
+        let svg = PassPlot { title: "Passes", expected: &expected, actual: &actual }.svg(Embedding::Inline);
         assert_eq!(svg.matches("m0 -7l-7 7").count(), 1);
         assert!(svg.len() < 40_000);
-        let _ = Passes { title: "", expected: &[], actual: &[] }.svg(Embedding::Alone);
+        let _ = PassPlot { title: "", expected: &[], actual: &[] }.svg(Embedding::Alone);
     }
 }

@@ -16,7 +16,7 @@ pub struct Series<'a> {
 
 /// What the plot shows.
 #[derive(Debug, Clone, Copy)]
-pub struct Residuals<'a> {
+pub struct ResidualPlot<'a> {
     /// Its title.
     pub title: &'a str,
     /// One to four residuals.
@@ -37,7 +37,7 @@ const BOTTOM: f64 = 220.0;
 const LANE: f64 = 14.0;
 const HEIGHT: f64 = 262.0;
 
-impl Residuals<'_> {
+impl ResidualPlot<'_> {
     /// The plot.
     #[must_use]
     pub fn svg(&self, embedding: Embedding) -> String {
@@ -117,7 +117,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn of(plot: &Residuals<'_>) -> Self {
+    fn of(plot: &ResidualPlot<'_>) -> Self {
         let values = plot.series.iter().flat_map(|series| series.values).copied().chain(plot.tolerance);
         let shown = values.map(f64::abs).filter(|value| *value > 0.0 && value.is_finite());
         let (least, most) =
@@ -156,7 +156,8 @@ mod tests {
 
     fn plot(values: &[f64]) -> String {
         let series = [Series { name: "position", values }];
-        let plot = Residuals { title: "Residuals", series: &series, tolerance: Some(1e-10), mark: Some((3, "first")) };
+        let plot =
+            ResidualPlot { title: "Residuals", series: &series, tolerance: Some(1e-10), mark: Some((3, "first")) };
         plot.svg(Embedding::Inline)
     }
 
@@ -185,7 +186,7 @@ mod tests {
         let svg = plot(&values);
         assert!(svg.len() < 30_000, "{}", svg.len());
         let series = [Series { name: "position", values: &values }];
-        let scale = Scale::of(&Residuals { title: "", series: &series, tolerance: None, mark: None });
+        let scale = Scale::of(&ResidualPlot { title: "", series: &series, tolerance: None, mark: None });
         let top = crate::number::pixel(scale.y(1e-3));
         assert!(svg.contains(&format!(" {top}L")), "the peak is drawn");
     }

@@ -20,7 +20,7 @@ pub fn plots(evidence: &Evidence, columns: usize) -> String {
     if let Some(plot) = terminal::residuals(&residuals, PARITY_MAXIMUM, columns) {
         text += &format!("Residuals of the {} steps\n{plot}", residuals.len());
     }
-    let calls = evidence.close_ups.iter().flat_map(|up| up.calls.iter().map(move |call| (up.step, call)));
+    let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |call| (up.step, call)));
     let wrong = calls.filter_map(|(step, call)| {
         let (study, Logged::These(logged)) = (call.study.as_ref().ok()?, &call.logged) else { return None };
         let is_wrong = |(curve, own): &(&Curve, &Vec<f64>)| !own.is_empty() && differ(curve.logged.coefficients(), own);

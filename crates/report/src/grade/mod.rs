@@ -13,7 +13,7 @@ mod phrases;
 mod prairielearn;
 mod text;
 
-use crate::page::{Graded, Reader};
+use crate::page::{Audience, GradePage};
 use fosssim_grading::{
     Grade, SceneResult,
     config::{Credit, Visibility},
@@ -94,7 +94,7 @@ formats! {
     Markdown, "markdown", several github::summary;
     /// One row per scene, for spreadsheets.
     Csv, "csv", several csv_table::scenes;
-    /// One file to look at ([`page::Graded`](crate::page::Graded)); without cards here, because these lie on a disk.
+    /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a disk.
     Html, "html", one page;
 }
 
@@ -124,7 +124,7 @@ fn without_colours(grades: &[Grade]) -> String {
 
 /// A submission's page.
 fn page(grade: &Grade) -> String {
-    Graded { grade, card: &|_| None, class: None, reader: Reader::Staff }.html()
+    GradePage { grade, card: &|_| None, class: None, reader: Audience::Staff }.html()
 }
 
 pub use class::class;

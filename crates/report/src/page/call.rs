@@ -4,7 +4,7 @@ use super::{
     markup::{number, text},
 };
 use crate::detect::Detect;
-use fosssim_evidence::{Call, Logged};
+use fosssim_evidence::{InspectedCall, Logged};
 use fosssim_judge::{
     PairWords, PassWords, differing, factor,
     study::{self, Study},
@@ -12,11 +12,11 @@ use fosssim_judge::{
 use fosssim_num::{first_time::positive_set, interval::Interval};
 use fosssim_render::{
     detection,
-    plot::{Curve, Curves, Embedding},
+    plot::{Embedding, PlottedPolynomial, PolynomialPlot},
 };
 use std::fmt::Write;
 
-pub(super) fn html(step: u32, call: &Call, depth: usize) -> String {
+pub(super) fn html(step: u32, call: &InspectedCall, depth: usize) -> String {
     let mut out = format!(
         "<section data-step=\"{step}\" data-pair=\"{2}\">\n<h{depth}>Step {step}: {0} <span class=\"hint\">({1}, {2})</span>\
          </h{depth}>\n",
@@ -60,17 +60,18 @@ pub(super) fn html(step: u32, call: &Call, depth: usize) -> String {
 }
 
 /// The curves of the trace, as the expected ones are drawn.
-fn yours(step: u32, call: &Call, study: &Study, logged: &[Vec<f64>]) -> String {
+fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
     let names: Vec<String> = study.curves.iter().map(|curve| curve.role.to_string()).collect();
     let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive(own)).collect();
     let zeros: Vec<Vec<f64>> = sets.iter().map(|set| ends(set)).collect();
     let parts = names.iter().zip(logged).zip(zeros.iter().zip(&sets));
-    let curves: Vec<Curve<'_>> =
-        parts.map(|((name, coefficients), (zeros, positive))| Curve { name, coefficients, zeros, positive }).collect();
+    let curves: Vec<PlottedPolynomial<'_>> = parts
+        .map(|((name, coefficients), (zeros, positive))| PlottedPolynomial { name, coefficients, zeros, positive })
+        .collect();
     let common = common(logged);
     let impact = common.iter().map(|set| set.lo).reduce(f64::min);
     let title = format!("Yours in step {step}: {}", PairWords(call.pair));
-    let svg = Curves { title: &title, curves: &curves, common: Some(&common), impact }.svg(Embedding::Inline);
+    let svg = PolynomialPlot { title: &title, curves: &curves, common: Some(&common), impact }.svg(Embedding::Inline);
     format!("<figure>{svg}</figure>\n")
 }
 
@@ -120,11 +121,11 @@ fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64
     let (yours, right) = (format!("{role}, yours"), format!("{role}, expected"));
     let (zeros_of_right, zeros_of_own) = (ends(set), ends(&own));
     let curves = [
-        Curve { name: &right, coefficients: expected, zeros: &zeros_of_right, positive: set },
-        Curve { name: &yours, coefficients: logged, zeros: &zeros_of_own, positive: &own },
+        PlottedPolynomial { name: &right, coefficients: expected, zeros: &zeros_of_right, positive: set },
+        PlottedPolynomial { name: &yours, coefficients: logged, zeros: &zeros_of_own, positive: &own },
     ];
     let title = format!("Step {step}: {role}, expected and yours");
-    let svg = Curves { title: &title, curves: &curves, common: None, impact: None }.svg(Embedding::Inline);
+    let svg = PolynomialPlot { title: &title, curves: &curves, common: None, impact: None }.svg(Embedding::Inline);
     format!("<figure>{svg}</figure>\n")
 }
 

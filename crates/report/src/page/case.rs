@@ -10,7 +10,7 @@ use fosssim_grading::config::Hints;
 use fosssim_judge::{Account, Book, Outcome, Ruling};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::tolerances::PARITY_MAXIMUM;
-use fosssim_render::plot::{Embedding, PASSES_AXIS, Passes, RESIDUALS_AXIS, Residuals, Series};
+use fosssim_render::plot::{Embedding, PASSES_AXIS, PassPlot, RESIDUALS_AXIS, ResidualPlot, Series};
 use std::fmt::Write;
 
 /// So many calls are shown.
@@ -93,7 +93,7 @@ impl Case<'_> {
             out += &strip::html(&evidence.steps);
             if is_full {
                 out += &plots(evidence, key, first.map(|first| first.step));
-                let calls = evidence.close_ups.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
+                let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
                 let mut calls: Vec<_> = calls.collect();
                 calls.sort_by_key(|(step, _)| Some(*step) != first.map(|first| first.step));
                 if !calls.is_empty() {
@@ -156,7 +156,7 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     let positions: Vec<f64> = evidence.steps.iter().map(|step| step.position).collect();
     let velocities: Vec<f64> = evidence.steps.iter().map(|step| step.velocity).collect();
     let series = [Series { name: "positions", values: &positions }, Series { name: "velocities", values: &velocities }];
-    let residuals = Residuals {
+    let residuals = ResidualPlot {
         title: "How far each step ends from where it should, given its own start",
         series: &series,
         tolerance: Some(PARITY_MAXIMUM),
@@ -164,7 +164,7 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     };
     let expected: Vec<u32> = evidence.steps.iter().map(|step| step.expected_passes).collect();
     let actual: Vec<Option<u32>> = evidence.steps.iter().map(|step| step.actual_passes).collect();
-    let passes = Passes { title: "Detection passes in each step", expected: &expected, actual: &actual };
+    let passes = PassPlot { title: "Detection passes in each step", expected: &expected, actual: &actual };
     let figure = |svg: &str, [left, right]: [f64; 2]| {
         format!(
             "<figure data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" data-steps=\"{steps}\">{svg}</figure>\n"

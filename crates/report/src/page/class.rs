@@ -21,14 +21,14 @@ const NAMES: usize = 400;
 
 /// The grades of a class.
 #[derive(Clone, Copy)]
-pub struct Class<'a> {
+pub struct ClassPage<'a> {
     /// The grades.
     pub grades: &'a [Grade],
     /// The address of a submission's page, seen from this one.
     pub page: &'a dyn Fn(&Grade) -> String,
 }
 
-impl Class<'_> {
+impl ClassPage<'_> {
     /// The file.
     #[must_use]
     pub fn html(&self) -> String {
@@ -319,7 +319,7 @@ mod tests {
     }
 
     fn page(grades: &[Grade]) -> String {
-        Class { grades, page: &|grade| format!("reports/{}.html", grade.submission) }.html()
+        ClassPage { grades, page: &|grade| format!("reports/{}.html", grade.submission) }.html()
     }
 
     #[test]

@@ -3,7 +3,7 @@ use super::{
     Case, markup,
     packed::{Packed, Precision, Rounded},
 };
-use fosssim_evidence::{CloseUp, Evidence, PassUp, Track};
+use fosssim_evidence::{Evidence, InspectedPass, InspectedStep, Track};
 use fosssim_grading::config::Hints;
 use fosssim_judge::PassWords;
 use fosssim_model::{
@@ -35,11 +35,11 @@ pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision:
 
 fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> Value {
     let is_full = case.hints == Hints::Full;
-    let close_ups: &[CloseUp] = if is_full { &evidence.close_ups } else { &[] };
+    let inspected: &[InspectedStep] = if is_full { &evidence.inspected } else { &[] };
     let Scene { particles, edges, half_planes, .. } = case.scene;
     let Tags { integrator, collision, forces } = Tags::of(case.scene);
     let strip: String = evidence.steps.iter().map(|step| step.class.letter()).collect();
-    let calls = close_ups.iter().flat_map(|up| {
+    let calls = inspected.iter().flat_map(|up| {
         up.calls.iter().map(|call| {
             let zeros: Vec<f64> = match &call.study {
                 Ok(study) => study.curves.iter().flat_map(|curve| curve.real_zeros()).collect(),
@@ -72,7 +72,7 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
         "planes": half_planes.iter()
             .map(|plane| [plane.point.x, plane.point.y, plane.normal.x, plane.normal.y]).collect::<Vec<_>>(),
         "strip": strip,
-        "closeUps": close_ups.iter().map(|up| close_up(up, evidence)).collect::<Vec<_>>(),
+        "closeUps": inspected.iter().map(|up| inspected_step(up, evidence)).collect::<Vec<_>>(),
         "calls": calls.collect::<Vec<_>>(),
         "whatIf": case.what_if.filter(|_| is_full).map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),
     })
@@ -103,7 +103,7 @@ impl Tags {
     }
 }
 
-fn close_up(up: &CloseUp, evidence: &Evidence) -> Value {
+fn inspected_step(up: &InspectedStep, evidence: &Evidence) -> Value {
     let step = (up.step as usize).checked_sub(1).and_then(|place| evidence.steps.get(place));
     json!({
         "step": up.step,
@@ -128,7 +128,7 @@ fn state(state: &State) -> Vec<f64> {
     state.positions.iter().chain(&state.velocities).copied().collect()
 }
 
-fn pass(up: &PassUp) -> Value {
+fn pass(up: &InspectedPass) -> Value {
     json!({
         "name": PassWords(up.pass).to_string(),
         "q": up.q_end,

@@ -22,7 +22,7 @@ const OUTPUT: usize = 2_000;
 
 /// Whom a page is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Reader {
+pub enum Audience {
     /// Staff: every group is on it, with the word who sees it.
     #[default]
     Staff,
@@ -32,7 +32,7 @@ pub enum Reader {
 
 /// One submission's grade with what was drawn of its traces.
 #[derive(Clone, Copy)]
-pub struct Graded<'a> {
+pub struct GradePage<'a> {
     /// The grade.
     pub grade: &'a Grade,
     /// The card of a scene, where one was drawn.
@@ -40,7 +40,7 @@ pub struct Graded<'a> {
     /// The address of the class's page, seen from this one.
     pub class: Option<&'a str>,
     /// Whom it is for.
-    pub reader: Reader,
+    pub reader: Audience,
 }
 
 /// A grade with nothing in it but what students see at once: points and verdict are those of the groups that are left.
@@ -56,12 +56,12 @@ fn for_student(grade: &Grade) -> Grade {
     }
 }
 
-impl Graded<'_> {
+impl GradePage<'_> {
     /// The file.
     #[must_use]
     pub fn html(&self) -> String {
         let shown = match self.reader {
-            Reader::Student if self.grade.groups.iter().any(|group| group.visibility != Visibility::Visible) => {
+            Audience::Student if self.grade.groups.iter().any(|group| group.visibility != Visibility::Visible) => {
                 Some(for_student(self.grade))
             }
             _ => None,
@@ -115,7 +115,7 @@ impl Graded<'_> {
         } else if let Some(unfit) = words::unfit(grade) {
             let _ = writeln!(out, "<p>{}</p>", text(&unfit));
         }
-        if self.reader == Reader::Student && grade.groups.len() < self.grade.groups.len() {
+        if self.reader == Audience::Student && grade.groups.len() < self.grade.groups.len() {
             out += "<p class=\"hint\">Points, verdict and likely mistakes are those of the groups on this page. The grade has \
                     others, too.</p>\n";
         }
@@ -220,8 +220,8 @@ fn is_told(scene: &SceneGrade) -> bool {
     scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
 
-fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: Reader) -> String {
-    let who = if reader == Reader::Staff { "<th scope=\"col\">who sees it</th>" } else { "" };
+fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: Audience) -> String {
+    let who = if reader == Audience::Staff { "<th scope=\"col\">who sees it</th>" } else { "" };
     let mut out = format!(
         "<h2>Groups</h2>\n<table><thead><tr><th scope=\"col\">group</th><th scope=\"col\">verdict</th>\
          <th scope=\"col\">points</th><th scope=\"col\">scenes accepted</th><th scope=\"col\">to look at</th>{who}</tr></thead>\
@@ -231,7 +231,7 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: R
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
         let first = told.iter().find(|(scene, _)| is_here(scene)).map_or_else(String::new, |(scene, _)| link(scene));
         let who = match group.visibility {
-            _ if reader == Reader::Student => String::new(),
+            _ if reader == Audience::Student => String::new(),
             Visibility::Visible => "<td>everybody</td>".to_owned(),
             Visibility::Hidden => "<td>staff</td>".to_owned(),
             Visibility::AfterDueDate => "<td>students after the due date</td>".to_owned(),

@@ -19,9 +19,9 @@ mod strip;
 mod tests;
 
 pub use card::Card;
-pub use class::Class;
+pub use class::ClassPage;
 pub use explained::{Explained, ExplainedCase};
-pub use graded::{Graded, Reader};
+pub use graded::{Audience, GradePage};
 
 use super::check::Check;
 use fosssim_evidence::{Evidence, Track};

@@ -93,7 +93,7 @@ fn exact(evidence: &Evidence) -> Vec<usize> {
     let room = KEPT / (4 * layout.particles).max(1);
     let per_step = layout.records_per_step() as usize;
     let mut records = Vec::new();
-    for up in evidence.close_ups.iter().filter(|up| up.step > window.first && up.step <= window.last) {
+    for up in evidence.inspected.iter().filter(|up| up.step > window.first && up.step <= window.last) {
         let end = (up.step - window.first) as usize * per_step;
         records.extend((end - per_step..=end).filter(|record| !records.contains(record)).collect::<Vec<_>>());
     }
@@ -138,8 +138,8 @@ mod tests {
         let layout = Layout { particles, impulses: false, polynomials: false, steps };
         let records = steps as usize + 1;
         let track = Track { values: (0..4 * particles * records).map(value).collect(), records };
-        let (window, close_ups) = (Window { first: 0, last: steps }, Vec::new());
-        Evidence { layout, window, reference: track.clone(), submission: track, steps: Vec::new(), close_ups }
+        let (window, inspected) = (Window { first: 0, last: steps }, Vec::new());
+        Evidence { layout, window, reference: track.clone(), submission: track, steps: Vec::new(), inspected }
     }
 
     fn packed(evidence: &Evidence, precision: Precision) -> Packed {

@@ -1,5 +1,5 @@
 //! All steps in a row: right, wrong by itself, wrong as a consequence. Heights tell them apart without colour.
-use fosssim_evidence::{Class, Step};
+use fosssim_evidence::{Step, StepClass};
 use std::fmt::Write;
 
 /// The strip's size.
@@ -10,13 +10,13 @@ const COLUMNS: usize = 480;
 
 /// The strip, with its counts in words.
 pub(super) fn html(steps: &[Step]) -> String {
-    let of = |class: Class| steps.iter().filter(|step| step.class == class).count();
+    let of = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
     let words = format!(
         "{} right, {} wrong by themselves, {} right but starting from where a wrong step has led{}",
-        of(Class::Right),
-        of(Class::Wrong),
-        of(Class::Inherited),
-        match of(Class::Unknown) {
+        of(StepClass::Right),
+        of(StepClass::Wrong),
+        of(StepClass::Inherited),
+        match of(StepClass::Unknown) {
             0 => String::new(),
             unknown => format!(", {unknown} not judged"),
         }
@@ -28,7 +28,7 @@ pub(super) fn html(steps: &[Step]) -> String {
     let columns = steps.len().min(COLUMNS);
     let worst = |column: usize| {
         let range = column * steps.len() / columns..(column + 1) * steps.len() / columns;
-        steps[range].iter().map(|step| step.class).max_by_key(|class| severity(*class)).unwrap_or(Class::Unknown)
+        steps[range].iter().map(|step| step.class).max_by_key(|class| severity(*class)).unwrap_or(StepClass::Unknown)
     };
     let mut column = 0;
     while column < columns {
@@ -48,12 +48,12 @@ pub(super) fn html(steps: &[Step]) -> String {
     out + "</svg>\n"
 }
 
-const fn severity(class: Class) -> usize {
+const fn severity(class: StepClass) -> usize {
     match class {
-        Class::Unknown => 0,
-        Class::Right => 1,
-        Class::Inherited => 2,
-        Class::Wrong => 3,
+        StepClass::Unknown => 0,
+        StepClass::Right => 1,
+        StepClass::Inherited => 2,
+        StepClass::Wrong => 3,
     }
 }
 
@@ -64,8 +64,8 @@ mod tests {
     #[test]
     fn a_strip_shows_every_wrong_step_however_long_it_is() {
         let step = |class| Step { class, position: 0.0, velocity: 0.0, expected_passes: 1, actual_passes: Some(1) };
-        let mut steps = vec![step(Class::Right); 100_000];
-        steps[77_777] = step(Class::Wrong);
+        let mut steps = vec![step(StepClass::Right); 100_000];
+        steps[77_777] = step(StepClass::Wrong);
         let html = html(&steps);
         assert!(html.len() < 1500 && html.matches("is-w").count() == 1, "{html}");
         assert!(html.contains("99999 right, 1 wrong by themselves, 0 right but"), "{html}");

@@ -163,7 +163,7 @@ fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
         shows_output: true,
         ..crate::grade::samples::good()
     };
-    Graded { grade: &grade, card: &|_| card.cloned(), class: None, reader: Reader::Staff }.html()
+    GradePage { grade: &grade, card: &|_| card.cloned(), class: None, reader: Audience::Staff }.html()
 }
 
 fn graded(scene: &Scene, id: &str, hints: Hints) -> String {
@@ -271,7 +271,7 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
         verdict: Verdict::RuntimeError,
         ..crate::grade::samples::good()
     };
-    let html = Graded { grade: &grade, card: &card, class: None, reader: Reader::Staff }.html();
+    let html = GradePage { grade: &grade, card: &card, class: None, reader: Audience::Staff }.html();
     let articles: Vec<&str> = html.split("<article ").skip(1).collect();
     let order = [small, "Group/crash", large];
     for (number, (article, scene)) in articles.iter().zip(order).enumerate() {
@@ -317,8 +317,8 @@ fn a_student_s_page_has_no_hidden_group() {
         shows_output: true,
         ..crate::grade::samples::good()
     };
-    let page = |reader| Graded { grade: &grade, card: &|_| card.clone(), class: None, reader }.html();
-    let (staff, student) = (page(Reader::Staff), page(Reader::Student));
+    let page = |reader| GradePage { grade: &grade, card: &|_| card.clone(), class: None, reader }.html();
+    let (staff, student) = (page(Audience::Staff), page(Audience::Student));
     let mistake = student::find("pe-linear-one-ab").expect("a mistake").what;
     for hidden in ["Veiled", "Later", "secret", "Secret/", mistake, "of 37", "of 13", "RUN-TIME", "who sees it"] {
         assert!(staff.contains(hidden), "{hidden} is not even on the page for staff");

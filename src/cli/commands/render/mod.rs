@@ -10,7 +10,7 @@ use crate::{
         pictures::{Render, RenderFormat},
     },
     render::{
-        Extent, Options, Painter, Raster, Size,
+        Extent, Painter, PictureOptions, Raster, Size,
         film::{Apng, Gif, Rate, png},
         number::short,
         shape::Shape,
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
         .flatten()
         .filter_map(|motion| Some(format!("{} ends early: {}\n", motion.name, motion.stopped.as_ref()?)))
         .collect();
-    let options = Options { size: arguments.size, label: !arguments.no_label };
+    let options = PictureOptions { size: arguments.size, label: !arguments.no_label };
     let mut reel = Reel::new(&scene.scene, main, overlay, options, picks);
     let to_stdout = matches!(target, Target::Stream(_)) && arguments.output == Path::new("-");
     let place = input::shown(&arguments.output);
@@ -183,7 +183,7 @@ struct Reel {
 }
 
 impl Reel {
-    fn new(scene: &Scene, main: Motion, overlay: Option<Motion>, options: Options, picks: Picks) -> Self {
+    fn new(scene: &Scene, main: Motion, overlay: Option<Motion>, options: PictureOptions, picks: Picks) -> Self {
         let mut extent = main.extent;
         if let Some(overlay) = &overlay {
             extent.join(&overlay.extent);

@@ -1,5 +1,5 @@
 //! One pair in one step, from a given state: what the reference asks of it, and what a trace has logged for that.
-use crate::close_up::{CloseUp, Watch, Which};
+use crate::inspected_step::{InspectedStep, Inspector, WantedCalls};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Pair, RootSearch, Simulation, State, StepError},
@@ -17,9 +17,9 @@ pub struct Records<'a> {
 
 /// A pair in a step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Look {
+pub struct InspectedPair {
     /// The step; its calls are those of the pair, pass by pass.
-    pub close_up: CloseUp,
+    pub step: InspectedStep,
     /// Where the step ended.
     pub end: State,
     /// Why it has no result.
@@ -28,18 +28,18 @@ pub struct Look {
 
 /// Looks at all detection calls of a pair in a step that starts from `before`; without `records` as the reference goes on.
 #[must_use]
-pub fn look(scene: &Scene, step: u32, before: &State, records: Option<Records<'_>>, pair: Pair) -> Look {
+pub fn inspect(scene: &Scene, step: u32, before: &State, records: Option<Records<'_>>, pair: Pair) -> InspectedPair {
     let none = PolynomialLog::default();
     let mid = records.and_then(|records| records.mid).filter(|_| matches!(scene.collision, Collision::Hybrid { .. }));
     let log = records.map_or(&none, |records| records.polynomials);
-    let wanted = [(Which::Every, pair)];
-    let mut watch = Watch::new(scene, step, mid, (log, log.len()), &wanted);
+    let wanted = [(WantedCalls::Every, pair)];
+    let mut watch = Inspector::new(scene, step, mid, (log, log.len()), &wanted);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     simulation.state_mut().clone_from(before);
     simulation.set_steps_done(step - 1);
     let failed = simulation.step(&mut watch).err();
-    let mut close_up = watch.finish();
+    let mut step = watch.finish();
     // What else is wrong in the step is not asked for.
-    close_up.calls.retain(|call| call.pair == pair);
-    Look { close_up, end: simulation.state().clone(), failed }
+    step.calls.retain(|call| call.pair == pair);
+    InspectedPair { step, end: simulation.state().clone(), failed }
 }

@@ -19,7 +19,7 @@ const SHOWN: usize = 2;
 
 /// A detection pass of the reference.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PassUp {
+pub struct InspectedPass {
     /// The pass.
     pub pass: Pass,
     /// Positions at the end of the step as the pass sees them.
@@ -40,7 +40,7 @@ pub struct PassUp {
 
 /// Impact zones after one merge.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Zones {
+pub struct MergedZones {
     /// The geometric round; 0 before the first failsafe.
     pub round: u32,
     /// The particles of each zone, and whether a half-plane is part of it.
@@ -60,7 +60,7 @@ pub enum Logged {
 
 /// A detection call that is looked at.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Call {
+pub struct InspectedCall {
     /// The pass.
     pub pass: Pass,
     /// The pair.
@@ -75,7 +75,7 @@ pub struct Call {
 
 /// One step looked at closely.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CloseUp {
+pub struct InspectedStep {
     /// The step, from 1.
     pub step: u32,
     /// What the mid record should hold, given the state that the step starts from.
@@ -83,7 +83,7 @@ pub struct CloseUp {
     /// What the end record should hold, given the trace's own mid record; `None` where the step has no result.
     pub expected_end: Option<State>,
     /// The reference's detection passes, the first ones.
-    pub passes: Vec<PassUp>,
+    pub passes: Vec<InspectedPass>,
     /// How many passes the reference makes.
     pub expected_passes: usize,
     /// How many polynomials the reference logs.
@@ -97,14 +97,14 @@ pub struct CloseUp {
     /// The impulse list of the trace.
     pub actual_contacts: Vec<LoggedImpulse>,
     /// Impact zones.
-    pub zones: Vec<Zones>,
+    pub zones: Vec<MergedZones>,
     /// The calls that findings are about, and some that are wrong or missing.
-    pub calls: Vec<Call>,
+    pub calls: Vec<InspectedCall>,
 }
 
 /// Which calls of a pair are wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Which {
+pub(crate) enum WantedCalls {
     /// Those that end in a collision.
     Hits,
     /// That of this pass.
@@ -125,12 +125,12 @@ struct Asked {
 }
 
 /// Listens to one step of the reference.
-pub(crate) struct Watch<'a> {
+pub(crate) struct Inspector<'a> {
     scene: &'a Scene,
     /// The trace's mid record, which the step goes on with, and its polynomials.
     mid: Option<&'a State>,
     log: Option<&'a PolynomialLog>,
-    wanted: &'a [(Which, Pair)],
+    wanted: &'a [(WantedCalls, Pair)],
     pass: Option<Pass>,
     /// The calls and their polynomials; none beyond [`CALLS`].
     asked: Vec<Asked>,
@@ -139,19 +139,19 @@ pub(crate) struct Watch<'a> {
     places: Vec<(usize, usize)>,
     /// All calls so far.
     calls: usize,
-    pub(crate) close_up: CloseUp,
+    pub(crate) step: InspectedStep,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> Inspector<'a> {
     /// Nothing seen yet. `log` is what the trace has logged in the step, of `logged` polynomials the first ones.
     pub(crate) fn new(
         scene: &'a Scene,
         step: u32,
         mid: Option<&'a State>,
         (log, logged): (&'a PolynomialLog, usize),
-        wanted: &'a [(Which, Pair)],
+        wanted: &'a [(WantedCalls, Pair)],
     ) -> Self {
-        let close_up = CloseUp {
+        let step = InspectedStep {
             step,
             expected_mid: None,
             expected_end: None,
@@ -168,7 +168,7 @@ impl<'a> Watch<'a> {
         // What is not kept of a list can't be told from what is not there.
         let log = (log.len() == logged && logged > 0).then_some(log);
         let (asked, right) = (Vec::new(), PolynomialLog::default());
-        Self { scene, mid, log, wanted, pass: None, asked, right, places: Vec::new(), calls: 0, close_up }
+        Self { scene, mid, log, wanted, pass: None, asked, right, places: Vec::new(), calls: 0, step }
     }
 
     fn most_passes(&self) -> usize {
@@ -176,11 +176,11 @@ impl<'a> Watch<'a> {
     }
 
     /// What was seen, with what the trace has logged for it.
-    pub(crate) fn finish(mut self) -> CloseUp {
-        let (expected, actual) = (self.close_up.expected_polynomials, self.close_up.actual_polynomials);
+    pub(crate) fn finish(mut self) -> InspectedStep {
+        let (expected, actual) = (self.step.expected_polynomials, self.step.actual_polynomials);
         if expected == actual {
-            self.close_up.surplus = Some(0);
-            for (call, &(_, first)) in self.close_up.calls.iter_mut().zip(&self.places) {
+            self.step.surplus = Some(0);
+            for (call, &(_, first)) in self.step.calls.iter_mut().zip(&self.places) {
                 call.logged = by_order(self.log, expected, first, call.polynomials);
             }
         } else if self.calls == self.asked.len() {
@@ -192,7 +192,7 @@ impl<'a> Watch<'a> {
             }
         }
         self.show_more();
-        self.close_up
+        self.step
     }
 
     /// Tells which polynomials of a list of another length belong to which call.
@@ -200,7 +200,7 @@ impl<'a> Watch<'a> {
         let Some(found) = matching(&self.right, log) else { return };
         let mut is_claimed = vec![false; log.len()];
         found.iter().flatten().for_each(|&place| is_claimed[place] = true);
-        for pass in &mut self.close_up.passes {
+        for pass in &mut self.step.passes {
             pass.differing.clear();
             pass.is_logged = true;
         }
@@ -214,7 +214,7 @@ impl<'a> Watch<'a> {
                     of_call.iter().map(|place| place.map_or_else(Vec::new, |at| log.get(at).to_vec())).collect(),
                 )
             };
-            if let Some(pass) = self.close_up.passes.get_mut(asked.number) {
+            if let Some(pass) = self.step.passes.get_mut(asked.number) {
                 let is_wrong = |list: &[Vec<f64>]| {
                     list.iter()
                         .zip(asked.first..)
@@ -229,11 +229,11 @@ impl<'a> Watch<'a> {
             }
             fates.push(fate);
         }
-        for (call, &(number, _)) in self.close_up.calls.iter_mut().zip(&self.places) {
+        for (call, &(number, _)) in self.step.calls.iter_mut().zip(&self.places) {
             call.logged = fates[number].clone();
         }
         let mut surplus = is_claimed.iter().filter(|claimed| !**claimed).count();
-        self.close_up.surplus = Some(surplus);
+        self.step.surplus = Some(surplus);
         // What stands for no call may be one that was made twice: then it follows or precedes the polynomials of its pass.
         let mut place = 0;
         while place < log.len() && surplus > 0 {
@@ -253,7 +253,7 @@ impl<'a> Watch<'a> {
             let number = number.map_or(0, |asked| asked.number);
             match self.asked.iter().filter(|asked| asked.number == number).find(again) {
                 Some(asked) => {
-                    if let Some(pass) = self.close_up.passes.get_mut(number) {
+                    if let Some(pass) = self.step.passes.get_mut(number) {
                         keep(&mut pass.repeated, asked.pair);
                     }
                     place += asked.count;
@@ -267,27 +267,27 @@ impl<'a> Watch<'a> {
     /// Looks at calls that are wrong or missing although no finding names them.
     fn show_more(&mut self) {
         let Some(pass) =
-            self.close_up.passes.iter().position(|pass| !(pass.differing.is_empty() && pass.missing.is_empty()))
+            self.step.passes.iter().position(|pass| !(pass.differing.is_empty() && pass.missing.is_empty()))
         else {
             return;
         };
-        let up = &self.close_up.passes[pass];
+        let up = &self.step.passes[pass];
         let wrong: Vec<Pair> = [up.missing.first(), up.differing.first()].into_iter().flatten().copied().collect();
         for pair in wrong.into_iter().take(SHOWN) {
-            let is_shown = |call: &Call| call.pair == pair && call.pass == self.close_up.passes[pass].pass;
-            if self.close_up.calls.len() >= SHOWN || self.close_up.calls.iter().any(is_shown) {
+            let is_shown = |call: &InspectedCall| call.pair == pair && call.pass == self.step.passes[pass].pass;
+            if self.step.calls.len() >= SHOWN || self.step.calls.iter().any(is_shown) {
                 continue;
             }
             let Some(asked) = self.asked.iter().find(|asked| asked.number == pass && asked.pair == pair) else {
                 continue;
             };
-            let logged = if self.close_up.passes[pass].missing.contains(&pair) {
+            let logged = if self.step.passes[pass].missing.contains(&pair) {
                 Logged::Nothing
             } else {
-                by_order(self.log, self.close_up.expected_polynomials, asked.first, asked.count)
+                by_order(self.log, self.step.expected_polynomials, asked.first, asked.count)
             };
             let (pass, polynomials) = (asked.pass, asked.count);
-            self.close_up.calls.push(Call { pass, pair, study: Study::of(&asked.motion), polynomials, logged });
+            self.step.calls.push(InspectedCall { pass, pair, study: Study::of(&asked.motion), polynomials, logged });
         }
     }
 }
@@ -308,22 +308,31 @@ fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
     }
 }
 
-impl Observer for Watch<'_> {
+impl Observer for Inspector<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.pass = Some(pass);
-        self.close_up.expected_passes += 1;
-        if self.close_up.passes.len() < self.most_passes() {
+        self.step.expected_passes += 1;
+        if self.step.passes.len() < self.most_passes() {
             let is_logged = self.log.is_some();
             let q_end = Vec::new();
             let (hits, differing, missing, repeated) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-            self.close_up.passes.push(PassUp { pass, q_end, calls: 0, hits, differing, missing, repeated, is_logged });
+            self.step.passes.push(InspectedPass {
+                pass,
+                q_end,
+                calls: 0,
+                hits,
+                differing,
+                missing,
+                repeated,
+                is_logged,
+            });
         }
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
         let Some(pass) = self.pass else { return };
-        let (first, count) = (self.close_up.expected_polynomials, detection.polynomials.len());
-        self.close_up.expected_polynomials += count;
+        let (first, count) = (self.step.expected_polynomials, detection.polynomials.len());
+        self.step.expected_polynomials += count;
         self.calls += 1;
         let Detection { pair, q_start, q_end, decision, .. } = *detection;
         let motion = || PairMotion::between(self.scene, pair, q_start, q_end);
@@ -331,19 +340,19 @@ impl Observer for Watch<'_> {
         let wanted = self.wanted.iter().any(|(which, one)| {
             *one == pair
                 && match which {
-                    Which::Hits => is_hit,
-                    Which::In(one) => *one == pass,
-                    Which::Every => true,
+                    WantedCalls::Hits => is_hit,
+                    WantedCalls::In(one) => *one == pass,
+                    WantedCalls::Every => true,
                 }
         });
         if wanted {
             let study = Study::of(&motion());
             // Only the whole step tells whether the list is as long as the reference's.
-            self.close_up.calls.push(Call { pass, pair, study, polynomials: count, logged: Logged::Unknown });
+            self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: Logged::Unknown });
             self.places.push((self.calls - 1, first));
         }
         if self.asked.len() < CALLS {
-            let number = self.close_up.expected_passes - 1;
+            let number = self.step.expected_passes - 1;
             self.asked.push(Asked { pass, number, pair, motion: motion(), first, count });
             detection.polynomials.iter().for_each(|polynomial| self.right.push(polynomial.coefficients()));
         }
@@ -351,7 +360,7 @@ impl Observer for Watch<'_> {
         let differs = logged.is_some_and(|log| {
             (first..).zip(detection.polynomials).any(|(at, right)| differ(log.get(at), right.coefficients()))
         });
-        if let Some(up) = self.close_up.passes.last_mut().filter(|up| up.pass == pass) {
+        if let Some(up) = self.step.passes.last_mut().filter(|up| up.pass == pass) {
             if up.calls == 0 {
                 up.q_end = q_end.to_vec();
             }
@@ -367,11 +376,11 @@ impl Observer for Watch<'_> {
     }
 
     fn impulse(&mut self, impulse: &Impulse) {
-        self.close_up.expected_contacts.push(*impulse);
+        self.step.expected_contacts.push(*impulse);
     }
 
     fn synchronise(&mut self, state: &mut State) -> Resume {
-        self.close_up.expected_mid = Some(state.clone());
+        self.step.expected_mid = Some(state.clone());
         match self.mid {
             Some(mid) if mid.positions.len() == state.positions.len() => {
                 state.clone_from(mid);
@@ -383,10 +392,10 @@ impl Observer for Watch<'_> {
 
     fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
         let zones = zones.iter().map(|zone| (zone.particles.to_vec(), zone.half_plane)).collect();
-        self.close_up.zones.push(Zones { round, zones });
+        self.step.zones.push(MergedZones { round, zones });
     }
 
     fn end_step(&mut self, _step: u32, state: &State) {
-        self.close_up.expected_end = Some(state.clone());
+        self.step.expected_end = Some(state.clone());
     }
 }
