@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fosssim_oracle::sandbox::selftest::{self, PromiseTable, Verdict};
+use fosssim_oracle::sandbox::selftest::{self, PromiseState, PromiseTable};
 use fosssim_oracle::sandbox::{Backend, Layer};
 use fosssim_testing::{Need, skip};
 
@@ -17,9 +17,9 @@ fn attacked(backend: &Backend) -> Option<PromiseTable> {
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("attacks");
     std::fs::create_dir_all(&folder).unwrap();
-    let table = selftest::run(backend, cc, &folder, |promise| match &promise.verdict {
-        Verdict::Held => {}
-        verdict => eprintln!("{}: {verdict:?}", promise.attack),
+    let table = selftest::run(backend, cc, &folder, |promise| match &promise.state {
+        PromiseState::Held => {}
+        state => eprintln!("{}: {state:?}", promise.attack),
     });
     Some(table.unwrap())
 }
@@ -29,7 +29,7 @@ fn assert_all_held(table: &PromiseTable, at_least: usize) {
     assert!(broken.is_empty(), "broken promises: {broken:?}");
     let fault = |why: &str| why.contains("test itself") || why.contains("compile");
     let faults =
-        table.promises.iter().filter(|promise| matches!(&promise.verdict, Verdict::NotTested(why) if fault(why)));
+        table.promises.iter().filter(|promise| matches!(&promise.state, PromiseState::NotTested(why) if fault(why)));
     assert_eq!(faults.count(), 0);
     assert!(table.held() >= at_least, "only {} promises were tried", table.held());
 }

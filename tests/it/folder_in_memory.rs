@@ -1,6 +1,6 @@
 //! A working folder that lies in memory: what the kernel limits there, and what the grader gets of it.
 use crate::sandbox::{backend, small};
-use fosssim_oracle::sandbox::{Backend, Ended, Job, Layer, Limits, Outcome, Policy, collect::Folder};
+use fosssim_oracle::sandbox::{Backend, Ended, Job, Layer, Limits, Policy, RunOutcome, collect::OpenFolder};
 use fosssim_testing::{Need, skip};
 use std::io::Read;
 use std::path::Path;
@@ -21,11 +21,11 @@ fn with_namespaces() -> Option<&'static Backend> {
     active.then_some(backend)
 }
 
-fn run(backend: &Backend, job: &Job) -> (Outcome, Option<Folder>) {
+fn run(backend: &Backend, job: &Job) -> (RunOutcome, Option<OpenFolder>) {
     backend.start(job).unwrap().wait_with_folder().unwrap()
 }
 
-fn text(folder: &Folder, name: &str) -> String {
+fn text(folder: &OpenFolder, name: &str) -> String {
     let mut text = String::new();
     folder.regular_file(name, 1000).unwrap().0.read_to_string(&mut text).unwrap();
     text

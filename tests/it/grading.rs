@@ -416,7 +416,7 @@ fn two_graders_do_not_share_a_folder() {
     let Some(workspace) = workspace() else { return };
     submit(&workspace, &[""]);
     std::fs::create_dir(workspace.path("out")).expect("a folder");
-    let _held = fosssim_oracle::suite::results::Folder::open(&workspace.path("out"), false).expect("a journal");
+    let _held = fosssim_oracle::suite::results::FolderResults::open(&workspace.path("out"), false).expect("a journal");
     let run = workspace.run(["grade", "submissions/fosssim-sample", "--suite", "suite.toml", "--output", "out"]);
     assert_eq!(run.code, Some(2), "{}", run.shown());
     assert!(run.err().contains("another grader works in out"), "{}", run.shown());

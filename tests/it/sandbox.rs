@@ -14,7 +14,7 @@ use std::time::Duration;
 use fosssim_testing::{Need, skip};
 
 use fosssim_oracle::sandbox::{
-    Backend, Ended, Job, Layer, Limits, Outcome, Policy, StartProblem, Stream, Supervisor, TraceTooLong, collect,
+    Backend, Ended, Job, Layer, Limits, Policy, RunOutcome, StartProblem, Stream, Supervisor, TraceTooLong, collect,
 };
 
 /// The sandbox under the real binary; tests without the required walls are skipped with a line.
@@ -54,11 +54,11 @@ impl Bench {
         Job::new(program, self.folder.path()).arguments(arguments.iter().map(OsString::from)).limits(small())
     }
 
-    fn run(&self, program: impl Into<PathBuf>, arguments: &[&str]) -> Outcome {
+    fn run(&self, program: impl Into<PathBuf>, arguments: &[&str]) -> RunOutcome {
         self.finish(&self.job(program, arguments))
     }
 
-    fn finish(&self, job: &Job) -> Outcome {
+    fn finish(&self, job: &Job) -> RunOutcome {
         self.backend.start(job).unwrap().wait().unwrap()
     }
 

@@ -4,7 +4,7 @@
 //! clean exit does not excuse a wrong trace.
 use super::{
     config::{Hints, RunLimits},
-    result::{BadTrace, Limit, Reached, Reason, SceneResult, Wrong},
+    result::{BadTrace, Limit, ReachedLimit, Reason, SceneResult, Wrong},
     verdict::Verdict,
 };
 use fosssim_judge::{
@@ -22,7 +22,7 @@ pub struct Run<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// How the program ended.
-    pub program: &'a sandbox::Outcome,
+    pub program: &'a sandbox::RunOutcome,
     /// What its trace holds.
     pub judged: &'a Outcome,
     /// Bytes of the trace that arrived.
@@ -87,14 +87,14 @@ fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
 }
 
 /// The limit that a program was stopped at, and how far its trace had come.
-fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Option<Reached> {
+fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Option<ReachedLimit> {
     let limit = match ended {
         Ended::CpuLimit => Limit::Time(limits.cpu),
         Ended::WallLimit => Limit::Time(limits.wall),
         Ended::MemoryLimit => Limit::Memory(limits.memory),
         _ => return None,
     };
-    Some(Reached { limit, steps: judged.steps_judged })
+    Some(ReachedLimit { limit, steps: judged.steps_judged })
 }
 
 /// What the trace alone says.

@@ -6,7 +6,7 @@ use super::{
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
-    result::{Doing, Failure, Reason, SceneResult},
+    result::{Activity, Failure, Reason, SceneResult},
     staging::Staged,
     task::SceneTask,
     temporary::Temporary,
@@ -105,7 +105,7 @@ impl Runner<'_> {
             Some(inner) => {
                 let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep: KEPT_TRACE };
                 let judged = guarded(|| {
-                    fault::injected(Doing::Judging, &program.program);
+                    fault::injected(Activity::Judging, &program.program);
                     self.judge(task, &mut trace, &options, &mut rulings)
                 });
                 // What the judge did not want is read all the same, within the limit: a program must not die of our
@@ -119,7 +119,7 @@ impl Runner<'_> {
         let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, &kept);
         let judged = match judged {
             Ok(judged) => judged?,
-            Err(fault) => return Ok(failed(Doing::Judging, &fault)),
+            Err(fault) => return Ok(failed(Activity::Judging, &fault)),
         };
         let run = Run {
             scene: &task.name,
@@ -133,15 +133,15 @@ impl Runner<'_> {
         let result = guarded(|| conclude(&run));
         let result = match result {
             Ok(result) => result,
-            Err(fault) => return Ok(failed(Doing::Judging, &fault)),
+            Err(fault) => return Ok(failed(Activity::Judging, &fault)),
         };
         let explained = guarded(|| {
-            fault::injected(Doing::Explaining, &program.program);
+            fault::injected(Activity::Explaining, &program.program);
             self.hints.cut(explain(&result, self.rules, task, &kept))
         });
         let result = match explained {
             Ok(explanations) => SceneResult { explanations, ..result },
-            Err(fault) => return Ok(failed(Doing::Explaining, &fault)),
+            Err(fault) => return Ok(failed(Activity::Explaining, &fault)),
         };
         let mut result = result;
         if let Some(cards) = self.cards
@@ -160,7 +160,7 @@ impl Runner<'_> {
             };
             match guarded(|| cards.keep(&judged)) {
                 Ok(card) => result.card = card.map_err(ExecuteError::Folder)?,
-                Err(fault) => return Ok(failed(Doing::Reporting, &fault)),
+                Err(fault) => return Ok(failed(Activity::Reporting, &fault)),
             }
         }
         if let Some(path) = self.traces.map(|path| path(task))
@@ -170,7 +170,7 @@ impl Runner<'_> {
         }
         match guarded(|| (self.rehearse)(&result)) {
             Ok(()) => Ok(result),
-            Err(fault) => Ok(failed(Doing::Reporting, &fault)),
+            Err(fault) => Ok(failed(Activity::Reporting, &fault)),
         }
     }
 
@@ -183,7 +183,7 @@ impl Runner<'_> {
         program: &Path,
         task: &SceneTask,
         keep: usize,
-    ) -> Result<(Vec<u8>, sandbox::Outcome), String> {
+    ) -> Result<(Vec<u8>, sandbox::RunOutcome), String> {
         let (mut running, _folder) = self.start(program, None, task).map_err(|error| error.to_string())?;
         let _registered = self.cancellation.register(running.canceller());
         let (bytes, mut kept) = (AtomicU64::new(0), Vec::new());

@@ -1,7 +1,7 @@
 //! What becomes of a scene on which the grader itself failed: a judge error, and its trace put aside for whoever mends it.
 use super::{
     guard::Fault,
-    result::{Doing, Failure, KeptTrace, Reason, SceneResult},
+    result::{Activity, Failure, KeptTrace, Reason, SceneResult},
     task::SceneTask,
     verdict::Verdict,
 };
@@ -11,7 +11,7 @@ use std::{
 };
 
 /// The result of a scene on which the grader failed, with the beginning of its trace.
-pub(super) fn result(task: &SceneTask, folder: &Path, stage: Doing, fault: &Fault, trace: &[u8]) -> SceneResult {
+pub(super) fn result(task: &SceneTask, folder: &Path, stage: Activity, fault: &Fault, trace: &[u8]) -> SceneResult {
     let kept = match keep(folder, task, trace) {
         Ok(path) => KeptTrace::In(path),
         Err(error) => KeptTrace::Lost { folder: folder.to_owned(), error: error.to_string() },
@@ -38,11 +38,11 @@ pub(super) fn write(path: &Path, trace: &[u8]) -> io::Result<()> {
 
 /// Lets tests have the grader fail: a program of this name makes it panic at this stage.
 #[cfg(test)]
-pub(super) fn injected(stage: Doing, program: &Path) {
+pub(super) fn injected(stage: Activity, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let word = format!("{stage:?}").to_lowercase();
     assert!(name != format!("fault-while-{word}"), "a fault of the grader's own");
 }
 
 #[cfg(not(test))]
-pub(super) const fn injected(_: Doing, _: &Path) {}
+pub(super) const fn injected(_: Activity, _: &Path) {}

@@ -11,7 +11,7 @@ use super::{
     key::Key,
     patience,
     plan::Plan,
-    result::{Failure, LeftOut, Reason, SceneResult},
+    result::{Failure, NotRunReason, Reason, SceneResult},
     results::{KeepError, Results},
     staging::{self, Staged, StagingError},
     task::SceneTask,
@@ -196,7 +196,7 @@ struct Known {
     /// Verdict and wall time of every scene that is done.
     done: Vec<Option<(Verdict, Duration)>>,
     /// The first scene that is not run any more, and why.
-    end: Option<(usize, LeftOut)>,
+    end: Option<(usize, NotRunReason)>,
 }
 
 impl<'a> Grading<'a> {
@@ -306,7 +306,7 @@ impl<'a> Grading<'a> {
     }
 
     /// Why this scene is not to be run.
-    fn left_out(&self, scene: usize) -> Option<LeftOut> {
+    fn left_out(&self, scene: usize) -> Option<NotRunReason> {
         lock(&self.known).end.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
     }
 

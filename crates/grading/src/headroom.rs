@@ -25,7 +25,7 @@ pub const FAIR_DOUBLINGS: u32 = 1;
 
 /// Where the original's rules fail the reference's own trace.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Failure {
+pub struct FirstFailure {
     /// Lengths have been doubled so many times; 0 is the scene as it is.
     pub doublings: u32,
     /// How many findings there are.
@@ -45,7 +45,7 @@ pub struct Headroom {
     /// exact copy of states passes at every size.
     pub largest: Option<f64>,
     /// The first failure up to [`MOST_DOUBLINGS`].
-    pub failure: Option<Failure>,
+    pub failure: Option<FirstFailure>,
 }
 
 impl Headroom {
@@ -84,7 +84,7 @@ pub fn headroom(scene: &Scene) -> Result<Headroom, CannotRecord> {
         let outcome = parity::judge(&scaled, &trace[..], &options, &mut ());
         if outcome.overall != Overall::Passed {
             let (findings, first) = (outcome.counts.total(), outcome.first_divergence);
-            failure = Some(Failure { doublings, findings, first });
+            failure = Some(FirstFailure { doublings, findings, first });
             break;
         }
     }

@@ -3,7 +3,7 @@
 //! Pure functions of what is known so far, in the suite's order. More knowledge can only move the end forward, so what is
 //! decided while scenes still run holds, and at the end the same scenes are left out whatever the number of jobs.
 use super::{
-    result::{LeftOut, Reason, SceneResult},
+    result::{NotRunReason, Reason, SceneResult},
     task::SceneTask,
     verdict::Verdict,
 };
@@ -26,10 +26,10 @@ impl Default for Patience {
 
 /// The result of a scene that is left out. All but the last reason are the submission's own doing, so that such a scene
 /// counts as out of time.
-pub(super) fn left_out(task: &SceneTask, why: LeftOut) -> SceneResult {
+pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
-        LeftOut::TimeOuts(_) | LeftOut::Total(_) => Verdict::TimeLimit,
-        LeftOut::FailFast => Verdict::NotRun,
+        NotRunReason::TimeOuts(_) | NotRunReason::Total(_) => Verdict::TimeLimit,
+        NotRunReason::FailFast => Verdict::NotRun,
     };
     SceneResult::without_run(&task.name, task.scene.steps(), verdict, Reason::LeftOut(why))
 }
@@ -39,11 +39,11 @@ pub(super) fn end(
     patience: &Patience,
     fail_fast: bool,
     known: &[Option<(Verdict, Duration)>],
-) -> Option<(usize, LeftOut)> {
+) -> Option<(usize, NotRunReason)> {
     let (mut late, mut total) = (0, Duration::ZERO);
     for (number, known) in known.iter().enumerate() {
         if total >= patience.total {
-            return Some((number, LeftOut::Total(patience.total)));
+            return Some((number, NotRunReason::Total(patience.total)));
         }
         let Some((verdict, wall)) = *known else {
             late = 0;
@@ -52,10 +52,10 @@ pub(super) fn end(
         total += wall;
         late = if verdict == Verdict::TimeLimit { late + 1 } else { 0 };
         if late == patience.time_outs && late > 0 {
-            return Some((number + 1, LeftOut::TimeOuts(late)));
+            return Some((number + 1, NotRunReason::TimeOuts(late)));
         }
         if fail_fast && !matches!(verdict, Verdict::Accepted | Verdict::NotRun) {
-            return Some((number + 1, LeftOut::FailFast));
+            return Some((number + 1, NotRunReason::FailFast));
         }
     }
     None
@@ -73,28 +73,28 @@ mod tests {
     #[test]
     fn scenes_in_a_row_that_run_out_of_time_are_the_end() {
         let end = |known: &[_]| end(&PATIENCE, false, known);
-        assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, LeftOut::TimeOuts(3))));
+        assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, NotRunReason::TimeOuts(3))));
         assert_eq!(end(&[LATE, LATE, FINE, LATE]), None);
         // What is not known yet is no link of the chain, and the end can only move forward.
-        assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, LeftOut::TimeOuts(3))));
-        assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, LeftOut::TimeOuts(3))));
+        assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, NotRunReason::TimeOuts(3))));
+        assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, NotRunReason::TimeOuts(3))));
         assert_eq!(super::end(&Patience { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
     }
 
     #[test]
     fn the_time_of_all_scenes_together_is_limited() {
         assert_eq!(end(&PATIENCE, false, &[FINE; 5]), None);
-        assert_eq!(end(&PATIENCE, false, &[FINE; 8]), Some((5, LeftOut::Total(PATIENCE.total))));
+        assert_eq!(end(&PATIENCE, false, &[FINE; 8]), Some((5, NotRunReason::Total(PATIENCE.total))));
         assert_eq!(
             end(&PATIENCE, false, &[FINE, None, FINE, FINE, FINE, FINE, None]),
-            Some((6, LeftOut::Total(PATIENCE.total)))
+            Some((6, NotRunReason::Total(PATIENCE.total)))
         );
     }
 
     #[test]
     fn the_first_scene_that_is_not_accepted_is_the_end_when_asked_for() {
-        assert_eq!(end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, LeftOut::FailFast)));
-        assert_eq!(end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, LeftOut::FailFast)));
+        assert_eq!(end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, NotRunReason::FailFast)));
+        assert_eq!(end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, NotRunReason::FailFast)));
         assert_eq!(end(&PATIENCE, false, &[FINE, WRONG, WRONG]), None);
     }
 }

@@ -82,9 +82,9 @@ pub enum Reason {
     /// The program wrote no trace.
     NoTrace,
     /// How the program ended ([`SceneResult::ended`]), with the limit that it ran into, if it was stopped at one.
-    Program(Option<Reached>),
+    Program(Option<ReachedLimit>),
     /// The scene was left out.
-    LeftOut(LeftOut),
+    LeftOut(NotRunReason),
     /// Grading was stopped.
     Stopped,
     /// The sources do not build.
@@ -151,7 +151,7 @@ pub enum BadTrace {
 
 /// A limit that a program was stopped at, and how far its trace had come by then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Reached {
+pub struct ReachedLimit {
     /// The limit.
     pub limit: Limit,
     /// Steps that had been judged.
@@ -169,7 +169,7 @@ pub enum Limit {
 
 /// Why a scene is not run any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum LeftOut {
+pub enum NotRunReason {
     /// So many scenes in a row ran out of time.
     TimeOuts(u32),
     /// The submission has used up its time.
@@ -188,7 +188,7 @@ pub enum Unusable {
         /// That name.
         sought: String,
         /// What is there instead.
-        found: Found,
+        found: FolderContents,
     },
     /// Its program can't be read or copied, for this reason of the operating system or of the copy.
     Unreadable(String),
@@ -196,7 +196,7 @@ pub enum Unusable {
 
 /// What a submission's folder holds where a program is missing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Found {
+pub enum FolderContents {
     /// It can't be read, for this reason of the operating system.
     Unreadable(String),
     /// It is empty.
@@ -220,7 +220,7 @@ pub enum Failure {
     /// Itself: a panic, with its words and its place in the source.
     Panic {
         /// What it was doing; nothing, where that is not known.
-        stage: Option<Doing>,
+        stage: Option<Activity>,
         /// The panic.
         fault: String,
         /// Where the trace is that it failed on.
@@ -230,7 +230,7 @@ pub enum Failure {
 
 /// What the grader was doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Doing {
+pub enum Activity {
     /// Comparing the trace with the reference.
     Judging,
     /// Looking for the likely mistake.

@@ -14,7 +14,7 @@ use super::{
 };
 use fosssim_sandbox::{
     Backend, Ended, Identity, Job, Limits, Policy, SandboxError, StartProblem,
-    collect::{self, CollectError, Entry, Folder},
+    collect::{self, CollectError, FolderEntry, OpenFolder},
     is_own,
 };
 use std::{
@@ -258,7 +258,7 @@ pub fn build(
         return Ok(failed(BuildEnd::Ended(outcome.ended), output));
     }
     // The build could have left a link to anything where the program should be.
-    let made = made.map_or_else(|| Folder::open(&copy), Ok).map_err(at(&copy))?;
+    let made = made.map_or_else(|| OpenFolder::open(&copy), Ok).map_err(at(&copy))?;
     match made.regular_file(&step.program, LARGEST_FOLDER) {
         Ok((file, _)) => {
             let build = Some(Build { end: BuildEnd::Made, output });
@@ -317,14 +317,20 @@ struct Budget {
 /// Copies a submission's folder to a new one that only we may enter.
 fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
     let mut budget = Budget { bytes: LARGEST_FOLDER, files: MOST_FILES };
-    let source = Folder::open(from).map_err(|error| unreadable(from, error))?;
+    let source = OpenFolder::open(from).map_err(|error| unreadable(from, error))?;
     fs::DirBuilder::new().mode(0o700).create(to).map_err(at(to))?;
-    let target = Folder::open(to).map_err(at(to))?;
+    let target = OpenFolder::open(to).map_err(at(to))?;
     copy_folder(&source, Path::new(""), &target, 1, &mut budget)
 }
 
 /// Copies files and folders; links and everything else stay behind. `name` is the folder's own, for messages.
-fn copy_folder(from: &Folder, name: &Path, to: &Folder, depth: u32, budget: &mut Budget) -> Result<(), CopyError> {
+fn copy_folder(
+    from: &OpenFolder,
+    name: &Path,
+    to: &OpenFolder,
+    depth: u32,
+    budget: &mut Budget,
+) -> Result<(), CopyError> {
     if depth > DEEPEST {
         let top = name.components().next().map(|part| part.as_os_str().to_string_lossy().escape_debug().to_string());
         return Err(CopyError::Submission(format!(
@@ -336,19 +342,19 @@ fn copy_folder(from: &Folder, name: &Path, to: &Folder, depth: u32, budget: &mut
         budget.files = budget.files.checked_sub(1).ok_or_else(too_large)?;
         let (inner, target) = (name.join(&entry), to.path().join(&entry));
         match from.entry(OsStr::new(&entry)) {
-            Ok(Entry::File(file)) => {
+            Ok(FolderEntry::File(file)) => {
                 let length = file.metadata().map_err(at(&inner))?.len();
                 if length > budget.bytes {
                     return Err(too_large());
                 }
                 copy_file(file, &inner, &target, &mut budget.bytes)?;
             }
-            Ok(Entry::Folder(folder)) => {
+            Ok(FolderEntry::Folder(folder)) => {
                 fs::create_dir(&target).map_err(at(&inner))?;
-                let target = Folder::open(&target).map_err(at(&inner))?;
+                let target = OpenFolder::open(&target).map_err(at(&inner))?;
                 copy_folder(&folder, &inner, &target, depth + 1, budget)?;
             }
-            Ok(Entry::Other) => {}
+            Ok(FolderEntry::Other) => {}
             Err(error) => return Err(unreadable(&inner, error)),
         }
     }

@@ -1,6 +1,6 @@
 //! What a submission's folder holds, for whoever looks for a program in it and finds none.
-use super::result::{Found, Unusable};
-use fosssim_sandbox::collect::{Entry, Folder};
+use super::result::{FolderContents, Unusable};
+use fosssim_sandbox::collect::{FolderEntry, OpenFolder};
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
 /// So many entries are named.
@@ -24,30 +24,30 @@ pub fn name(name: &OsStr) -> String {
 
 /// Why there is nothing to run: what was looked for, and what is there instead.
 pub(super) fn without(program: &str, folder: &Path) -> Unusable {
-    let found = match Folder::open(folder) {
+    let found = match OpenFolder::open(folder) {
         Ok(opened) => found(program, &opened),
-        Err(error) => Found::Unreadable(error.to_string()),
+        Err(error) => FolderContents::Unreadable(error.to_string()),
     };
     Unusable::NoProgram { sought: program.escape_debug().to_string(), found }
 }
 
-fn found(program: &str, folder: &Folder) -> Found {
+fn found(program: &str, folder: &OpenFolder) -> FolderContents {
     let mut names = folder.names().unwrap_or_default();
     names.retain(|name| !name.as_bytes().starts_with(b"."));
     names.sort();
     if names.is_empty() {
-        return Found::Nothing;
+        return FolderContents::Nothing;
     }
     let wanted = Path::new(program).file_name().unwrap_or_default();
-    Found::Others {
+    FolderContents::Others {
         names: names.iter().take(NAMED).map(|name| entry(folder, name)).collect(),
         more: names.len().saturating_sub(NAMED),
         elsewhere: deeper(folder, wanted, Path::new(""), DEEPEST, &mut LOOKED_AT.clone()).map(|path| shown_path(&path)),
     }
 }
 
-fn entry(folder: &Folder, name: &OsStr) -> String {
-    let slash = if matches!(folder.entry(name), Ok(Entry::Folder(_))) { "/" } else { "" };
+fn entry(folder: &OpenFolder, name: &OsStr) -> String {
+    let slash = if matches!(folder.entry(name), Ok(FolderEntry::Folder(_))) { "/" } else { "" };
     shown_path(Path::new(name)) + slash
 }
 
@@ -56,15 +56,15 @@ fn shown_path(path: &Path) -> String {
 }
 
 /// The path of a file of this name beneath a folder, the shallowest of each folder first.
-fn deeper(folder: &Folder, wanted: &OsStr, at: &Path, depth: u32, budget: &mut u32) -> Option<std::path::PathBuf> {
+fn deeper(folder: &OpenFolder, wanted: &OsStr, at: &Path, depth: u32, budget: &mut u32) -> Option<std::path::PathBuf> {
     let mut names = folder.names().ok()?;
     names.sort();
     let mut folders = Vec::new();
     for name in names {
         *budget = budget.checked_sub(1)?;
         match folder.entry(&name) {
-            Ok(Entry::File(_)) if name == wanted => return Some(at.join(name)),
-            Ok(Entry::Folder(inner)) => folders.push((name, inner)),
+            Ok(FolderEntry::File(_)) if name == wanted => return Some(at.join(name)),
+            Ok(FolderEntry::Folder(inner)) => folders.push((name, inner)),
             _ => {}
         }
     }
@@ -86,12 +86,12 @@ mod tests {
             Unusable::NoProgram { sought, found } if sought == "FOSSSim" => found,
             other => panic!("{other:?}"),
         };
-        let others = |names: &[&str], elsewhere: Option<&str>| Found::Others {
+        let others = |names: &[&str], elsewhere: Option<&str>| FolderContents::Others {
             names: names.iter().map(|&name| name.to_owned()).collect(),
             more: 0,
             elsewhere: elsewhere.map(str::to_owned),
         };
-        assert_eq!(found(), Found::Nothing);
+        assert_eq!(found(), FolderContents::Nothing);
         for name in ["main.cpp", "fosssim-sample", ".git"] {
             fs::write(folder.path().join(name), "").unwrap();
         }
@@ -102,10 +102,10 @@ mod tests {
         for number in 0..9 {
             fs::write(folder.path().join(format!("a{number}\n")), "").unwrap();
         }
-        let Found::Others { names, more, .. } = found() else { panic!("it holds something") };
+        let FolderContents::Others { names, more, .. } = found() else { panic!("it holds something") };
         assert_eq!((names[0].as_str(), names[1].as_str(), more), ("a0\\n", "a1\\n", 6));
         let nowhere = without("FOSSSim", Path::new("/nowhere"));
-        assert!(matches!(nowhere, Unusable::NoProgram { found: Found::Unreadable(_), .. }));
+        assert!(matches!(nowhere, Unusable::NoProgram { found: FolderContents::Unreadable(_), .. }));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::{
     table::{Align, Cell, Table},
     view::{FindingView, Number},
 };
-use fosssim_grading::headroom::{FAIR_DOUBLINGS, FAIR_ROOM, Failure, Headroom, MOST_DOUBLINGS};
+use fosssim_grading::headroom::{FAIR_DOUBLINGS, FAIR_ROOM, FirstFailure, Headroom, MOST_DOUBLINGS};
 use serde::Serialize;
 
 /// The version of the JSON's shape.
@@ -33,7 +33,7 @@ pub fn text(measured: &[Measured], style: Style) -> String {
         let fails = match (headroom.largest, headroom.failure) {
             (None, _) => "never".to_owned(),
             (_, None) => format!("> {} times", factor(MOST_DOUBLINGS)),
-            (_, Some(Failure { doublings: 0, .. })) => "its own size".to_owned(),
+            (_, Some(FirstFailure { doublings: 0, .. })) => "its own size".to_owned(),
             (_, Some(failure)) => format!("{} times", factor(failure.doublings)),
         };
         let largest = headroom.largest.map_or_else(|| "none".to_owned(), general);
@@ -113,7 +113,7 @@ impl From<&Measured> for SceneView {
             fair: headroom.is_fair(),
             fails_at_factor: failure.map(|failure| 1 << failure.doublings),
             findings: failure.map_or(0, |failure| failure.findings),
-            first: failure.and_then(|Failure { first, .. }| first.as_ref()).map(FindingView::from),
+            first: failure.and_then(|FirstFailure { first, .. }| first.as_ref()).map(FindingView::from),
         }
     }
 }
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     fn measured() -> Vec<Measured> {
-        let failure = |doublings| Some(Failure { doublings, findings: 12, first: None });
+        let failure = |doublings| Some(FirstFailure { doublings, findings: 12, first: None });
         vec![
             ("a/none".to_owned(), Headroom { largest: None, failure: None }),
             ("a/roomy".to_owned(), Headroom { largest: Some(1.5), failure: None }),

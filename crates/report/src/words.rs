@@ -2,8 +2,8 @@
 use fosssim_grading::{
     Grade, Unfit, Verdict,
     result::{
-        BadTrace, BuildEnd, Doing, Ended, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, SceneResult,
-        Unusable, Wrong,
+        Activity, BadTrace, BuildEnd, Ended, Failure, FolderContents, KeptTrace, Limit, NotRunReason, ReachedLimit,
+        Reason, SceneResult, Unusable, Wrong,
     },
     told::{ToldBook, ToldFinding, ToldPlace},
 };
@@ -141,7 +141,7 @@ fn of_bad_trace(bad: &BadTrace) -> String {
 }
 
 /// The limit at which a program was stopped, and how far its trace came.
-fn of_limit(reached: Reached, steps: u32) -> String {
+fn of_limit(reached: ReachedLimit, steps: u32) -> String {
     let limit = match reached.limit {
         Limit::Time(time) => format!("{} s", time.as_secs_f64()),
         Limit::Memory(bytes) => format!("{} MiB", bytes >> 20),
@@ -152,15 +152,15 @@ fn of_limit(reached: Reached, steps: u32) -> String {
     }
 }
 
-fn of_left_out(why: LeftOut) -> String {
+fn of_left_out(why: NotRunReason) -> String {
     match why {
-        LeftOut::TimeOuts(1) => "not run: the scene before it ran out of time".to_owned(),
-        LeftOut::TimeOuts(many) => format!("not run: {many} scenes in a row before it ran out of time"),
-        LeftOut::Total(total) => {
+        NotRunReason::TimeOuts(1) => "not run: the scene before it ran out of time".to_owned(),
+        NotRunReason::TimeOuts(many) => format!("not run: {many} scenes in a row before it ran out of time"),
+        NotRunReason::Total(total) => {
             let seconds = total.as_secs_f64();
             format!("not run: the scenes before it took {seconds} s, all that a submission has")
         }
-        LeftOut::FailFast => "not run: a scene before it is not accepted (--fail-fast)".to_owned(),
+        NotRunReason::FailFast => "not run: a scene before it is not accepted (--fail-fast)".to_owned(),
     }
 }
 
@@ -171,9 +171,9 @@ fn of_unusable(why: &Unusable) -> String {
         Unusable::NoProgram { sought, found } => {
             let sought = format!("no program called {sought} in the upload");
             match found {
-                Found::Unreadable(error) => format!("{sought}: it can't be read: {error}"),
-                Found::Nothing => format!("{sought}; it is empty"),
-                Found::Others { names, more, elsewhere } => {
+                FolderContents::Unreadable(error) => format!("{sought}: it can't be read: {error}"),
+                FolderContents::Nothing => format!("{sought}; it is empty"),
+                FolderContents::Others { names, more, elsewhere } => {
                     let more = if *more > 0 { format!(" and {more} more") } else { String::new() };
                     let elsewhere = elsewhere.as_ref().map(|path| format!("; {path} is not where it is looked for"));
                     format!("{sought}; it holds {}{more}{}", names.join(", "), elsewhere.unwrap_or_default())
@@ -189,9 +189,9 @@ fn of_failure(failure: &Failure) -> String {
         Failure::Panic { stage: None, fault, .. } => format!("the grader failed: {fault}; please report this"),
         Failure::Panic { stage: Some(stage), fault, .. } => {
             let doing = match stage {
-                Doing::Judging => "judging",
-                Doing::Explaining => "explaining",
-                Doing::Reporting => "reporting",
+                Activity::Judging => "judging",
+                Activity::Explaining => "explaining",
+                Activity::Reporting => "reporting",
             };
             format!("the grader failed while {doing} this scene: {fault}")
         }

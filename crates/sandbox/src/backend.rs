@@ -252,7 +252,7 @@ impl Backend {
     }
 
     /// Starts the program. It may have ended by the time that this returns; a program that cannot be started is an
-    /// [`Outcome`](super::Outcome) and not an error.
+    /// [`RunOutcome`](super::RunOutcome) and not an error.
     ///
     /// # Errors
     ///

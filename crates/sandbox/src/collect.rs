@@ -79,26 +79,26 @@ pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), CollectError>
 /// A folder that is held open. What lies in it is reached by its own names only: no link leads out, and nobody who
 /// exchanges a path meanwhile leads elsewhere.
 #[derive(Debug)]
-pub struct Folder(File);
+pub struct OpenFolder(File);
 
-/// What lies in a [`Folder`].
+/// What lies in an [`OpenFolder`].
 #[derive(Debug)]
-pub enum Entry {
+pub enum FolderEntry {
     /// A regular file, open.
     File(File),
     /// A folder, open.
-    Folder(Folder),
+    Folder(OpenFolder),
     /// Neither: a link, a pipe, a socket or a device.
     Other,
 }
 
-impl From<OwnedFd> for Folder {
+impl From<OwnedFd> for OpenFolder {
     fn from(folder: OwnedFd) -> Self {
         Self(folder.into())
     }
 }
 
-impl Folder {
+impl OpenFolder {
     /// Opens the folder at the path.
     ///
     /// # Errors
@@ -122,20 +122,20 @@ impl Folder {
     /// # Errors
     ///
     /// When it can't be opened; [`io::ErrorKind::NotFound`] when it has gone.
-    pub fn entry(&self, name: &OsStr) -> io::Result<Entry> {
+    pub fn entry(&self, name: &OsStr) -> io::Result<FolderEntry> {
         let name = CString::new(name.as_bytes())?;
         let file = match sys::open_beneath(self.0.as_fd(), &name, libc::O_RDONLY | libc::O_NONBLOCK) {
             Ok(fd) => File::from(fd),
             Err(error) if matches!(error.raw_os_error(), Some(libc::ELOOP | libc::ENXIO | libc::ENODEV)) => {
-                return Ok(Entry::Other);
+                return Ok(FolderEntry::Other);
             }
             Err(error) => return Err(error),
         };
         let kind = file.metadata()?.file_type();
         Ok(match () {
-            () if kind.is_file() => Entry::File(file),
-            () if kind.is_dir() => Entry::Folder(Self(file)),
-            () => Entry::Other,
+            () if kind.is_file() => FolderEntry::File(file),
+            () if kind.is_dir() => FolderEntry::Folder(Self(file)),
+            () => FolderEntry::Other,
         })
     }
 
@@ -206,7 +206,7 @@ pub fn regular_file(folder: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>
 ///
 /// As [`regular_file`].
 pub fn open_regular_file(folder: &Path, name: &str, max_bytes: u64) -> Result<(File, u64), CollectError> {
-    let folder = Folder::open(folder)
+    let folder = OpenFolder::open(folder)
         .map_err(|source| CollectError::System { name: name.escape_debug().to_string(), source })?;
     folder.regular_file(name, max_bytes)
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::job::Job;
 use super::layers::LayerReport;
-use super::outcome::{Captured, Ended, Outcome, StartProblem};
+use super::outcome::{Captured, Ended, RunOutcome, StartProblem};
 use super::running::Running;
 
 /// What a fake run answers.
@@ -44,7 +44,7 @@ impl FakeRun {
     }
 
     pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Running {
-        let outcome = Outcome {
+        let outcome = RunOutcome {
             ended: self.ended,
             cpu: self.cpu,
             wall: self.cpu,

@@ -1,6 +1,6 @@
 //! Runs one program under limits and says how it ended.
 //!
-//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and an [`Outcome`] says what the kernel
+//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and an [`RunOutcome`] says what the kernel
 //! saw. [`Job`] is what to run, [`Backend`] is how, [`Running`] is a program at work.
 //!
 //! How it works: the grader starts its own binary again with a hidden first argument ([`supervisor_main`]). That
@@ -43,7 +43,7 @@ pub use fake::FakeRun;
 pub use fault::SandboxError;
 pub use job::{Identity, Job, Limits, Policy};
 pub use layers::{Layer, LayerReport};
-pub use outcome::{Captured, Ended, Outcome, StartProblem, Stream};
+pub use outcome::{Captured, Ended, RunOutcome, StartProblem, Stream};
 pub use own::is_own;
 pub use running::{Canceller, Running, TraceReader, TraceTooLong};
 pub use supervisor::supervisor_main;

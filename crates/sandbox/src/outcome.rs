@@ -222,7 +222,7 @@ pub struct Captured {
 
 /// Everything about one run.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// How it ended.
     pub ended: Ended,
     /// Processor time, user and system, of the whole tree.

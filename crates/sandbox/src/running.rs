@@ -8,11 +8,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::collect::Folder;
+use super::collect::OpenFolder;
 use super::decide;
 use super::fault::{SandboxError, lost, set_up_failed};
 use super::layers::LayerReport;
-use super::outcome::{Captured, Outcome};
+use super::outcome::{Captured, RunOutcome};
 use super::supervisor::orphans;
 use super::wire::{self, COMMAND_CANCEL, COMMAND_TRACE_LIMIT, Event, Order};
 
@@ -32,7 +32,7 @@ fn command(control: &Control, command: u8) {
 pub struct Running {
     state: State,
     trace: Option<TraceReader>,
-    folder: Option<Folder>,
+    folder: Option<OpenFolder>,
     traced: Arc<AtomicU64>,
     canceller: Canceller,
 }
@@ -42,7 +42,7 @@ enum State {
     /// Under a supervisor.
     Supervised(Box<Supervised>),
     /// Known already, with the limit of its trace.
-    Known(Box<Outcome>, u64),
+    Known(Box<RunOutcome>, u64),
     /// Handed out.
     Taken,
 }
@@ -63,7 +63,7 @@ impl Running {
         supervised: Supervised,
         control: UnixStream,
         trace: Option<File>,
-        folder: Option<Folder>,
+        folder: Option<OpenFolder>,
     ) -> Self {
         let trace_bytes = supervised.trace_limit;
         let control = Arc::new(Mutex::new(Some(control)));
@@ -79,7 +79,7 @@ impl Running {
     }
 
     /// A run whose outcome is known already.
-    pub(super) fn known(outcome: Outcome, trace: Option<Vec<u8>>, trace_bytes: u64) -> Self {
+    pub(super) fn known(outcome: RunOutcome, trace: Option<Vec<u8>>, trace_bytes: u64) -> Self {
         let control = Control::default();
         let traced = Arc::new(AtomicU64::new(0));
         let trace = trace.map(|bytes| TraceReader {
@@ -112,7 +112,7 @@ impl Running {
     /// # Errors
     ///
     /// Faults of ours or of the host.
-    pub fn wait(self) -> Result<Outcome, SandboxError> {
+    pub fn wait(self) -> Result<RunOutcome, SandboxError> {
         self.wait_with_folder().map(|(outcome, _)| outcome)
     }
 
@@ -122,7 +122,7 @@ impl Running {
     /// # Errors
     ///
     /// As for [`Running::wait`].
-    pub fn wait_with_folder(mut self) -> Result<(Outcome, Option<Folder>), SandboxError> {
+    pub fn wait_with_folder(mut self) -> Result<(RunOutcome, Option<OpenFolder>), SandboxError> {
         if let Some(mut trace) = self.trace.take() {
             // Its only error is the one that ends the program as well.
             let _ = io::copy(&mut trace, &mut io::sink());
@@ -131,14 +131,14 @@ impl Running {
             State::Supervised(supervised) => self.conclude(*supervised)?,
             State::Known(outcome, limit) => {
                 let traced = self.traced.load(Ordering::Relaxed);
-                Outcome { ended: decide::beyond_trace(outcome.ended, traced > limit), ..*outcome }
+                RunOutcome { ended: decide::beyond_trace(outcome.ended, traced > limit), ..*outcome }
             }
             State::Taken => unreachable!("`wait` takes the run by value"),
         };
         Ok((outcome, self.folder.take()))
     }
 
-    fn conclude(&self, mut supervised: Supervised) -> Result<Outcome, SandboxError> {
+    fn conclude(&self, mut supervised: Supervised) -> Result<RunOutcome, SandboxError> {
         let answer = receive(&mut supervised.child);
         // Nobody commands a supervisor that has reported.
         drop(self.canceller.control.lock().unwrap_or_else(PoisonError::into_inner).take());
@@ -167,7 +167,7 @@ impl Running {
         }
         let traced = self.traced.load(Ordering::Relaxed);
         let ended = decide::ended(&supervised.order, &report, &stderr);
-        Ok(Outcome {
+        Ok(RunOutcome {
             ended: decide::beyond_trace(ended, traced > supervised.trace_limit),
             cpu: Duration::from_micros(report.cpu_micros),
             wall: Duration::from_micros(report.wall_micros),

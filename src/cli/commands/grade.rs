@@ -27,7 +27,7 @@ use crate::{
         config,
         grader::Options,
         plan::{self, Plan},
-        results::Folder,
+        results::FolderResults,
     },
 };
 use anyhow::{Context, Result, bail};
@@ -248,7 +248,7 @@ impl Session<'_> {
         let kept = match &self.folder {
             Some(folder) => {
                 fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-                Some(Folder::open(folder, fresh)?)
+                Some(FolderResults::open(folder, fresh)?)
             }
             None => None,
         };

@@ -157,7 +157,7 @@ pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {
     let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
     let table = selftest::run_some(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
         done += 1;
-        if let selftest::Verdict::Broken(how) = &promise.verdict {
+        if let selftest::PromiseState::Broken(how) = &promise.state {
             console::complain(format!("not held: {}: {how}\n", promise.attack).as_bytes());
         } else if done % 20 == 0 {
             console::complain(format!("{done} attacks so far\n").as_bytes());
@@ -165,10 +165,10 @@ pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {
     })?;
     let mut text = String::new();
     for promise in &table.promises {
-        let (state, why) = match &promise.verdict {
-            selftest::Verdict::Held => ("held", String::new()),
-            selftest::Verdict::Broken(how) => ("NOT HELD", format!(" [{how}]")),
-            selftest::Verdict::NotTested(why) => ("not tested", format!(" [{why}]")),
+        let (state, why) = match &promise.state {
+            selftest::PromiseState::Held => ("held", String::new()),
+            selftest::PromiseState::Broken(how) => ("NOT HELD", format!(" [{how}]")),
+            selftest::PromiseState::NotTested(why) => ("not tested", format!(" [{why}]")),
         };
         let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
     }

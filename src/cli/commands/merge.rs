@@ -14,7 +14,7 @@ use crate::{
     },
     suite::{
         Grade,
-        results::{Folder, Results as _, read_line},
+        results::{FolderResults, Results as _, read_line},
     },
 };
 use anyhow::{Context, Result, bail};
@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     }
     fs::create_dir_all(&output).with_context(|| format!("cannot make {}", output.display()))?;
     // Held to the end: nobody else works in this folder.
-    let kept = Folder::open(&output, true)?;
+    let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in FOLDERS {
             copy(&folder.join(name), &output.join(name), DEEPEST)?;
@@ -125,7 +125,7 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &Merge) -> Result<(&'a 
 }
 
 /// Keeps a shard's results in the merged folder, so that a grading in one go finds them there.
-fn keep_results(folder: &Path, kept: &Folder) -> Result<()> {
+fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     let file = folder.join("journal.jsonl");
     let text = match fs::read(&file) {
         Ok(text) => text,

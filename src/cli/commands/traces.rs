@@ -140,7 +140,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
     let mut rulings = StepRulings::new(&mut quiet);
     let outcome = parity::judge(&task.scene, &trace[..], &options, &mut rulings);
     // As if a program had ended well after it wrote this.
-    let program = sandbox::Outcome {
+    let program = sandbox::RunOutcome {
         ended: Ended::Exited(0),
         cpu: Duration::ZERO,
         wall: Duration::ZERO,

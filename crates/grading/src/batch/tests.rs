@@ -3,8 +3,8 @@ use crate::{
     cast::{SMALL_TRACE, Stage, right_trace, small_plan},
     grader::Options,
     plan::Plan,
-    result::{BadTrace, Doing, Failure, KeptTrace, LeftOut, Reason},
-    results::Folder,
+    result::{Activity, BadTrace, Failure, KeptTrace, NotRunReason, Reason},
+    results::FolderResults,
     told::ToldFinding,
     verdict::Verdict,
 };
@@ -24,8 +24,8 @@ fn first_divergence(result: &SceneResult) -> (u32, usize) {
     }
 }
 
-fn journal(folder: &tempfile::TempDir) -> Folder {
-    Folder::open(folder.path(), false).expect("a journal")
+fn journal(folder: &tempfile::TempDir) -> FolderResults {
+    FolderResults::open(folder.path(), false).expect("a journal")
 }
 
 #[test]
@@ -150,9 +150,9 @@ fn a_fault_of_the_grader_is_a_judge_error_of_its_scene_and_the_batch_goes_on() {
     let graded = run(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {});
     assert!(graded.fault.is_none() && graded.grades.len() == names.len());
     for (grade, stages) in graded.grades.iter().zip([
-        [Some(Doing::Judging); 2],
-        [Some(Doing::Explaining); 2],
-        [Some(Doing::Reporting), None],
+        [Some(Activity::Judging); 2],
+        [Some(Activity::Explaining); 2],
+        [Some(Activity::Reporting), None],
     ]) {
         assert_eq!((grade.verdict, grade.points), (Verdict::JudgeError, None), "nobody's zero: {grade:?}");
         for (number, scene) in grade.scenes().enumerate() {
@@ -227,7 +227,7 @@ fn a_submission_has_only_so_much_time() {
     assert_eq!(verdicts[..4], [Verdict::Accepted, Verdict::Accepted, Verdict::Accepted, Verdict::TimeLimit]);
     assert!(verdicts[3..].iter().all(|verdict| *verdict == Verdict::TimeLimit));
     let last = grade.scenes().last().expect("a scene");
-    assert_eq!(last.reason, Reason::LeftOut(LeftOut::Total(Duration::from_secs(25))));
+    assert_eq!(last.reason, Reason::LeftOut(NotRunReason::Total(Duration::from_secs(25))));
     assert!(grade.points.is_some(), "that is the submission's own doing");
 }
 

@@ -1,7 +1,10 @@
 use super::*;
 use crate::{
     Key, Verdict,
-    result::{BadTrace, Doing, Failure, Found, KeptTrace, LeftOut, Limit, Reached, Reason, Unusable, Wrong},
+    result::{
+        Activity, BadTrace, Failure, FolderContents, KeptTrace, Limit, NotRunReason, ReachedLimit, Reason, Unusable,
+        Wrong,
+    },
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{
@@ -180,13 +183,13 @@ fn every_reason_and_every_end_reads_back() {
         StepError::Work { step: 4 },
     ];
     let causes = [Unreadable::State, Unreadable::Impulses, Unreadable::Memory, Unreadable::Limit, Unreadable::Io];
-    let others = Found::Others { names: vec!["a/".to_owned()], more: 3, elsewhere: Some("b/c".to_owned()) };
+    let others = FolderContents::Others { names: vec!["a/".to_owned()], more: 3, elsewhere: Some("b/c".to_owned()) };
     let mut reasons: Vec<Reason> = vec![
         Reason::Right,
         Reason::NoTrace,
         Reason::Program(None),
-        Reason::Program(Some(Reached { limit: Limit::Time(Duration::from_millis(1500)), steps: 3 })),
-        Reason::Program(Some(Reached { limit: Limit::Memory(1 << 30), steps: 0 })),
+        Reason::Program(Some(ReachedLimit { limit: Limit::Time(Duration::from_millis(1500)), steps: 3 })),
+        Reason::Program(Some(ReachedLimit { limit: Limit::Memory(1 << 30), steps: 0 })),
         Reason::Stopped,
         Reason::DoesNotBuild,
     ];
@@ -198,10 +201,10 @@ fn every_reason_and_every_end_reads_back() {
         [BadTrace::NoEnd, BadTrace::Damaged, BadTrace::TrailingBytes, BadTrace::Undecided, BadTrace::Unfinished]
             .map(Reason::Trace),
     );
-    let total = LeftOut::Total(Duration::from_secs(600));
-    reasons.extend([LeftOut::TimeOuts(3), total, LeftOut::FailFast].map(Reason::LeftOut));
+    let total = NotRunReason::Total(Duration::from_secs(600));
+    reasons.extend([NotRunReason::TimeOuts(3), total, NotRunReason::FailFast].map(Reason::LeftOut));
     let missing = StartProblem::MissingInterpreter { interpreter: "/bin/x".to_owned(), hint: "; install it".into() };
-    for found in [Found::Unreadable("no".to_owned()), Found::Nothing, others] {
+    for found in [FolderContents::Unreadable("no".to_owned()), FolderContents::Nothing, others] {
         reasons.push(Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found }));
     }
     reasons.push(Reason::Unusable(Unusable::CouldNotStart(missing.clone())));
@@ -211,9 +214,9 @@ fn every_reason_and_every_end_reads_back() {
     let lost = KeptTrace::Lost { folder: PathBuf::from("faults"), error: "full".to_owned() };
     for (stage, trace) in [
         (None, None),
-        (Some(Doing::Judging), Some(kept)),
-        (Some(Doing::Explaining), Some(lost)),
-        (Some(Doing::Reporting), None),
+        (Some(Activity::Judging), Some(kept)),
+        (Some(Activity::Explaining), Some(lost)),
+        (Some(Activity::Reporting), None),
     ] {
         reasons.push(Reason::Failed(Failure::Panic { stage, fault: "at x.rs:1".to_owned(), trace }));
     }

@@ -3,7 +3,7 @@ use crate::{
     batch::{Event, GradeFault},
     cast::{Stage, small_plan},
     grade::Grade,
-    results::{Folder, Memory},
+    results::{FolderResults, MemoryResults},
 };
 
 fn grade(
@@ -34,17 +34,17 @@ fn a_submission_is_graded_the_same_wherever_its_results_are_kept_and_nothing_is_
     for name in ["right", "wrong", "half"] {
         let submission = stage.submissions(&[name]).remove(0);
         let before = stage.started();
-        let memory = Memory::default();
+        let memory = MemoryResults::default();
         let (first, fault, told) = grade(&grader, &submission, &memory);
         assert!(fault.is_none() && first.taken_over() == 0);
         assert_eq!((told.len(), memory.len(), stage.started() - before), (scenes, scenes, scenes));
         let (again, _, told) = grade(&grader, &submission, &memory);
         assert_eq!((again.taken_over(), stage.started() - before), (scenes, scenes), "all of it is found");
         assert!(told.iter().all(|line| line.ends_with("true")));
-        let journal = Folder::open(folder.path(), false).expect("a journal");
+        let journal = FolderResults::open(folder.path(), false).expect("a journal");
         let (on_disk, _, _) = grade(&grader, &submission, &journal);
         drop(journal);
-        let read = Folder::open(folder.path(), false).expect("a journal");
+        let read = FolderResults::open(folder.path(), false).expect("a journal");
         let (from_disk, _, _) = grade(&grader, &submission, &read);
         assert_eq!((on_disk.taken_over(), from_disk.taken_over()), (0, scenes));
         for other in [&again, &on_disk, &from_disk] {
@@ -59,7 +59,7 @@ fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() 
     let mut grader = stage.grader(&plan);
     grader.options.jobs = 1;
     let submission = stage.submissions(&["right"]).remove(0);
-    let small = Memory::with_room(3);
+    let small = MemoryResults::with_room(3);
     let (stopped, fault, told) = grade(&grader, &submission, &small);
     assert!(matches!(&fault, Some(GradeFault::Keeping(error)) if error.to_string().contains("room")), "{fault:?}");
     assert_eq!((stopped.points, stopped.is_incomplete(), stopped.verdict), (None, true, Verdict::NotRun));
@@ -76,7 +76,7 @@ fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
     let scenes = plan.scenes().count();
     let troubled = plan.scenes().nth(2).expect("a scene").name.clone();
     let submission = stage.submissions(&["wrong"]).remove(0);
-    let memory = Memory::default();
+    let memory = MemoryResults::default();
     let rehearse = |result: &SceneResult| assert!(result.scene != troubled, "no report of this");
     let grader = Grader { rehearse: &rehearse, ..stage.grader(&plan) };
     let (failed, fault, _) = grade(&grader, &submission, &memory);

@@ -38,7 +38,7 @@ pub enum OpenError {
 
 /// Results in one output folder, locked while it lives.
 #[derive(Debug)]
-pub struct Folder {
+pub struct FolderResults {
     journal: Mutex<Journal>,
     _lock: File,
 }
@@ -50,7 +50,7 @@ struct Journal {
     found: BTreeMap<Key, SceneResult>,
 }
 
-impl Folder {
+impl FolderResults {
     /// Opens or creates the journal in an existing folder. With `fresh` earlier results are forgotten.
     ///
     /// # Errors
@@ -104,7 +104,7 @@ impl Folder {
     }
 }
 
-impl Results for Folder {
+impl Results for FolderResults {
     fn find(&self, key: &Key) -> Option<SceneResult> {
         self.journal().found.get(key).cloned()
     }
@@ -161,27 +161,27 @@ mod tests {
     #[test]
     fn results_survive_and_a_line_cut_short_does_not_matter() {
         let folder = tempfile::tempdir().expect("folder");
-        let journal = Folder::open(folder.path(), false).expect("journal");
+        let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.keep(&key("a"), "sub", &result(Verdict::WrongAnswer)).expect("kept");
         journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
         drop(journal);
         let path = folder.path().join("journal.jsonl");
         let bytes = std::fs::read(&path).expect("bytes");
         std::fs::write(&path, &bytes[..bytes.len() - 5]).expect("cut");
-        let journal = Folder::open(folder.path(), false).expect("journal");
+        let journal = FolderResults::open(folder.path(), false).expect("journal");
         let found = journal.find(&key("a")).expect("kept");
         assert_eq!(found, result(Verdict::WrongAnswer));
         assert_eq!(journal.find(&key("b")), None);
         journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
         drop(journal);
-        assert!(Folder::open(folder.path(), false).expect("journal").find(&key("b")).is_some());
+        assert!(FolderResults::open(folder.path(), false).expect("journal").find(&key("b")).is_some());
     }
 
     #[test]
     fn two_graders_can_not_share_a_folder() {
         let folder = tempfile::tempdir().expect("folder");
-        let _first = Folder::open(folder.path(), false).expect("journal");
-        assert!(matches!(Folder::open(folder.path(), false), Err(OpenError::Locked { .. })));
+        let _first = FolderResults::open(folder.path(), false).expect("journal");
+        assert!(matches!(FolderResults::open(folder.path(), false), Err(OpenError::Locked { .. })));
     }
 
     #[test]
@@ -192,7 +192,7 @@ mod tests {
         for name in ["journal.jsonl", ".lock"] {
             let output = tempfile::tempdir().expect("folder");
             std::os::unix::fs::symlink(&other, output.path().join(name)).expect("a link");
-            let refused = Folder::open(output.path(), true).expect_err("it is a link").to_string();
+            let refused = FolderResults::open(output.path(), true).expect_err("it is a link").to_string();
             assert!(refused.contains(name) && refused.contains("is a link"), "{refused}");
         }
         assert_eq!(std::fs::read(&other).expect("a file"), b"something else");
@@ -201,16 +201,16 @@ mod tests {
     #[test]
     fn fresh_forgets() {
         let folder = tempfile::tempdir().expect("folder");
-        let journal = Folder::open(folder.path(), false).expect("journal");
+        let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.keep(&key("a"), "sub", &result(Verdict::TimeLimit)).expect("kept");
         drop(journal);
-        assert!(Folder::open(folder.path(), true).expect("journal").find(&key("a")).is_none());
+        assert!(FolderResults::open(folder.path(), true).expect("journal").find(&key("a")).is_none());
     }
 
     #[test]
     fn a_full_disk_is_told_and_leaves_whole_lines() {
         let folder = tempfile::tempdir().expect("folder");
-        let journal = Folder::open(folder.path(), false).expect("journal");
+        let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.keep(&key("a"), "sub", &result(Verdict::Accepted)).expect("kept");
         // Whatever is written here finds no room.
         journal.journal().file = OpenOptions::new().write(true).open("/dev/full").expect("a full device");
@@ -218,7 +218,7 @@ mod tests {
         assert!(error.contains("journal.jsonl") && error.contains("No space left"), "{error}");
         assert_eq!(journal.find(&key("b")), None);
         drop(journal);
-        let again = Folder::open(folder.path(), false).expect("journal");
+        let again = FolderResults::open(folder.path(), false).expect("journal");
         assert!(again.find(&key("a")).is_some() && again.find(&key("b")).is_none());
     }
 }

@@ -8,13 +8,13 @@ use std::{
 
 /// Results in memory.
 #[derive(Debug, Default)]
-pub struct Memory {
+pub struct MemoryResults {
     kept: Mutex<BTreeMap<Key, SceneResult>>,
     /// So many keys have room; without it there is no end.
     room: Option<usize>,
 }
 
-impl Memory {
+impl MemoryResults {
     /// A place for the results of so many keys: what comes later can't be kept, as on a disk that is full.
     #[must_use]
     pub fn with_room(room: usize) -> Self {
@@ -38,7 +38,7 @@ impl Memory {
     }
 }
 
-impl Results for Memory {
+impl Results for MemoryResults {
     fn find(&self, key: &Key) -> Option<SceneResult> {
         self.lock().get(key).cloned()
     }

@@ -5,8 +5,8 @@
 mod folder;
 mod memory;
 
-pub use folder::{Folder, OpenError, line, read_line};
-pub use memory::Memory;
+pub use folder::{FolderResults, OpenError, line, read_line};
+pub use memory::MemoryResults;
 
 pub use super::form::Entry;
 

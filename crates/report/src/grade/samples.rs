@@ -2,7 +2,7 @@
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Visibility},
-    result::{BuildEnd, Ended, Failure, Found, Unusable},
+    result::{BuildEnd, Ended, Failure, FolderContents, Unusable},
     score::{self, Marking},
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
@@ -113,7 +113,7 @@ pub(crate) fn bad() -> Grade {
 /// No program is in the upload.
 pub(crate) fn unfit() -> Grade {
     let names = ["main.cpp", "fosssim-sample"].map(str::to_owned).into();
-    let found = Found::Others { names, more: 0, elsewhere: None };
+    let found = FolderContents::Others { names, more: 0, elsewhere: None };
     let why = Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found });
     let scenes = |names: &[&str]| {
         let result = |name: &&str| SceneResult::without_run(name, 100, Verdict::Unusable, why.clone());

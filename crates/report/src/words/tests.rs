@@ -11,14 +11,14 @@ fn says(reason: Reason) -> String {
 fn what_is_there_instead_of_the_program_is_one_sentence() {
     let says = |found| says(Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found }));
     let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-    assert_eq!(says(Found::Nothing), "no program called FOSSSim in the upload; it is empty");
-    let closed = Found::Unreadable("permission denied".to_owned());
+    assert_eq!(says(FolderContents::Nothing), "no program called FOSSSim in the upload; it is empty");
+    let closed = FolderContents::Unreadable("permission denied".to_owned());
     assert_eq!(says(closed), "no program called FOSSSim in the upload: it can't be read: permission denied");
-    let found = Found::Others { names: names(&["fosssim-sample", "main.cpp"]), more: 0, elsewhere: None };
+    let found = FolderContents::Others { names: names(&["fosssim-sample", "main.cpp"]), more: 0, elsewhere: None };
     assert_eq!(says(found), "no program called FOSSSim in the upload; it holds fosssim-sample, main.cpp");
     let elsewhere = Some("work/build/FOSSSim".to_owned());
     assert_eq!(
-        says(Found::Others { names: names(&["a", "work/"]), more: 6, elsewhere }),
+        says(FolderContents::Others { names: names(&["a", "work/"]), more: 6, elsewhere }),
         "no program called FOSSSim in the upload; it holds a, work/ and 6 more; \
          work/build/FOSSSim is not where it is looked for"
     );
@@ -27,7 +27,7 @@ fn what_is_there_instead_of_the_program_is_one_sentence() {
 #[test]
 fn a_limit_says_how_far_the_trace_came() {
     let stopped = |limit, steps| {
-        let why = Reason::Program(Some(Reached { limit, steps }));
+        let why = Reason::Program(Some(ReachedLimit { limit, steps }));
         let result = SceneResult::without_run("a/b", 15, Verdict::TimeLimit, why);
         summary(&SceneResult { ended: Some(Ended::WallLimit), ..result })
     };

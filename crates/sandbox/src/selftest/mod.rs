@@ -23,7 +23,7 @@ use super::collect::{self, CollectError};
 use super::fault::SandboxError;
 use super::job::{Job, Limits};
 use super::layers::Layer;
-use super::outcome::{Ended, Outcome};
+use super::outcome::{Ended, RunOutcome};
 use super::supervisor::processes;
 use super::sys;
 
@@ -43,7 +43,7 @@ const LONGEST_TRACE: u64 = 1 << 20;
 
 /// Whether a promise holds on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PromiseState {
     /// The attack failed and left no mark.
     Held,
     /// It did not; the text says how.
@@ -60,7 +60,7 @@ pub struct Promise {
     /// The promise, one sentence.
     pub promise: String,
     /// Whether it holds.
-    pub verdict: Verdict,
+    pub state: PromiseState,
 }
 
 /// What the sandbox promises, and what of it holds on this machine.
@@ -73,13 +73,13 @@ pub struct PromiseTable {
 impl PromiseTable {
     /// The promises that do not hold here.
     pub fn broken(&self) -> impl Iterator<Item = &Promise> {
-        self.promises.iter().filter(|promise| matches!(promise.verdict, Verdict::Broken(_)))
+        self.promises.iter().filter(|promise| matches!(promise.state, PromiseState::Broken(_)))
     }
 
     /// How many promises hold.
     #[must_use]
     pub fn held(&self) -> usize {
-        self.promises.iter().filter(|promise| promise.verdict == Verdict::Held).count()
+        self.promises.iter().filter(|promise| promise.state == PromiseState::Held).count()
     }
 }
 
@@ -135,8 +135,8 @@ pub fn run_some(
             scope.spawn(|| {
                 while let Some(attack) = attacks.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let place = Place { backend, cc, sources: &sources, programs: &programs, folder: &folder };
-                    let verdict = place.try_attack(attack).unwrap_or_else(|why| why);
-                    let promise = Promise { attack: attack.name.clone(), promise: attack.promise.clone(), verdict };
+                    let state = place.try_attack(attack).unwrap_or_else(|why| why);
+                    let promise = Promise { attack: attack.name.clone(), promise: attack.promise.clone(), state };
                     let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                     (done.1)(&promise);
                     done.0.push(promise);
@@ -169,14 +169,14 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Tries one attack; both answers are verdicts.
-    fn try_attack(&self, attack: &Attack) -> Result<Verdict, Verdict> {
+    /// Tries one attack; both answers are states of its promise.
+    fn try_attack(&self, attack: &Attack) -> Result<PromiseState, PromiseState> {
         if let Some(need) = attack.needs.iter().find(|need| !self.offers(**need)) {
-            return Ok(Verdict::NotTested(format!("this machine lacks: {}", need.name())));
+            return Ok(PromiseState::NotTested(format!("this machine lacks: {}", need.name())));
         }
-        let built = self.build(attack).map_err(Verdict::NotTested)?;
-        let broken = |text: String| Verdict::Broken(text);
-        let fault = |error: &dyn std::fmt::Display| Verdict::NotTested(format!("the test itself failed: {error}"));
+        let built = self.build(attack).map_err(PromiseState::NotTested)?;
+        let broken = |text: String| PromiseState::Broken(text);
+        let fault = |error: &dyn std::fmt::Display| PromiseState::NotTested(format!("the test itself failed: {error}"));
         let mut decoy =
             Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique()))).map_err(|e| fault(&e))?;
         // A program of its own for every run, so that survivors are known by it.
@@ -198,7 +198,7 @@ impl Place<'_> {
             bytes.len()
         });
         let (outcome, folder) = running.wait_with_folder().map_err(|error| broken(error.to_string()))?;
-        let folder = folder.map_or_else(|| collect::Folder::open(&decoy.work), Ok).map_err(|e| fault(&e))?;
+        let folder = folder.map_or_else(|| collect::OpenFolder::open(&decoy.work), Ok).map_err(|e| fault(&e))?;
 
         if let Some(left) = survivor(&program) {
             return Err(broken(format!("process {left} outlived the run")));
@@ -225,7 +225,7 @@ impl Place<'_> {
         }
         left_as_expected(attack, &folder).map_err(broken)?;
         decoy.clear().map_err(|error| broken(format!("its folder cannot be removed: {error}")))?;
-        Ok(Verdict::Held)
+        Ok(PromiseState::Held)
     }
 
     fn offers(&self, need: Need) -> bool {
@@ -318,7 +318,7 @@ fn survivor(program: &Path) -> Option<i32> {
 }
 
 /// The end of what the program said, for a broken promise.
-fn words(outcome: &Outcome) -> String {
+fn words(outcome: &RunOutcome) -> String {
     let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes);
         text.lines().last().map(|line| line.chars().take(200).collect::<String>().escape_debug().to_string())
@@ -330,7 +330,7 @@ fn words(outcome: &Outcome) -> String {
 }
 
 /// Whether the folder holds the trace that it should hold.
-fn left_as_expected(attack: &Attack, work: &collect::Folder) -> Result<(), String> {
+fn left_as_expected(attack: &Attack, work: &collect::OpenFolder) -> Result<(), String> {
     let collected = work.regular_file("trace.bin", LONGEST_TRACE).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();
         let read = std::io::Read::read_to_end(&mut file, &mut bytes);
