@@ -146,7 +146,7 @@ pub fn judge(bytes: &[u8]) {
     let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
     let outcome = parity::judge(&scene, &trace[..], &options, &mut ());
     for book in [Book::Parity, Book::Fair] {
-        let account = outcome.account(book);
+        let account = outcome.findings_by(book);
         let is_accepted = outcome.ruling(book) == Ruling::Accepted;
         assert!(account.wrong_steps <= u64::from(outcome.steps_judged), "a step is wrong once");
         assert!(!is_accepted || account.wrong_steps == 0, "what is accepted has no wrong step");

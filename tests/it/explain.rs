@@ -5,7 +5,7 @@ use super::{
 };
 use fosssim_oracle::{
     diagnose::{Explanation, common, explain, formula_in, known},
-    judge::{fair::Verdict, parity},
+    judge::{fair::FairVerdict, parity},
     scene::Scene,
     student::{self, KNOWN_ACCUSED, Row, RowKind},
 };
@@ -46,7 +46,7 @@ fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
     for (_, scene) in scenes {
         let Some(trace) = simulated(scene, Some(row)) else { continue };
         let fair = parity::judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
-        if fair.verdict == Verdict::Rejected {
+        if fair.verdict == FairVerdict::Rejected {
             found.push(if found.len() < 2 { explain(scene, &trace) } else { known(scene, &trace[..]) });
         }
     }

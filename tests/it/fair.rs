@@ -3,7 +3,7 @@ use super::corpus;
 use fosssim_oracle::{
     judge::{
         Kind, Overall,
-        fair::{Form, Judgement, Verdict},
+        fair::{FairVerdict, Form, Judgement},
         parity::{Options, judge},
     },
     scene::{Scene, original},
@@ -56,7 +56,8 @@ fn no_mistake_passes_the_fair_rules() {
         .filter(|row| {
             // Where the mistake makes the program go on for ever, there is no whole trace to pass.
             !scenes.iter().any(|(_, scene)| {
-                simulated(scene, Some(row)).is_none_or(|trace| judged(scene, &trace, 1).1.verdict == Verdict::Rejected)
+                simulated(scene, Some(row))
+                    .is_none_or(|trace| judged(scene, &trace, 1).1.verdict == FairVerdict::Rejected)
             })
         })
         .map(|row| row.id)
@@ -83,7 +84,7 @@ fn every_correct_variant_passes_the_fair_rules() {
             let loses = row.id == "scale-1e-6" && fair.counts.get(Kind::TrimmedDecision) == fair.counts.total();
             let first = fair.first_divergence.map(|first| first.to_string());
             let is_known = KNOWN_REFUSED.contains(&(row.id, name));
-            let is_refused = fair.verdict != Verdict::Accepted && !loses;
+            let is_refused = fair.verdict != FairVerdict::Accepted && !loses;
             (is_refused != is_known).then(|| format!("{} on {name}: {first:?}, known: {is_known}", row.id))
         })
         .collect();
@@ -180,7 +181,7 @@ fn the_corpus_is_judged_fairly() {
                 Overall::Failed => "failed",
                 Overall::None => "none",
             };
-            let accepted = fair.verdict == Verdict::Accepted;
+            let accepted = fair.verdict == FairVerdict::Accepted;
             let listed = |list: &[(&str, &str, &str)]| {
                 list.iter().any(|(id, scene, _)| *id == text("submission") && text("scene").ends_with(scene))
             };

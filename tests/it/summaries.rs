@@ -4,7 +4,7 @@ use fosssim_oracle::{
     scene,
     sim::{ByKind, RootSearch, Simulation},
     suite::library,
-    trace::{Counts, Layout, Recorder, Summary},
+    trace::{EventCounts, Layout, Recorder, Summary},
 };
 
 #[test]
@@ -17,7 +17,8 @@ fn summaries_of_all_embedded_scenes() {
     for name in library::names() {
         let scene = scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene;
         let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-        let mut observers = (Recorder::start(Vec::new(), Layout::of(&scene), simulation.state()), Counts::default());
+        let mut observers =
+            (Recorder::start(Vec::new(), Layout::of(&scene), simulation.state()), EventCounts::default());
         for _ in 0..scene.steps() {
             simulation.step(&mut observers).expect("a step");
         }
@@ -30,7 +31,7 @@ fn summaries_of_all_embedded_scenes() {
     assert!(scenes >= 48, "{scenes} scenes");
 }
 
-fn described(counts: &Counts) -> String {
+fn described(counts: &EventCounts) -> String {
     let of_kinds = |numbers: ByKind<u64>| {
         let words: Vec<String> = numbers.iter().map(|(kind, number)| format!("{number} {}", kind.name())).collect();
         words.join(", ")

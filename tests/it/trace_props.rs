@@ -5,8 +5,8 @@ use fosssim_oracle::{
     scene::original,
     sim::{RootSearch, Simulation, State},
     trace::{
-        Cause, Counts, Frame, Layout, Lenient, LenientFrame, List, LoggedImpulse, Malformation, Reader, Recorder,
-        Summary, TraceError, Writer,
+        EventCounts, Frame, Layout, Lenient, LenientFrame, List, LoggedImpulse, Malformation, Reader, Recorder,
+        Summary, TraceError, Unreadable, Writer,
     },
 };
 use proptest::test_runner::RngSeed;
@@ -293,7 +293,7 @@ fn a_summary_says_what_happened_and_where_reading_ended() {
     let scene = original::read(xml).expect("a scene").scene;
     let mut simulation = Simulation::new(&scene, RootSearch::default());
     let recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
-    let mut both = (recorder, Counts::default());
+    let mut both = (recorder, EventCounts::default());
     for _ in 0..scene.steps() {
         simulation.step(&mut both).unwrap();
     }
@@ -344,8 +344,8 @@ fn lenient_reading_stops_where_the_original_stopped() {
         let cause = stop.as_ref().map(|stop| stop.cause);
         match end {
             "exit 0" => assert_eq!(cause, None, "{file}"),
-            "exit 1" if said("Failed to load timestep") => assert_eq!(cause, Some(Cause::State), "{file}"),
-            "exit 1" if said("deserialize") => assert_eq!(cause, Some(Cause::Impulses), "{file}"),
+            "exit 1" if said("Failed to load timestep") => assert_eq!(cause, Some(Unreadable::State), "{file}"),
+            "exit 1" if said("deserialize") => assert_eq!(cause, Some(Unreadable::Impulses), "{file}"),
             "signal 6" => assert!(cause.is_some(), "{file}"),
             // The original hung in the computation; the trace may be as it likes.
             "timeout" => {}

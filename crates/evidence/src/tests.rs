@@ -18,7 +18,7 @@ fn judged(scene: &Scene, trace: &[u8]) -> (Outcome, Evidence) {
     let mut nobody = ();
     let mut rulings = StepRulings::new(&mut nobody);
     let outcome = parity::judge(scene, trace, &options, &mut rulings);
-    let focus: Vec<Focus> = outcome.account(Book::Fair).examples.iter().map(Focus::from).collect();
+    let focus: Vec<Focus> = outcome.findings_by(Book::Fair).examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, trace, &rulings.into_steps(&outcome), true, &focus, BUDGET);
     (outcome, evidence)
 }
@@ -68,7 +68,7 @@ fn own_errors_are_told_from_inherited_ones() {
 fn a_finding_about_a_polynomial_has_its_call() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "pe-linear-one-ab"));
-    let first = outcome.account(Book::Fair).first_divergence.expect("wrong");
+    let first = outcome.findings_by(Book::Fair).first_divergence.expect("wrong");
     let fosssim_judge::Detail::Coefficient { place, .. } = &first.detail else { panic!("{first}") };
     let close = evidence.inspected.iter().find(|up| up.step == first.step).expect("looked at");
     let call = close.calls.iter().find(|call| call.pair == place.pair && call.pass == place.pass).expect("the call");
@@ -109,7 +109,7 @@ fn a_cut_trace_shows_what_is_there() {
 fn a_hybrid_step_whose_impulses_are_wrong_has_a_residual() {
     let scene = asset("ImpulsesTests/off-centre-on-turning-edge.xml");
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "decision-alpha-margin"));
-    let first = outcome.account(Book::Fair).first_divergence.expect("wrong");
+    let first = outcome.findings_by(Book::Fair).first_divergence.expect("wrong");
     let step = &evidence.steps[first.step as usize - 1];
     assert!(step.class == StepClass::Wrong && step.position > 0.1 && step.velocity > 0.1, "{step:?}");
     assert!(evidence.steps.iter().filter(|other| other.class != StepClass::Wrong).all(|other| other.position < 1e-10));
@@ -144,7 +144,7 @@ fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
 fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
     let scene = asset("GeometricTests/pair-becomes-rigid.xml");
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "failsafe-angular-overwritten"));
-    let step = outcome.account(Book::Fair).first_divergence.expect("wrong").step;
+    let step = outcome.findings_by(Book::Fair).first_divergence.expect("wrong").step;
     let close = evidence.inspected.iter().find(|up| up.step == step).expect("looked at");
     let state = |record: u64| {
         let size = 4 * scene.particles.len();

@@ -114,7 +114,7 @@ fn verdict_of_trace(judged: &Outcome, rules: Rules, trace_bytes: u64) -> (Verdic
 }
 
 fn wrong(judged: &Outcome, rules: Rules) -> Wrong {
-    let account = judged.account(rules.official());
+    let account = judged.findings_by(rules.official());
     match account.first_divergence {
         Some(first) if first.step == 0 && account.wrong_steps == 0 => Wrong::FirstRecord(first.kind()),
         Some(first) => Wrong::Steps { wrong: account.wrong_steps, first: first.step, kind: first.kind() },

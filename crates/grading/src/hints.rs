@@ -56,16 +56,16 @@ impl Hints {
     pub fn tell(self, judged: &Outcome, rules: Rules) -> Option<Told> {
         (self > Self::None).then(|| Told {
             official: rules.official(),
-            parity: self.account(judged, Book::Parity),
-            fair: judged.fair.is_some().then(|| self.account(judged, Book::Fair)),
+            parity: self.tell_book(judged, Book::Parity),
+            fair: judged.fair.is_some().then(|| self.tell_book(judged, Book::Fair)),
             residuals: (self == Self::Full).then_some(judged.residuals),
             damage: judged.damage.clone(),
             trailing_bytes: judged.trailing_bytes,
         })
     }
 
-    fn account(self, judged: &Outcome, book: Book) -> ToldBook {
-        let found = judged.account(book);
+    fn tell_book(self, judged: &Outcome, book: Book) -> ToldBook {
+        let found = judged.findings_by(book);
         ToldBook {
             ruling: judged.ruling(book),
             wrong_steps: found.wrong_steps,
@@ -180,9 +180,9 @@ mod tests {
             assert_eq!((&part.counts, part.wrong_steps, part.ruling), (&full.counts, full.wrong_steps, full.ruling));
         }
         // The book whose verdict counts speaks first.
-        assert_eq!(told(Hints::Full).account(), &full.parity);
+        assert_eq!(told(Hints::Full).official(), &full.parity);
         let fair = Hints::Full.tell(&judged, Rules::Fair).expect("something");
-        assert_eq!(fair.account(), full.fair.as_ref().expect("asked"));
+        assert_eq!(fair.official(), full.fair.as_ref().expect("asked"));
     }
 
     /// An edge that turns and two discs that meet it and each other, above a slanted half-plane.

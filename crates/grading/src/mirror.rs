@@ -4,8 +4,8 @@
 //! field by field, and the compiler holds the mirrors to them. Numbers read back bit for bit: those that JSON can't write
 //! are texts. The version in [`form`](super::form) rises when anything here changes its meaning.
 use fosssim_judge::{
-    Book, Counts, Damage, Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role, Rules,
-    Ruling, Unreadable, fair::Cause,
+    Book, Damage, Detail, Finding, FindingCounts, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role,
+    Rules, Ruling, Unreadable, fair::Cause,
 };
 use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation, OfPolynomials, StepStage};
 use fosssim_model::{
@@ -84,7 +84,7 @@ written_as!(
 written_as!(kind, Kind, String, |kind| kind.key().to_owned(), |key| {
     Kind::ALL.into_iter().find(|kind| kind.key() == key)
 });
-written_as!(counts, Counts, Vec<(String, u64)>, pairs_of_counts, counts_of_pairs);
+written_as!(counts, FindingCounts, Vec<(String, u64)>, pairs_of_counts, counts_of_pairs);
 written_as!(cause, Option<Cause>, Option<String>, |cause| cause.map(|cause| cause.key().to_owned()), |key| {
     match key {
         Some(key) => Cause::from_key(&key).map(Some),
@@ -94,13 +94,13 @@ written_as!(cause, Option<Cause>, Option<String>, |cause| cause.map(|cause| caus
 
 written_as!(rules, Rules, String, |rules| rules.name().to_owned(), |name| Rules::from_name(&name));
 
-fn pairs_of_counts(counts: &Counts) -> Vec<(String, u64)> {
+fn pairs_of_counts(counts: &FindingCounts) -> Vec<(String, u64)> {
     let found = Kind::ALL.into_iter().filter(|kind| counts.get(*kind) > 0);
     found.map(|kind| (kind.key().to_owned(), counts.get(kind))).collect()
 }
 
-fn counts_of_pairs(pairs: Vec<(String, u64)>) -> Option<Counts> {
-    let mut counts = Counts::default();
+fn counts_of_pairs(pairs: Vec<(String, u64)>) -> Option<FindingCounts> {
+    let mut counts = FindingCounts::default();
     for (key, count) in pairs {
         let kind = Kind::ALL.into_iter().find(|kind| kind.key() == key)?;
         // A kind stands here once; what somebody has made larger than any count is damage.

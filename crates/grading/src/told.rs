@@ -1,6 +1,6 @@
 //! What may be told of a judged trace: findings as values, cut to what the suite's hints let through ([`Hints`](crate::config::Hints)).
 use super::mirror;
-use fosssim_judge::{Book, Counts, Damage, Finding, Kind, PolynomialPlace, Residuals, Ruling};
+use fosssim_judge::{Book, Damage, Finding, FindingCounts, Kind, PolynomialPlace, Residuals, Ruling};
 use fosssim_model::sim::Pair;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ pub struct Told {
 impl Told {
     /// What the book whose verdict counts found; the original's, if the fair one was not asked.
     #[must_use]
-    pub fn account(&self) -> &ToldBook {
+    pub fn official(&self) -> &ToldBook {
         match (self.official, &self.fair) {
             (Book::Fair, Some(fair)) => fair,
             _ => &self.parity,
@@ -45,7 +45,7 @@ pub struct ToldBook {
     pub wrong_steps: u64,
     /// How often each kind of finding occurred.
     #[serde(with = "mirror::counts")]
-    pub counts: Counts,
+    pub counts: FindingCounts,
     /// The very first finding.
     pub first_divergence: Option<ToldFinding>,
     /// The first finding of each kind.

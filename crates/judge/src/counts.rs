@@ -3,9 +3,9 @@ use super::finding::Kind;
 
 /// How often each kind of finding occurred.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts([u64; Kind::ALL.len()]);
+pub struct FindingCounts([u64; Kind::ALL.len()]);
 
-impl Counts {
+impl FindingCounts {
     /// The count of one kind.
     #[must_use]
     pub fn get(&self, kind: Kind) -> u64 {
@@ -30,7 +30,7 @@ impl Counts {
     }
 }
 
-impl std::ops::AddAssign for Counts {
+impl std::ops::AddAssign for FindingCounts {
     fn add_assign(&mut self, other: Self) {
         for (own, others) in self.0.iter_mut().zip(other.0) {
             *own += others;

@@ -26,9 +26,10 @@ pub mod study;
 mod tally;
 mod words;
 
-pub use counts::Counts;
+pub use counts::FindingCounts;
 pub use differing::{differing, factor};
 pub use finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Role};
-pub use outcome::{Damage, Outcome, Overall, Residuals, Stop, Unreadable};
-pub use rules::{Account, Book, Rules, Ruling};
+pub use fosssim_model::trace::Unreadable;
+pub use outcome::{Damage, Outcome, Overall, Residuals, Stop};
+pub use rules::{Book, BookFindings, Rules, Ruling};
 pub use words::{PairWords, PassWords, Power, passes};

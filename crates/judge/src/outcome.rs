@@ -1,10 +1,13 @@
 //! The verdict on one trace.
 use super::{
-    counts::Counts,
+    counts::FindingCounts,
     fair::{Judgement, Refusal},
     finding::Finding,
 };
-use fosssim_model::sim::{SearchCounts, StepError};
+use fosssim_model::{
+    sim::{SearchCounts, StepError},
+    trace::Unreadable,
+};
 use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
 
 /// The original's overall verdict.
@@ -65,21 +68,6 @@ pub enum Stop {
     Step(StepError),
 }
 
-/// What of a record could not be read; the original has a message for each.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unreadable {
-    /// "Failed to load timestep": the bytes end before or inside positions and velocities.
-    State,
-    /// "Error while trying to deserialize time step impulses": the bytes end inside the impulse list.
-    Impulses,
-    /// A count that no file could satisfy: the original runs out of memory.
-    Memory,
-    /// A limit of ours: the record is larger than any that this program compares. The original has no such limit.
-    Limit,
-    /// The reader failed (an error of the operating system).
-    Io,
-}
-
 /// Damage that the original's reading passes over in silence; before a step without result also a number in the trace's
 /// state that is not finite.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,7 +92,7 @@ pub struct Outcome {
     /// Whether collisions passed; polynomials count as collisions. `None` without a verdict.
     pub collisions_passed: Option<bool>,
     /// Counts per kind of finding.
-    pub counts: Counts,
+    pub counts: FindingCounts,
     /// Steps with at least one finding.
     pub wrong_steps: u64,
     /// The first finding of each kind that occurred, in the order of [`Kind::ALL`](super::Kind::ALL).
@@ -139,7 +127,7 @@ impl Outcome {
             overall: Overall::None,
             residuals: Residuals::default(),
             collisions_passed: None,
-            counts: Counts::default(),
+            counts: FindingCounts::default(),
             wrong_steps: 0,
             examples: Vec::new(),
             first_divergence: None,

@@ -1,6 +1,6 @@
 //! What judging tells while it goes on.
 use super::{
-    counts::Counts,
+    counts::FindingCounts,
     finding::{Finding, Kind},
 };
 use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
@@ -35,7 +35,7 @@ pub struct StepFindings<'a> {
     /// The first finding of each kind, in the order in which they were made.
     pub firsts: &'a [Finding],
     /// How many there are of each kind besides.
-    pub more: Counts,
+    pub more: FindingCounts,
 }
 
 impl Progress for () {}

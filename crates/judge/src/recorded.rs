@@ -6,14 +6,14 @@
 //! compared, and the initial record.
 use super::{
     finding::{PolynomialPlace, Role},
-    outcome::{Damage, Outcome, Stop, Unreadable},
+    outcome::{Damage, Outcome, Stop},
     progress::Progress,
     tally::{self, Buffers, StepResult, Tally},
 };
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Impulse, Observer, Pair, PairKind, Pairs, Pass, Stage, pairs},
-    trace::{Cause, Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
+    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
 };
 use fosssim_num::vector::Vec2;
 use std::io::Read;
@@ -70,15 +70,8 @@ fn compare(
             progress.step_begins(step);
         }
         if let Err(stop) = trace.next(&mut actual) {
-            let cause = match stop.cause {
-                Cause::State => Unreadable::State,
-                Cause::Impulses => Unreadable::Impulses,
-                Cause::Memory => Unreadable::Memory,
-                Cause::Limit => Unreadable::Limit,
-                Cause::Io => Unreadable::Io,
-            };
             let (offset, message) = (stop.at.offset, stop.at.what.to_string());
-            outcome.stop = Some(Stop::Trace { frame, step, cause, offset, message });
+            outcome.stop = Some(Stop::Trace { frame, step, cause: stop.cause, offset, message });
             break;
         }
         if let (None, Some(note)) = (&outcome.damage, actual.note.take()) {

@@ -11,7 +11,7 @@ use super::{
     fair::{self, Context, Reach, Records, StepJudgement},
     identical::Identical,
     options::Options,
-    outcome::{Damage, Outcome, Stop, Unreadable},
+    outcome::{Damage, Outcome, Stop},
     progress::{Progress, StepFindings, WrongStep},
     rules::Book,
     tally::{self, StepResult},
@@ -21,7 +21,7 @@ use fosssim_model::{
     assignments::ImpulseList,
     scene::Scene,
     sim::{RootSearch, State, StepError},
-    trace::{Cause, Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
+    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, Unreadable, record_memory},
 };
 use std::{io::Read, sync::Mutex};
 
@@ -236,15 +236,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 Ok(())
             }
             Err(stop) => {
-                let cause = match stop.cause {
-                    Cause::State => Unreadable::State,
-                    Cause::Impulses => Unreadable::Impulses,
-                    Cause::Memory => Unreadable::Memory,
-                    Cause::Limit => Unreadable::Limit,
-                    Cause::Io => Unreadable::Io,
-                };
                 let (offset, message) = (stop.at.offset, stop.at.what.to_string());
-                Err(Stop::Trace { frame: stop.at.frame, step, cause, offset, message })
+                Err(Stop::Trace { frame: stop.at.frame, step, cause: stop.cause, offset, message })
             }
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! The parity book is always computed, because everything else builds on its replay; the fair one only on demand.
 use super::{
-    counts::Counts,
+    counts::FindingCounts,
     fair,
     finding::Finding,
     outcome::{Outcome, Overall},
@@ -102,9 +102,9 @@ impl Ruling {
 
 /// What one book has found.
 #[derive(Debug, Clone, Copy)]
-pub struct Account<'a> {
+pub struct BookFindings<'a> {
     /// Counts per kind of finding.
-    pub counts: &'a Counts,
+    pub counts: &'a FindingCounts,
     /// Steps with at least one finding.
     pub wrong_steps: u64,
     /// The first finding of each kind.
@@ -119,9 +119,9 @@ impl Outcome {
     pub fn ruling(&self, book: Book) -> Ruling {
         match (book, &self.fair) {
             (Book::Fair, Some(fair)) => match (fair.verdict, fair.refusal) {
-                (fair::Verdict::Accepted, _) => Ruling::Accepted,
-                (fair::Verdict::Rejected, None) => Ruling::WrongAnswer,
-                (fair::Verdict::Rejected, Some(_)) | (fair::Verdict::None, _) => Ruling::BadTrace,
+                (fair::FairVerdict::Accepted, _) => Ruling::Accepted,
+                (fair::FairVerdict::Rejected, None) => Ruling::WrongAnswer,
+                (fair::FairVerdict::Rejected, Some(_)) | (fair::FairVerdict::None, _) => Ruling::BadTrace,
             },
             _ => match self.overall {
                 Overall::Passed => Ruling::Accepted,
@@ -135,7 +135,7 @@ impl Outcome {
     /// the first record or small errors that add up, counts as one; and what the original reads over in silence is right for it only where it accepts the whole.
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
-        let wrong = u32::try_from(self.account(book).wrong_steps).unwrap_or(u32::MAX);
+        let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);
         let right = self.steps_judged.saturating_sub(wrong);
         if self.ruling(book) == Ruling::Accepted {
             return right;
@@ -145,15 +145,15 @@ impl Outcome {
 
     /// What a book has found; by the fair one what the original has, if the fair one was not asked.
     #[must_use]
-    pub fn account(&self, book: Book) -> Account<'_> {
+    pub fn findings_by(&self, book: Book) -> BookFindings<'_> {
         match (book, &self.fair) {
-            (Book::Fair, Some(fair)) => Account {
+            (Book::Fair, Some(fair)) => BookFindings {
                 counts: &fair.counts,
                 wrong_steps: fair.wrong_steps,
                 examples: &fair.examples,
                 first_divergence: fair.first_divergence.as_ref(),
             },
-            _ => Account {
+            _ => BookFindings {
                 counts: &self.counts,
                 wrong_steps: self.wrong_steps,
                 examples: &self.examples,
@@ -196,12 +196,12 @@ mod tests {
         outcome.wrong_steps = 2;
         outcome.overall = Overall::Failed;
         assert_eq!(outcome.ruling(Book::Fair), Ruling::WrongAnswer);
-        assert_eq!(outcome.account(Book::Fair).wrong_steps, 2);
+        assert_eq!(outcome.findings_by(Book::Fair).wrong_steps, 2);
         let mut judgement = fair::Judgement::default();
-        judgement.verdict = fair::Verdict::Accepted;
+        judgement.verdict = fair::FairVerdict::Accepted;
         outcome.fair = Some(Box::new(judgement));
         assert_eq!(outcome.ruling(Book::Fair), Ruling::Accepted);
-        assert_eq!(outcome.account(Book::Fair).wrong_steps, 0);
+        assert_eq!(outcome.findings_by(Book::Fair).wrong_steps, 0);
         assert_eq!(outcome.ruling(Book::Parity), Ruling::WrongAnswer);
     }
 }

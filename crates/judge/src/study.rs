@@ -154,7 +154,7 @@ impl Study {
             .map(|(number, &untrimmed)| Curve::of(Role::of(kind, number), untrimmed))
             .collect::<Result<_, _>>()?;
         let answer = Answer::of(motion, &curves.iter().collect::<Vec<_>>())?;
-        let bounded = formulas::Motion::from(motion);
+        let bounded = formulas::BoundedPairMotion::from(motion);
         let expected = bounded.polynomials();
         let right_approach = match right_approach(&polynomials, &expected) {
             None => None,
@@ -185,13 +185,13 @@ fn right_approach(polynomials: &[Polynomial], expected: &formulas::Expected) -> 
 }
 
 /// The same motion with bounds: end positions may be off by a rounding.
-impl From<&PairMotion> for formulas::Motion {
+impl From<&PairMotion> for formulas::BoundedPairMotion {
     fn from(motion: &PairMotion) -> Self {
         let way = |point: PointMotion| {
             let start = Bounded2::exact(point.start);
             let mut shift = Bounded2::rounded(point.start + point.shift) - start;
             (shift.x.value, shift.y.value) = (point.shift.x, point.shift.y);
-            formulas::Way { start, shift }
+            formulas::BoundedPointMotion { start, shift }
         };
         let sum = |radii: [f64; 2]| Bounded::exact(radii[0]) + Bounded::exact(radii[1]);
         match *motion {

@@ -5,7 +5,7 @@
 //! two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
 use super::{
     contacts::{Contacts, key, logged_key},
-    counts::Counts,
+    counts::FindingCounts,
     differing::{differing, factor},
     finding::{Detail, Finding, Kind, PolynomialPlace, Rescaled, Role},
     outcome::Residuals,
@@ -34,7 +34,7 @@ pub(super) struct StepResult {
     /// The original's lines about this step, in its order.
     pub(super) remarks: Vec<Remark>,
     /// How many findings of each kind.
-    pub(super) counts: Counts,
+    pub(super) counts: FindingCounts,
     /// The first finding of each kind, in the order in which they were found.
     pub(super) firsts: Vec<Finding>,
     /// Residuals of each particle: position, velocity. Summed up in step order by the caller.
@@ -55,13 +55,13 @@ impl StepResult {
         self.remarks.clear();
         self.firsts.clear();
         self.residuals.clear();
-        self.counts = Counts::default();
+        self.counts = FindingCounts::default();
         self.identical = false;
     }
 
     /// How many findings of each kind there are besides the first.
-    pub(super) fn more(&self) -> Counts {
-        let mut more = Counts::default();
+    pub(super) fn more(&self) -> FindingCounts {
+        let mut more = FindingCounts::default();
         for kind in self.firsts.iter().map(Finding::kind) {
             more.add(kind, self.counts.get(kind).saturating_sub(1));
         }

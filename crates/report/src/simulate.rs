@@ -7,7 +7,7 @@ use super::{
 };
 use fosssim_model::{
     sim::SearchCounts,
-    trace::{Counts, Written},
+    trace::{EventCounts, Written},
 };
 use serde_json::json;
 
@@ -21,7 +21,7 @@ pub struct Summary<'a> {
     /// Steps of the scene.
     pub steps: u32,
     /// What happened in the steps.
-    pub counts: Counts,
+    pub counts: EventCounts,
     /// Size of the trace.
     pub written: Written,
     /// The root searches, when they were audited.

@@ -45,8 +45,8 @@ pub fn details(result: &SceneResult) -> Vec<String> {
         );
     }
     if let Some(told) = &result.told {
-        lines.extend(told.account().first_divergence.as_ref().map(first_divergence));
-        lines.extend(counts(told.account()));
+        lines.extend(told.official().first_divergence.as_ref().map(first_divergence));
+        lines.extend(counts(told.official()));
         if let Some(damage) = &told.damage {
             lines.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.message));
         }

@@ -179,7 +179,7 @@ impl Progress for Heard {
 /// Whether there is something to explain: the fair rules know better what is a mistake.
 fn is_wrong(outcome: &Outcome) -> bool {
     match &outcome.fair {
-        Some(fair) => fair.verdict == fair::Verdict::Rejected,
+        Some(fair) => fair.verdict == fair::FairVerdict::Rejected,
         None => outcome.overall != Overall::Passed,
     }
 }

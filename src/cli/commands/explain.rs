@@ -14,7 +14,7 @@ use crate::{
     evidence::StepRulings,
     judge::{
         Rules,
-        fair::Verdict,
+        fair::FairVerdict,
         parity::{self, Options},
     },
     report::{
@@ -95,8 +95,8 @@ fn case(
     // How the program ended tells more than how its trace did.
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, &outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
-    let accepted = fair.verdict == Verdict::Accepted && note.is_none();
-    let explanations = if fair.verdict == Verdict::Accepted { Vec::new() } else { diagnose::explain(scene, bytes) };
+    let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
+    let explanations = if fair.verdict == FairVerdict::Accepted { Vec::new() } else { diagnose::explain(scene, bytes) };
     let first = fair.first_divergence.as_ref().and_then(|first| hints.finding(first));
     let explanations = hints.cut(explanations);
     let draws = arguments.format == ExplainFormat::Html && !accepted;

@@ -3,7 +3,7 @@ use crate::{
     cli::{arguments::Simulate, console, exit, input, output::Output, values::TextOrJson},
     report::{describe::step_error, simulate::Summary, style::Style},
     sim::{RootSearch, Simulation},
-    trace::{Counts, Layout, Recorder},
+    trace::{EventCounts, Layout, Recorder},
 };
 use anyhow::{Context, Result, bail};
 
@@ -18,7 +18,7 @@ pub(super) fn run(arguments: &Simulate) -> Result<u8> {
     let root_search = if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded };
     let mut simulation = Simulation::new(&scene.scene, root_search);
     let mut recorder = Recorder::start(output, Layout::of(&scene.scene), simulation.state());
-    let mut counts = Counts::default();
+    let mut counts = EventCounts::default();
     let steps = scene.scene.steps();
     let mut bar = console::Bar::new(steps);
     for step in 1..=steps {

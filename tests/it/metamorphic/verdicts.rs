@@ -2,7 +2,7 @@
 use super::{built_in, transform::Map};
 use fosssim_oracle::{
     judge::{
-        fair::Verdict,
+        fair::FairVerdict,
         parity::{Options, judge},
     },
     scene::Scene,
@@ -59,7 +59,7 @@ fn is_accepted(scene: &Scene, id: Option<&str>) -> bool {
     let Ok(trace) = student::trace(scene, Student::new(mistake)) else { return false };
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let fair = judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
-    fair.verdict == Verdict::Accepted
+    fair.verdict == FairVerdict::Accepted
 }
 
 #[test]

@@ -15,7 +15,7 @@ use std::time::Duration;
 /// Step and particle of a wrong position that is the first divergence.
 fn first_divergence(result: &SceneResult) -> (u32, usize) {
     let told = result.told.as_ref().expect("full hints");
-    match &told.account().first_divergence {
+    match &told.official().first_divergence {
         Some(ToldFinding::Full(finding)) => match finding.detail {
             Detail::Position { particle, .. } => (finding.step, particle),
             other => panic!("{other:?}"),

@@ -8,8 +8,8 @@ use crate::{
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{
-    Book, Counts, Damage, Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role, Ruling,
-    Unreadable, fair::Cause,
+    Book, Damage, Detail, Finding, FindingCounts, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role,
+    Ruling, Unreadable, fair::Cause,
 };
 use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation, OfPolynomials};
 use fosssim_model::{
@@ -97,7 +97,7 @@ fn wrong() -> SceneResult {
         ToldPlace::Particle(3),
         ToldPlace::Objects(-1, i32::MAX),
     ];
-    let mut counts = Counts::default();
+    let mut counts = FindingCounts::default();
     for (number, kind) in Kind::ALL.into_iter().enumerate() {
         counts.add(kind, u64::MAX / 20 * (number as u64 % 2));
     }

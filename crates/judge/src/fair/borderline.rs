@@ -2,7 +2,7 @@
 //!
 //! It simulates and certifies, no more; a trace is not needed. Collision handling `simple` decides without polynomials
 //! and is not looked at.
-use super::{contact, formulas::Motion, step_judgement::Borderline};
+use super::{contact, formulas::BoundedPairMotion, step_judgement::Borderline};
 use fosssim_model::{
     scene::Scene,
     sim::{Decision, Detection, Observer, Pass, RootSearch, Simulation, Stage, StepError},
@@ -42,7 +42,7 @@ impl Observer for Watch<'_> {
         if detection.polynomials.is_empty() {
             return;
         }
-        let motion = Motion::of(self.scene, detection.pair, detection.q_start, detection.q_end);
+        let motion = BoundedPairMotion::of(self.scene, detection.pair, detection.q_start, detection.q_end);
         if contact::is_borderline(&motion, &motion.polynomials()) {
             let collides = matches!(detection.decision, Decision::Hit { .. });
             let (step, pass, pair) = (self.step, self.pass, detection.pair);

@@ -2,7 +2,7 @@
 //!
 //! It looks at what both have found, no closer: the first divergence of the book that rejects names the rule. What the
 //! original's rules are is written in oracle-behaviour.md 4 to 6, why they can't be trusted in numerics.md 1.
-use super::judgement::{Form, Judgement, Refusal, Verdict};
+use super::judgement::{FairVerdict, Form, Judgement, Refusal};
 use crate::{
     finding::{Detail, Finding, Role},
     outcome::{Outcome, Overall},
@@ -165,8 +165,8 @@ impl std::fmt::Display for Cause {
 pub fn cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
     match (outcome.overall, fair.verdict) {
-        (Overall::Failed, Verdict::Accepted) => Some(too_strict(outcome, fair)),
-        (Overall::Passed, Verdict::Rejected) => Some(too_lax(outcome, fair)),
+        (Overall::Failed, FairVerdict::Accepted) => Some(too_strict(outcome, fair)),
+        (Overall::Passed, FairVerdict::Rejected) => Some(too_lax(outcome, fair)),
         _ => None,
     }
 }

@@ -1,7 +1,7 @@
 //! Contacts and states: how far they may be off, and which decisions hang on round-off.
 use super::{
     context::{Context, Records, largest},
-    formulas::{Expected, Motion},
+    formulas::{BoundedPairMotion, Expected},
     sensitivity::Deviation,
     step_judgement::StepJudgement,
 };
@@ -85,7 +85,7 @@ pub(super) fn is_time_without_losses(expected: &Expected, own: f64, t: f64) -> b
 pub(super) fn hit(
     context: &Context<'_>,
     records: &Records<'_>,
-    known: Option<(&Motion, &Expected)>,
+    known: Option<(&BoundedPairMotion, &Expected)>,
     own: Impulse,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
@@ -107,7 +107,7 @@ pub(super) fn hit(
 pub(super) fn possible_hit(
     context: &Context<'_>,
     records: &Records<'_>,
-    known: Option<(&Motion, &Expected)>,
+    known: Option<(&BoundedPairMotion, &Expected)>,
     pair: Pair,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
@@ -132,7 +132,7 @@ pub(super) fn possible_hit(
 
 /// The contact normal at a time, and the tolerance of that vector. Of the whole vector: in axes of another direction the
 /// round-off of one component is that of both.
-fn normal(motion: &Motion, t: f64) -> (Vec2, f64) {
+fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     let normal = motion.normal(t);
     let bound = length(Vec2::new(normal.x.bound, normal.y.bound));
     (Vec2::new(normal.x.value, normal.y.value), FAIR_UNITS * UNIT_ROUNDOFF * bound)
@@ -161,7 +161,7 @@ fn compare_normal(
 
 /// From a pair's first object to the nearest point of the second at these positions (collisions.md 6).
 fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 {
-    let motion = Motion::of(context.scene, pair, positions, positions);
+    let motion = BoundedPairMotion::of(context.scene, pair, positions, positions);
     let n = motion.normal(1.0);
     let [Some(first), Some(second), Some(third)] = context.particles(pair) else {
         return Vec2::new(n.x.value, n.y.value);
@@ -262,7 +262,7 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
 ///
 /// Where a parabola's inputs have so few digits that every way to evaluate the formulas is exact, there is no round-off
 /// to excuse anything: touching at the very end of the step is then as certain as anything else.
-pub fn decides(motion: &Motion, expected: &Expected) -> Option<bool> {
+pub fn decides(motion: &BoundedPairMotion, expected: &Expected) -> Option<bool> {
     let mut polynomials: [&[Bounded]; 4] = [&[]; 4];
     for (number, polynomial) in polynomials.iter_mut().enumerate() {
         *polynomial = expected.polynomial(number);
@@ -284,7 +284,7 @@ pub fn decides(motion: &Motion, expected: &Expected) -> Option<bool> {
 const EXACT_BITS: u32 = 6;
 
 /// Whether round-off may flip the decision.
-pub(super) fn is_borderline(motion: &Motion, expected: &Expected) -> bool {
+pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &Expected) -> bool {
     decides(motion, expected).is_none()
 }
 

@@ -1,5 +1,5 @@
 //! Traces that no program wrote in earnest: each shows what the fair rules must not fall for.
-use super::{Judgement, Refusal, Verdict};
+use super::{FairVerdict, Judgement, Refusal};
 use crate::{
     finding::{Detail, Kind},
     samples::{BOUNCE, ZONES, changed, judged, relog, run, scene, written},
@@ -68,7 +68,7 @@ fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
         if distance > 1e-7 {
             changed += 1;
             let judged = fair(&scene, &written(&scene, &frames));
-            assert_eq!(judged.verdict, Verdict::Rejected, "{name}: states are {distance} off");
+            assert_eq!(judged.verdict, FairVerdict::Rejected, "{name}: states are {distance} off");
         }
     }
     changed
@@ -95,7 +95,7 @@ fn a_factor_of_each_polynomial_must_not_change_what_happens() {
 fn ordinary_factors_are_accepted() {
     for (name, scene) in assets() {
         let judged = fair(&scene, &written(&scene, &run(&scene, Factors(|_, _| 1, 0))));
-        assert_eq!(judged.verdict, Verdict::Accepted, "{name}: {:?}", judged.first_divergence);
+        assert_eq!(judged.verdict, FairVerdict::Accepted, "{name}: {:?}", judged.first_divergence);
     }
 }
 
@@ -125,7 +125,11 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     let miss = Decision::Miss { time: Time::None };
     let without = fair(&scene, &written(&scene, &run(&scene, Answer(Some(miss)))));
     let right = with(1.0, -0.06, -0.08);
-    assert_eq!((without.verdict, right.verdict), (Verdict::Accepted, Verdict::Accepted), "{without:?} {right:?}");
+    assert_eq!(
+        (without.verdict, right.verdict),
+        (FairVerdict::Accepted, FairVerdict::Accepted),
+        "{without:?} {right:?}"
+    );
     assert_eq!(without.borderline + right.borderline, 1, "one of them is the reference's");
     for (time, x, y) in [(1.0, 0.5, -0.08), (1.0, 0.06, 0.08), (1.0, f64::NAN, -0.08), (1.0, -0.07, -0.08)] {
         let judged = with(time, x, y);
@@ -154,7 +158,7 @@ fn one_factor_does_not_vouch_for_empty_logs() {
             }
         });
         if forged != reference {
-            assert_eq!(fair(&scene, &forged).verdict, Verdict::Rejected, "{name}");
+            assert_eq!(fair(&scene, &forged).verdict, FairVerdict::Rejected, "{name}");
         }
     }
 }
@@ -174,7 +178,7 @@ fn a_large_factor_does_not_vouch_for_garbage() {
                 });
             }
         });
-        assert_eq!(fair(&scene, &forged).verdict, Verdict::Rejected, "{name}");
+        assert_eq!(fair(&scene, &forged).verdict, FairVerdict::Rejected, "{name}");
     }
 }
 
@@ -190,7 +194,7 @@ fn what_is_no_positive_number_is_no_factor() {
                 });
             }
         });
-        assert_eq!(fair(&scene, &forged).verdict, Verdict::Rejected, "{factor}");
+        assert_eq!(fair(&scene, &forged).verdict, FairVerdict::Rejected, "{factor}");
     }
 }
 
@@ -278,7 +282,7 @@ fn the_references_own_way_is_right_wherever_it_leads() {
     );
     let frames = run(&scene, ());
     assert!(frames.iter().any(|frame| !frame.state.velocities.iter().all(|v| v.is_finite())));
-    assert_eq!(fair(&scene, &written(&scene, &frames)).verdict, Verdict::Accepted);
+    assert_eq!(fair(&scene, &written(&scene, &frames)).verdict, FairVerdict::Accepted);
 }
 
 /// Balls that rest on each other: every approach is zero but for round-off. A trace in which all of them go the other way
@@ -298,7 +302,7 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
         }
     }
     let plain = fair(&scene, &written(&scene, &run(&scene, ())));
-    assert_eq!(plain.verdict, Verdict::Accepted);
+    assert_eq!(plain.verdict, FairVerdict::Accepted);
     let forged = fair(&scene, &written(&scene, &run(&scene, Push)));
     assert_eq!(forged.refusal, Some(Refusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
     assert_eq!(forged.counts.total(), 0, "{:?}", forged.first_divergence);

@@ -20,14 +20,14 @@ use fosssim_num::{
 
 /// The way of one point in a step: where it starts, and its displacement.
 #[derive(Debug, Clone, Copy)]
-pub struct Way {
+pub struct BoundedPointMotion {
     /// Position at the start of the step.
     pub start: Bounded2,
     /// Displacement in the step.
     pub shift: Bounded2,
 }
 
-impl Way {
+impl BoundedPointMotion {
     /// The way between two points whose coordinates may be off by roundings of `size`: a program may compute in axes of its
     /// own, turned or shifted. Nothing is off if it rests for certain.
     fn between([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
@@ -39,13 +39,13 @@ impl Way {
 
 /// The objects of a pair and how they move.
 #[derive(Debug, Clone, Copy)]
-pub enum Motion {
+pub enum BoundedPairMotion {
     /// Two discs; the sum of radii.
-    Particles([Way; 2], Bounded),
+    Particles([BoundedPointMotion; 2], Bounded),
     /// A disc and an edge's endpoints; the sum of radii.
-    Edge([Way; 3], Bounded),
+    Edge([BoundedPointMotion; 3], Bounded),
     /// A disc and a half-plane: the way, the radius, the point and the normal as written.
-    HalfPlane(Way, Bounded, Vec2, Vec2),
+    HalfPlane(BoundedPointMotion, Bounded, Vec2, Vec2),
 }
 
 /// A polynomial, highest power first, nothing dropped.
@@ -90,7 +90,7 @@ impl Expected {
     }
 }
 
-impl Motion {
+impl BoundedPairMotion {
     /// The pair's motion in a step.
     pub fn of(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
@@ -101,7 +101,7 @@ impl Motion {
         };
         let way = |particle, size| {
             let [start, end] = places(particle);
-            Way::between([start, end], size, scene.particles[particle].fixed && start == end)
+            BoundedPointMotion::between([start, end], size, scene.particles[particle].fixed && start == end)
         };
         let radius = |particle: usize| Bounded::exact(scene.particles[particle].radius);
         match pair.kind {
@@ -125,7 +125,7 @@ impl Motion {
 
     /// The same motion, of particles whose end positions may be off by `deviations` (2N, scene unit) on top.
     pub fn widened(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
-        let widen = |way: &mut Way, particle: Option<usize>| {
+        let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };
             // In units of the running error bound, whose tolerance is twice FAIR_UNITS of them.
             let units = FAIR_SENSITIVITY / (2.0 * FAIR_UNITS * UNIT_ROUNDOFF);
@@ -193,7 +193,7 @@ impl Motion {
     /// The contact normal at time `t`, not normalised.
     pub fn normal(&self, t: f64) -> Bounded2 {
         let t = Bounded::exact(t);
-        let place = |way: &Way| way.start + t * way.shift;
+        let place = |way: &BoundedPointMotion| way.start + t * way.shift;
         match self {
             Self::Particles([one, two], _) => place(two) - place(one),
             Self::Edge([one, two, three], _) => {
@@ -247,7 +247,7 @@ mod tests {
         struct Compare<'a>(&'a Scene, usize);
         impl fosssim_model::sim::Observer for Compare<'_> {
             fn detection(&mut self, detection: &fosssim_model::sim::Detection<'_>) {
-                let motion = Motion::of(self.0, detection.pair, detection.q_start, detection.q_end);
+                let motion = BoundedPairMotion::of(self.0, detection.pair, detection.q_start, detection.q_end);
                 let expected = motion.polynomials();
                 for (number, polynomial) in detection.polynomials.iter().enumerate() {
                     let own = expected.polynomial(number);
@@ -273,7 +273,7 @@ mod tests {
         let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
         let (q_start, q_end) = ([0.1, 1.3, -1.7, 0.3, 1.9, -0.4], [0.45, 0.25, -1.55, 0.55, 1.8, 0.05]);
         let pair = Pair { kind: PairKind::ParticleEdge, first: 0, second: 0 };
-        let expected = Motion::of(&scene, pair, &q_start, &q_end).polynomials();
+        let expected = BoundedPairMotion::of(&scene, pair, &q_start, &q_end).polynomials();
         let (course, right) = (expected.polynomial(3), expected.other_form(3).expect("an edge"));
         let differing: Vec<usize> = (0..6).filter(|&k| course[k].value != right[k].value).collect();
         assert_eq!(differing, [2]);

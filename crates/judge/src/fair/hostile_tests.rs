@@ -26,7 +26,7 @@ fn states_of_any_size_are_judged_without_a_panic() {
                     let trace = changed(&scene, |frames| blown_up(frames, from, to, value));
                     let outcome = judged(&scene, &trace);
                     let fair = outcome.fair.expect("the fair rules were asked");
-                    assert_eq!(fair.verdict, super::Verdict::Rejected, "{value} in {from}..{to}");
+                    assert_eq!(fair.verdict, super::FairVerdict::Rejected, "{value} in {from}..{to}");
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The fair verdict on one trace.
 use super::step_judgement::{Borderline, Pending, Scales, Shares, StepJudgement};
 use crate::{
-    counts::Counts,
+    counts::FindingCounts,
     finding::{Detail, Finding},
 };
 
@@ -13,7 +13,7 @@ const FEW: u64 = 64;
 
 /// The verdict of the fair rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Verdict {
+pub enum FairVerdict {
     /// Nothing is wrong.
     Accepted,
     /// Something is.
@@ -52,11 +52,11 @@ pub enum Form {
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: FairVerdict,
     /// Why the trace is refused as a whole, whatever its steps hold.
     pub refusal: Option<Refusal>,
     /// Counts per kind of finding.
-    pub counts: Counts,
+    pub counts: FindingCounts,
     /// Steps with at least one finding; the initial record is not one.
     pub wrong_steps: u64,
     /// The first finding of each kind that occurred, in the order of [`Kind::ALL`](crate::Kind::ALL).
@@ -190,11 +190,11 @@ impl Judgement {
         self.settle_pending();
         self.examples.sort_by_key(Finding::kind);
         self.verdict = if self.refusal.is_some() || self.counts.total() > 0 {
-            Verdict::Rejected
+            FairVerdict::Rejected
         } else if complete {
-            Verdict::Accepted
+            FairVerdict::Accepted
         } else {
-            Verdict::None
+            FairVerdict::None
         };
     }
 }

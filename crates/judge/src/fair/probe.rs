@@ -5,7 +5,7 @@
 //! graze, stiff springs and zones of nearly no extent get the room that they need, and nothing else gets any.
 use super::{
     context::{Context, Followed, Records},
-    formulas::Motion,
+    formulas::BoundedPairMotion,
     sensitivity::{Deviation, Sensitivity},
 };
 use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, Time};
@@ -138,7 +138,7 @@ struct Probe<'a> {
     stale: bool,
     pass: usize,
     /// The motion of the pair that is looked at.
-    motion: Option<Motion>,
+    motion: Option<BoundedPairMotion>,
     context: &'a Context<'a>,
 }
 
@@ -149,7 +149,7 @@ impl Observer for Probe<'_> {
     }
 
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
-        self.motion = Some(Motion::of(self.context.scene, pair, q_start, q_end));
+        self.motion = Some(BoundedPairMotion::of(self.context.scene, pair, q_start, q_end));
     }
 
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {

@@ -1,7 +1,7 @@
 //! What judging one step yields.
 use super::context::{Context, Records};
 use crate::{
-    counts::Counts,
+    counts::FindingCounts,
     finding::{Detail, Finding, Kind, PolynomialPlace},
 };
 use fosssim_model::sim::{ByKind, Pair, PairKind, Pass};
@@ -87,7 +87,7 @@ pub(crate) struct StepJudgement {
     /// The first finding of each kind, in the order in which they were made.
     pub findings: Vec<Finding>,
     /// How many more there are of each kind.
-    pub more: Counts,
+    pub more: FindingCounts,
     /// Decisions about pairs.
     pub decisions: u64,
     /// Borderline decisions that were followed.

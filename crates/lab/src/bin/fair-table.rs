@@ -8,7 +8,7 @@ use anyhow::Context;
 use fosssim_oracle::{
     judge::{
         Overall,
-        fair::{Judgement, Verdict},
+        fair::{FairVerdict, Judgement},
         parity::{self, Options},
     },
     scene::original,
@@ -45,9 +45,9 @@ fn main() -> anyhow::Result<()> {
         };
         anyhow::ensure!(parity == row.overall, "{} {}: parity says {parity}", row.submission, row.scene);
         let verdict = match fair.verdict {
-            Verdict::Accepted => "accepted",
-            Verdict::Rejected => "rejected",
-            Verdict::None => "none",
+            FairVerdict::Accepted => "accepted",
+            FairVerdict::Rejected => "rejected",
+            FairVerdict::None => "none",
         };
         *summary.entry((&row.kind, parity, verdict)).or_default() += 1;
         let differ = (parity == "passed") != (verdict == "accepted");

@@ -14,7 +14,7 @@ use std::{
 
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
-    judge::{Kind, Outcome, Overall, fair::Verdict, parity::Options},
+    judge::{Kind, Outcome, Overall, fair::FairVerdict, parity::Options},
     scene::{Scene, original},
     student::{self, CATALOGUE, KNOWN_REFUSED, Row, Student},
     suite::scene_files::{self, SceneFile},
@@ -48,7 +48,7 @@ fn parity(scene: &Scene, trace: &[u8]) -> Answer {
 
 fn fair(scene: &Scene, trace: &[u8]) -> Answer {
     match judge(scene, trace, true).fair {
-        Some(fair) if fair.verdict == Verdict::Accepted => Answer::Accepted,
+        Some(fair) if fair.verdict == FairVerdict::Accepted => Answer::Accepted,
         Some(fair) if fair.refusal.is_none() && fair.counts.get(Kind::TrimmedDecision) == fair.counts.total() => {
             Answer::Lost
         }

@@ -5,7 +5,7 @@ use crate::student::{
     mutants::{Mutant, mutants},
 };
 use fosssim_judge::{
-    fair::Verdict,
+    fair::FairVerdict,
     parity::{Options, judge},
 };
 use fosssim_model::{assignments::Assignment, scene::Scene, sim::PairKind};
@@ -44,7 +44,7 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
     for (_, scene) in probe_scenes(Assignment::DEFAULT) {
         let trace = student::trace(&scene, student).unwrap_or_else(|(bytes, _)| bytes);
         match judge(&scene, &trace[..], &options, &mut ()).fair {
-            Some(fair) if fair.verdict == Verdict::Accepted => right.push(scene),
+            Some(fair) if fair.verdict == FairVerdict::Accepted => right.push(scene),
             _ => explained.push(explain(&scene, &trace)),
         }
     }

@@ -191,7 +191,7 @@ impl Observer for Gatherer<'_> {
             return;
         }
         let polynomials: Vec<Vec<f64>> = lists.map(|index| self.log.get(index).to_vec()).collect();
-        let expected = formulas::Motion::of(self.scene, pair, q_start, q_end).polynomials();
+        let expected = formulas::BoundedPairMotion::of(self.scene, pair, q_start, q_end).polynomials();
         let is_right = size == pair.kind.polynomials()
             && polynomials.iter().enumerate().all(|(number, logged)| {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];

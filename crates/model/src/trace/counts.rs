@@ -5,14 +5,14 @@ use std::fmt;
 /// Numbers of events over all steps that it heard. Use it with others as a tuple: `(&mut recorder, &mut counts)`.
 ///
 /// ```
-/// use fosssim_model::{scene::original, sim::{RootSearch, Simulation}, trace::Counts};
+/// use fosssim_model::{scene::original, sim::{RootSearch, Simulation}, trace::EventCounts};
 ///
 /// let xml = br#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>
 ///     <collision type="continuous-time" COR="1"/>
 ///     <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0"/><particle m="1" px="9" py="0" vx="0" vy="0" fixed="0"/></scene>"#;
 /// let scene = original::read(xml).expect("a scene").scene;
 /// let mut simulation = Simulation::new(&scene, RootSearch::default());
-/// let mut counts = Counts::default();
+/// let mut counts = EventCounts::default();
 /// for _ in 0..scene.steps() {
 ///     simulation.step(&mut counts)?;
 /// }
@@ -20,7 +20,7 @@ use std::fmt;
 /// # Ok::<(), fosssim_model::sim::StepError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
+pub struct EventCounts {
     /// Steps that came to their end.
     pub steps: u64,
     /// Passes of `simple`.
@@ -49,7 +49,7 @@ pub struct Counts {
     pub most_zones: u64,
 }
 
-impl Counts {
+impl EventCounts {
     /// Detection calls of all kinds.
     #[must_use]
     pub fn calls_of_all_kinds(&self) -> u64 {
@@ -69,7 +69,7 @@ impl Counts {
     }
 }
 
-impl Observer for Counts {
+impl Observer for EventCounts {
     fn begin_pass(&mut self, pass: Pass) {
         match pass.stage {
             Stage::Simple => self.simple_passes += 1,
@@ -107,7 +107,7 @@ impl Observer for Counts {
     }
 }
 
-impl fmt::Display for Counts {
+impl fmt::Display for EventCounts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "steps         {}", self.steps)?;
         writeln!(
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn events_are_counted_by_stage_and_kind() {
-        let mut counts = Counts::default();
+        let mut counts = EventCounts::default();
         let pair = Pair { kind: PairKind::ParticleEdge, first: 0, second: 1 };
         for round in 0..2 {
             counts.begin_pass(Pass { stage: Stage::Geometric { round }, index: round });

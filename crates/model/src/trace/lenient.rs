@@ -2,7 +2,7 @@
 //!
 //! A stream that has run out stays failed; a value that is only partly there takes the bytes that are there as its
 //! low-order ones; polynomials are read without any check. The one thing not reproduced is how the original dies of
-//! nonsense counts: [`Cause::Memory`] is the answer instead.
+//! nonsense counts: [`Unreadable::Memory`] is the answer instead.
 //!
 //! Memory is bounded by what a record of the scene can hold ([`record_memory`]). Polynomials beyond that are counted and
 //! not kept: the reference never logs so many, so their number alone is the finding.
@@ -113,25 +113,25 @@ impl LenientFrame {
 /// Why the original goes no further.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{at}")]
-pub struct Stop {
+pub struct ReadStop {
     /// What could not be read.
-    pub cause: Cause,
+    pub cause: Unreadable,
     /// The damage.
     pub at: TraceError,
 }
 
-/// What could not be read; the original has a message for each of the first two.
+/// What of a record could not be read; the original has a message for each of the first two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cause {
-    /// "Failed to load timestep".
+pub enum Unreadable {
+    /// "Failed to load timestep": the bytes end before or inside positions and velocities.
     State,
-    /// "Error while trying to deserialize time step impulses".
+    /// "Error while trying to deserialize time step impulses": the bytes end inside the impulse list.
     Impulses,
-    /// The original runs out of memory (SIGABRT), or would with more bytes than we read.
+    /// A count that no file could satisfy: the original runs out of memory (SIGABRT), or would with more bytes than we read.
     Memory,
     /// A limit of ours: the record is larger than any sound one of the scene, and the original reads on.
     Limit,
-    /// The stream reported an error. The original takes it for the end of the file.
+    /// The reader reported an error of the operating system. The original takes it for the end of the file.
     Io,
 }
 
@@ -174,8 +174,8 @@ impl<R: Read> Lenient<R> {
     /// Replaces `frame` by the next record, whether or not the scene has so many.
     ///
     /// # Errors
-    /// [`Stop`]; `frame` is unspecified then.
-    pub fn next(&mut self, frame: &mut LenientFrame) -> Result<(), Stop> {
+    /// [`ReadStop`]; `frame` is unspecified then.
+    pub fn next(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
         self.begin = self.source.offset();
         self.note = None;
         frame.impulses.clear();
@@ -247,13 +247,13 @@ impl<R: Read> Lenient<R> {
         TraceError { offset, frame: self.record, step: self.layout.step_of(self.record), what }
     }
 
-    fn stop(&self, cause: Cause, offset: u64, what: Malformation) -> Stop {
+    fn stop(&self, cause: Unreadable, offset: u64, what: Malformation) -> ReadStop {
         match self.source.error().cloned() {
-            Some((kind, message)) if matches!(cause, Cause::State | Cause::Impulses) => {
+            Some((kind, message)) if matches!(cause, Unreadable::State | Unreadable::Impulses) => {
                 let at = self.error(self.source.offset(), Malformation::Io { kind, message });
-                Stop { cause: Cause::Io, at }
+                ReadStop { cause: Unreadable::Io, at }
             }
-            _ => Stop { cause, at: self.error(offset, what) },
+            _ => ReadStop { cause, at: self.error(offset, what) },
         }
     }
 
@@ -278,7 +278,7 @@ impl<R: Read> Lenient<R> {
         }
     }
 
-    fn state(&mut self, state: &mut State) -> Result<(), Stop> {
+    fn state(&mut self, state: &mut State) -> Result<(), ReadStop> {
         self.failed = self.failed || !decode::state(&mut self.source, self.layout.particles, state);
         if !self.failed {
             return Ok(());
@@ -289,16 +289,16 @@ impl<R: Read> Lenient<R> {
             (0, records) => Malformation::TooFewRecords { records, expected: self.layout.records() },
             _ => Malformation::State { needs: self.layout.state_bytes() as u64, left },
         };
-        Err(self.stop(Cause::State, self.begin, what))
+        Err(self.stop(Unreadable::State, self.begin, what))
     }
 
-    fn impulses(&mut self, impulses: &mut Vec<LoggedImpulse>) -> Result<(), Stop> {
+    fn impulses(&mut self, impulses: &mut Vec<LoggedImpulse>) -> Result<(), ReadStop> {
         let (list, offset) = (List::Impulses, self.source.offset());
         let mut bytes = [0; 4];
         self.bytes(&mut bytes);
         let begin = self.source.offset();
         if self.failed {
-            return Err(self.stop(Cause::Impulses, offset, Malformation::CountCut { list, left: begin - offset }));
+            return Err(self.stop(Unreadable::Impulses, offset, Malformation::CountCut { list, left: begin - offset }));
         }
         let count = i32::from_le_bytes(bytes);
         if count < 0 {
@@ -308,19 +308,19 @@ impl<R: Read> Lenient<R> {
         while impulses.len() < entries {
             if impulses.len() * decode::IMPULSE_MEMORY > self.limit {
                 let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
-                return Err(self.stop(Cause::Limit, offset, what));
+                return Err(self.stop(Unreadable::Limit, offset, what));
             }
             if decode::impulses(&mut self.source, entries - impulses.len(), impulses) == 0 {
                 let left = self.source.offset() - begin + self.source.ensure(1) as u64;
                 let needs = entries as u64 * list.entry_bytes();
-                let cause = if entries > STORABLE_IMPULSES { Cause::Memory } else { Cause::Impulses };
+                let cause = if entries > STORABLE_IMPULSES { Unreadable::Memory } else { Unreadable::Impulses };
                 return Err(self.stop(cause, offset, Malformation::CountBeyondEnd { list, count, needs, left }));
             }
         }
         Ok(())
     }
 
-    fn polynomials(&mut self, frame: &mut LenientFrame) -> Result<(), Stop> {
+    fn polynomials(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
         let (list, offset) = (List::Polynomials, self.source.offset());
         let mut bytes = [0; 4];
         self.bytes(&mut bytes);
@@ -348,7 +348,7 @@ impl<R: Read> Lenient<R> {
             }
             if entries > STORABLE_POLYNOMIALS && self.source.offset() - begin > self.limit as u64 {
                 let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
-                return Err(self.stop(Cause::Memory, offset, what));
+                return Err(self.stop(Unreadable::Memory, offset, what));
             }
             if done < entries && !self.ordinary_in_window() {
                 self.polynomial(frame, done, count)?;
@@ -360,7 +360,7 @@ impl<R: Read> Lenient<R> {
         if missing > 0 && entries > STORABLE_POLYNOMIALS {
             let left = self.source.offset() - begin;
             let what = Malformation::CountBeyondEnd { list, count, needs: 4 * entries, left };
-            return Err(self.stop(Cause::Memory, offset, what));
+            return Err(self.stop(Unreadable::Memory, offset, what));
         }
         let room = self.limit.saturating_sub(decode::memory(&frame.polynomials)) / size_of::<usize>();
         let log = &mut frame.polynomials;
@@ -381,7 +381,7 @@ impl<R: Read> Lenient<R> {
     }
 
     /// Reads one polynomial the long way: any size, the stream may end anywhere.
-    fn polynomial(&mut self, frame: &mut LenientFrame, number: u64, count: i32) -> Result<(), Stop> {
+    fn polynomial(&mut self, frame: &mut LenientFrame, number: u64, count: i32) -> Result<(), ReadStop> {
         let offset = self.source.offset();
         let mut bytes = [0; 4];
         self.bytes(&mut bytes);
@@ -394,7 +394,7 @@ impl<R: Read> Lenient<R> {
         let size = usize::try_from(size).unwrap_or(0);
         if size > STORABLE_COEFFICIENTS {
             let what = Malformation::FrameTooLarge { limit: 8 * STORABLE_COEFFICIENTS as u64 };
-            return Err(self.stop(Cause::Memory, offset, what));
+            return Err(self.stop(Unreadable::Memory, offset, what));
         }
         let whole = !self.failed;
         let begin = self.source.offset();

@@ -24,7 +24,7 @@ mod step_bytes;
 mod summary;
 mod writer;
 
-pub use counts::Counts;
+pub use counts::EventCounts;
 pub use diff::{Block, Comparison, Difference, compare, difference};
 pub use digest::{Digests, Sha, Short};
 pub use error::{List, Malformation, TraceError};
@@ -33,7 +33,7 @@ pub use histogram::Histogram;
 pub use index::Indexed;
 pub use labels::{Label, labels};
 pub use layout::Layout;
-pub use lenient::{Cause, Lenient, LenientFrame, Stop, record_memory};
+pub use lenient::{Lenient, LenientFrame, ReadStop, Unreadable, record_memory};
 pub use reader::{FRAME_LIMIT, Reader, TRAILING_LIMIT};
 pub use recorder::Recorder;
 pub use step_bytes::StepBytes;

@@ -2,7 +2,7 @@
 //!
 //! A pure function of scene and bytes: the same trace gives the same text everywhere. Numbers are printed with the
 //! fewest digits that read back to the same bits. What a trace does not hold (passes, pair kinds, zones) is counted
-//! by [`Counts`](super::Counts) while a simulation runs.
+//! by [`EventCounts`](super::EventCounts) while a simulation runs.
 use super::{
     TraceError,
     digest::{self, Sha, Short},

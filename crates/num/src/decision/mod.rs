@@ -82,9 +82,9 @@ impl Level {
 
 /// How many queries each level has decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts([u64; Level::ALL.len()]);
+pub struct LevelCounts([u64; Level::ALL.len()]);
 
-impl Counts {
+impl LevelCounts {
     /// Counts one more decision of this level.
     pub fn record(&mut self, level: Level) {
         self.0[level as usize] += 1;

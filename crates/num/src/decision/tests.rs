@@ -3,7 +3,7 @@ use super::{
         bounded::{Bounded, UNIT_ROUNDOFF},
         first_time::first_time_of,
     },
-    Certainty, Certified, Counts, Level, decide,
+    Certainty, Certified, Level, LevelCounts, decide,
     exact::{ExactAnswer, exact_first},
 };
 use proptest::prelude::*;
@@ -149,7 +149,7 @@ fn what_is_not_finite_is_borderline() {
 
 #[test]
 fn counts_say_which_level_decided() {
-    let mut counts = Counts::default();
+    let mut counts = LevelCounts::default();
     for lists in [owned(&[&[-1.0]]), owned(&[&[1.0, -2.0]]), owned(&[&[1.0, -0.5], &[-1.0, 0.5]])] {
         counts.record(decided(&lists, 0.0).level);
     }

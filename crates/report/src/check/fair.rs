@@ -6,7 +6,7 @@ use super::super::{
 };
 use fosssim_judge::{
     Outcome, PairWords, PassWords,
-    fair::{Form, Judgement, Refusal, Verdict, cause},
+    fair::{FairVerdict, Form, Judgement, Refusal, cause},
     share,
 };
 
@@ -15,9 +15,9 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let fair = outcome.fair.as_deref()?;
     let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
     let (look, word) = match fair.verdict {
-        Verdict::Accepted => (Look::Good, "accepted"),
-        Verdict::Rejected => (Look::Bad, "rejected"),
-        Verdict::None => (Look::Notice, "no verdict"),
+        FairVerdict::Accepted => (Look::Good, "accepted"),
+        FairVerdict::Rejected => (Look::Bad, "rejected"),
+        FairVerdict::None => (Look::Notice, "no verdict"),
     };
     let mut line = |words: String| text += &format!("  {words}\n");
     line(format!("{}: {}", style.paint(look, word), summary(fair, outcome)));
@@ -101,7 +101,7 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
         (Some(refusal), Some(found)) => format!("{refusal}; {found}"),
         (Some(refusal), None) => refusal.to_owned(),
         (None, Some(found)) => found,
-        (None, None) if fair.verdict == Verdict::None => "nothing is wrong so far".to_owned(),
+        (None, None) if fair.verdict == FairVerdict::None => "nothing is wrong so far".to_owned(),
         (None, None) => share::right(outcome.steps, count),
     }
 }

@@ -2,7 +2,7 @@
 use super::super::view::{FindingView, Number, PairView, PassView};
 use fosssim_judge::{
     Outcome,
-    fair::{Borderline, Cause, Form, Judgement, Refusal, Shares, Verdict, cause},
+    fair::{Borderline, Cause, FairVerdict, Form, Judgement, Refusal, Shares, cause},
 };
 use serde::Serialize;
 
@@ -75,9 +75,9 @@ impl From<&Judgement> for FairView {
     fn from(fair: &Judgement) -> Self {
         Self {
             verdict: match fair.verdict {
-                Verdict::Accepted => "accepted",
-                Verdict::Rejected => "rejected",
-                Verdict::None => "none",
+                FairVerdict::Accepted => "accepted",
+                FairVerdict::Rejected => "rejected",
+                FairVerdict::None => "none",
             },
             refusal: fair.refusal.map(|refusal| match refusal {
                 Refusal::Stopped => "stopped",

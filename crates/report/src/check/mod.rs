@@ -108,7 +108,7 @@ impl Check<'_> {
     fn view(&self) -> View<'_> {
         let outcome = self.outcome;
         let residuals = outcome.residuals;
-        let account = outcome.account(self.book());
+        let account = outcome.findings_by(self.book());
         let finding = |finding| match self.book() {
             Book::Parity => FindingView::from(finding),
             Book::Fair => FindingView::fair(finding),

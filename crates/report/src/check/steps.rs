@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::{Check, divergence, fair_view::CountedView};
 use fosssim_judge::{
-    Account, Book, Counts, Finding,
+    Book, BookFindings, Finding, FindingCounts,
     parity::{Progress, StepFindings, WrongStep},
 };
 use serde::Serialize;
@@ -33,7 +33,7 @@ struct Step {
     /// The first finding of each kind.
     firsts: Vec<Finding>,
     /// How many there are besides.
-    more: Counts,
+    more: FindingCounts,
 }
 
 /// The wrong steps by one book, the first [`LISTED`], in their order.
@@ -59,13 +59,13 @@ impl WrongSteps {
     }
 
     /// What a book has found; what it could tell only from the whole trace is among it.
-    fn by(&self, book: Book, account: Account<'_>) -> Steps {
+    fn by(&self, book: Book, account: BookFindings<'_>) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
             Book::Fair => self.fair.clone(),
         };
         for finding in account.examples.iter().chain(account.first_divergence) {
-            let findings = StepFindings { firsts: std::slice::from_ref(finding), more: Counts::default() };
+            let findings = StepFindings { firsts: std::slice::from_ref(finding), more: FindingCounts::default() };
             steps.add(finding.step, findings, &self.shown);
         }
         steps
@@ -101,7 +101,7 @@ impl Steps {
             Ok(place) => place,
             Err(_) if self.kept.len() >= LISTED => return,
             Err(place) => {
-                self.kept.insert(place, Step { number: step, firsts: Vec::new(), more: Counts::default() });
+                self.kept.insert(place, Step { number: step, firsts: Vec::new(), more: FindingCounts::default() });
                 place
             }
         };
@@ -117,7 +117,7 @@ impl Steps {
 
 /// What the official book has found, or the other one, where the official has nothing.
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
-    let of = |book| (book, check.steps.by(book, check.outcome.account(book)));
+    let of = |book| (book, check.steps.by(book, check.outcome.findings_by(book)));
     let official = of(check.book());
     if official.1.numbers.is_empty() && official.1.kept.is_empty() && check.rules.ask_fair() {
         return of(Book::Fair);
@@ -127,7 +127,7 @@ fn steps_of(check: &Check<'_>) -> (Book, Steps) {
 
 /// The numbers of the official book's wrong steps, the first [`LISTED`].
 pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
-    check.steps.by(check.book(), check.outcome.account(check.book())).numbers
+    check.steps.by(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
 /// Whether only certain steps are asked for, so that the rest of the report is left out.
@@ -155,7 +155,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
             .collect(),
     };
     let mut text = blocks.join("\n");
-    let wrong = check.outcome.account(book).wrong_steps;
+    let wrong = check.outcome.findings_by(book).wrong_steps;
     let shown = steps.kept.iter().filter(|step| step.number > 0).count() as u64;
     if check.steps.shown == Shown::All && shown < wrong {
         text += &format!("\n{} more are wrong; --step N shows any of them\n", counted(wrong - shown, "step"));

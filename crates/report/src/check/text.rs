@@ -11,7 +11,7 @@ use super::{
     first::{first, is_other_scene},
     steps,
 };
-use fosssim_judge::{Account, Book, Detail, Finding, Outcome, Overall, Ruling, Stop, Unreadable, share};
+use fosssim_judge::{Book, BookFindings, Detail, Finding, Outcome, Overall, Ruling, Stop, Unreadable, share};
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let outcome = check.outcome;
@@ -24,7 +24,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
     parts.push(residuals(outcome, style));
     parts.extend(fair::render(outcome, style));
-    let account = outcome.account(check.book());
+    let account = outcome.findings_by(check.book());
     // The fair section holds its own findings.
     if !account.examples.is_empty() && check.book() == Book::Parity {
         parts.push(findings(account, style));
@@ -205,7 +205,7 @@ fn used(value: f64, bound: f64) -> String {
     }
 }
 
-fn findings(account: Account<'_>, style: Style) -> String {
+fn findings(account: BookFindings<'_>, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
     for example in account.examples {

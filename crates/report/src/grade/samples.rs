@@ -6,7 +6,7 @@ use fosssim_grading::{
     score::{self, Marking},
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
-use fosssim_judge::{Book, Counts, Kind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
+use fosssim_judge::{Book, FindingCounts, Kind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::time::Duration;
 
@@ -73,7 +73,7 @@ pub(crate) fn bad() -> Grade {
     let pass = Pass { stage: Stage::Impulses { round: 0 }, index: 0 };
     let place = ToldPlace::Polynomial(PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 });
     let first = ToldFinding::Place { step: 3, kind: Kind::Coefficient, place };
-    let mut counts = Counts::default();
+    let mut counts = FindingCounts::default();
     counts.add(Kind::Coefficient, 1);
     wrong.told = Some(Told {
         official: Book::Parity,

@@ -212,7 +212,7 @@ const fn integrator_name(integrator: Integrator) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fosssim_judge::{Counts, Kind, Overall};
+    use fosssim_judge::{FindingCounts, Kind, Overall};
     use fosssim_model::{
         scene::Collision,
         sim::{Impulse, Pair, PairKind, SearchCounts},
@@ -239,7 +239,7 @@ mod tests {
             overall,
             residuals: Residuals { accumulated_position: 0.002_828_427, maximum_position: 1e-10, ..Default::default() },
             collisions_passed: (overall != Overall::None).then_some(false),
-            counts: Counts::default(),
+            counts: FindingCounts::default(),
             wrong_steps: 0,
             examples: Vec::new(),
             first_divergence: None,

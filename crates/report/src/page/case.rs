@@ -7,7 +7,7 @@ use crate::{
 };
 use fosssim_evidence::{Evidence, Focus};
 use fosssim_grading::config::Hints;
-use fosssim_judge::{Account, Book, Outcome, Ruling};
+use fosssim_judge::{Book, BookFindings, Outcome, Ruling};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::tolerances::PARITY_MAXIMUM;
 use fosssim_render::plot::{Embedding, PASSES_AXIS, PassPlot, RESIDUALS_AXIS, ResidualPlot, Series};
@@ -53,7 +53,7 @@ impl Case<'_> {
         let is_full = self.hints == Hints::Full;
         let heading = |words: &str| format!("<h{0}>{words}</h{0}>\n", depth + 1);
         let mut out = books(outcome);
-        let account = outcome.account(self.check.rules.official());
+        let account = outcome.findings_by(self.check.rules.official());
         let other = outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
         let first = account.first_divergence.or(other);
         if let (Some(first), true) = (first, is_full && !self.is_other_scene()) {
@@ -177,7 +177,7 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     out
 }
 
-fn findings(account: &Account<'_>) -> String {
+fn findings(account: &BookFindings<'_>) -> String {
     let mut out = String::from(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Findings\"><table><thead><tr>\
          <th scope=\"col\">kind</th><th scope=\"col\">count</th><th scope=\"col\">first example</th></tr></thead><tbody>\n",

@@ -48,7 +48,7 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
             json!({"step": up.step, "pair": key(call.pair), "zeros": zeros})
         })
     });
-    let first = case.check.outcome.account(case.check.rules.official()).first_divergence.map(|first| first.step);
+    let first = case.check.outcome.findings_by(case.check.rules.official()).first_divergence.map(|first| first.step);
     json!({
         "scene": markup::visible(case.check.scene),
         "traceName": case.has_trace.then(|| markup::visible(case.check.trace)),

@@ -1,6 +1,6 @@
 use super::*;
 use fosssim_grading::told::Told;
-use fosssim_judge::{Book, Counts, Damage, Ruling};
+use fosssim_judge::{Book, Damage, FindingCounts, Ruling};
 use std::time::Duration;
 
 fn says(reason: Reason) -> String {
@@ -53,7 +53,7 @@ fn details_are_what_is_told_and_nothing_else() {
     assert_eq!(details(&result), [""; 0]);
     let first = ToldFinding::Place { step: 4, kind: Kind::Position, place: ToldPlace::Particle(2) };
     let objects = ToldFinding::Place { step: 5, kind: Kind::SuperfluousCollision, place: ToldPlace::Objects(1, 2) };
-    let mut counts = Counts::default();
+    let mut counts = FindingCounts::default();
     counts.add(Kind::Position, 7);
     counts.add(Kind::SuperfluousCollision, 2);
     // What is found in damaged records alone has no example.

@@ -11,7 +11,7 @@ use super::{
     ahead::Ahead,
     contact,
     context::{Context, Followed, Records},
-    formulas::{Expected, Motion},
+    formulas::{BoundedPairMotion, Expected},
     sensitivity::Sensitivity,
     step_judgement::StepJudgement,
 };
@@ -79,7 +79,7 @@ pub(super) struct Follower<'a> {
 /// How the objects of a call move. What its polynomials should be follows, and is seldom asked once they are compared.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
-    motion: Motion,
+    motion: BoundedPairMotion,
     /// Whether the trace has the right approach polynomial, and not the course's.
     has_right_approach: bool,
 }
@@ -122,7 +122,7 @@ impl<'a> Follower<'a> {
     }
 
     /// How the call's objects move, and what its polynomials should be.
-    fn expected(&self) -> Option<(Motion, Expected)> {
+    fn expected(&self) -> Option<(BoundedPairMotion, Expected)> {
         let Seen { motion, has_right_approach } = self.seen?;
         let polynomials = motion.polynomials();
         Some((motion, if has_right_approach { polynomials.with_right_approach() } else { polynomials }))
@@ -187,7 +187,7 @@ impl Observer for Follower<'_> {
         if same {
             if self.sensitivity.is_some() || !self.is_hybrid() {
                 // Should the decision be disputed, it must be known how far round-off may reach.
-                let motion = Motion::of(self.context.scene, pair, q_start, q_end);
+                let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
                 self.seen = Some(Seen { motion, has_right_approach: false });
             }
             self.note_course_form(pair, q_start, q_end, index);

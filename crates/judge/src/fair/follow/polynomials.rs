@@ -3,7 +3,7 @@ use super::{Deferred, Follower, Seen};
 use crate::{
     fair::{
         compare::{Match, Mismatch, compare, possible_factors},
-        formulas::{Expected, Motion},
+        formulas::{BoundedPairMotion, Expected},
         step_judgement::Pending,
     },
     finding::{Detail, Finding, PolynomialPlace, Role},
@@ -18,7 +18,7 @@ impl Follower<'_> {
     pub(super) fn review(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize, count: usize) {
         let bounds = self.sensitivity.and_then(|known| known.passes.get(self.pass.index as usize));
         let motion = |q_end: &[f64], bounds: Option<&Vec<f64>>| {
-            let motion = Motion::of(self.context.scene, pair, q_start, q_end);
+            let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
             bounds.map_or(motion, |bounds| motion.widened(self.context.particles(pair), bounds))
         };
         let mut seen = motion(q_end, bounds);
@@ -116,7 +116,7 @@ impl Follower<'_> {
             return;
         }
         let logged = self.records.end.polynomials.get(index + number);
-        let expected = Motion::of(self.context.scene, pair, q_start, q_end).polynomials();
+        let expected = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end).polynomials();
         if expected.other_form(number).is_some_and(|right| compare(right, logged, &[1.0]).is_err()) {
             let role = Role::of(pair.kind, number);
             self.judged.course_form = Some(PolynomialPlace { pass: self.pass, pair, role, index: index + number });

@@ -3,7 +3,7 @@ use std::fmt::Write as _;
 
 use fosssim_oracle::num::{
     bounded::Bounded,
-    decision::{Certainty, Counts, Level, decide},
+    decision::{Certainty, Level, LevelCounts, decide},
     polynomial::Polynomial,
 };
 
@@ -16,7 +16,7 @@ const REASONS: [&str; 3] = ["c t^m", "dropped terms", "rounding"];
 /// Certified decisions of one pair type beside those of the root finder.
 #[derive(Default)]
 pub(super) struct Decisions {
-    levels: Counts,
+    levels: LevelCounts,
     certainties: [u64; 3],
     /// By reason; `[certainly no, but the search hits; certainly yes, but it does not]`.
     differ: [[u64; 2]; REASONS.len()],

@@ -1,6 +1,6 @@
 //! What goes into the formulas of a detection.
 use super::motion::{Motion, way};
-use fosssim_judge::fair::formulas::Way;
+use fosssim_judge::fair::formulas::BoundedPointMotion;
 use fosssim_model::sim::PairKind;
 use fosssim_num::{
     bounded::{Bounded, Bounded2},
@@ -25,7 +25,7 @@ pub(crate) struct Inputs {
 impl Inputs {
     /// The inputs as they are.
     pub fn new(motion: &Motion) -> Self {
-        let still = |point: Vec2| Way { start: Bounded2::exact(point), shift: Bounded2::default() };
+        let still = |point: Vec2| BoundedPointMotion { start: Bounded2::exact(point), shift: Bounded2::default() };
         let (ways, radii) = match *motion {
             Motion::Particles { bodies: [one, two], radii } => ([way(&one), way(&two), still(Vec2::zeros())], radii),
             Motion::Edge { bodies, radii } => (bodies.each_ref().map(way), radii),

@@ -1,5 +1,5 @@
 //! How the two objects of a detection move.
-use fosssim_judge::fair::formulas::{self, Way};
+use fosssim_judge::fair::formulas::{self, BoundedPointMotion};
 use fosssim_model::sim::PairKind;
 use fosssim_num::{
     bounded::{Bounded, Bounded2},
@@ -59,21 +59,23 @@ impl Motion {
 
 /// The way of a point as the fair rules see it. The displacement's value is the sample's, its bound that of a
 /// difference of positions.
-pub(super) fn way(body: &Body) -> Way {
+pub(super) fn way(body: &Body) -> BoundedPointMotion {
     let (start, end) = (Bounded2::exact(body.start), body.start + body.displacement);
     let mut shift = Bounded2::rounded(end) - start;
     (shift.x.value, shift.y.value) = (body.displacement.x, body.displacement.y);
-    Way { start, shift }
+    BoundedPointMotion { start, shift }
 }
 
 impl Motion {
     /// The motion as the fair rules see it, whose formulas say what is right.
-    pub(crate) fn judged(&self) -> formulas::Motion {
+    pub(crate) fn judged(&self) -> formulas::BoundedPairMotion {
         match self {
-            Self::Particles { bodies, radii } => formulas::Motion::Particles(bodies.each_ref().map(way), sum(radii)),
-            Self::Edge { bodies, radii } => formulas::Motion::Edge(bodies.each_ref().map(way), sum(radii)),
+            Self::Particles { bodies, radii } => {
+                formulas::BoundedPairMotion::Particles(bodies.each_ref().map(way), sum(radii))
+            }
+            Self::Edge { bodies, radii } => formulas::BoundedPairMotion::Edge(bodies.each_ref().map(way), sum(radii)),
             Self::HalfPlane { body, radius, point, normal } => {
-                formulas::Motion::HalfPlane(way(body), Bounded::exact(*radius), *point, *normal)
+                formulas::BoundedPairMotion::HalfPlane(way(body), Bounded::exact(*radius), *point, *normal)
             }
         }
     }

@@ -9,7 +9,7 @@ use fosssim_judge::budget::Budget;
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation, State},
-    trace::{Cause, Layout, Lenient, LenientFrame, record_memory},
+    trace::{Layout, Lenient, LenientFrame, Unreadable, record_memory},
 };
 use fosssim_num::tolerances::FIRST_RECORD;
 use std::{collections::BTreeMap, io::Read};
@@ -180,7 +180,7 @@ impl<'a, R: Read> Scanner<'a, R> {
                 true
             }
             Err(stop) => {
-                if stop.cause == Cause::State {
+                if stop.cause == Unreadable::State {
                     self.scan.records = Some(self.reader.records());
                 }
                 false

@@ -3,7 +3,7 @@ use crate::assignments::probe_scenes;
 use crate::student::{self, Area, CATALOGUE, KNOWN_REFUSED, Mistake, Row, RowKind, Student};
 use fosssim_judge::{
     self as judging,
-    fair::{Judgement, Verdict},
+    fair::{FairVerdict, Judgement},
     parity::{Options, judge},
 };
 use fosssim_model::{
@@ -103,7 +103,7 @@ fn judged(scene: &Scene, trace: &[u8]) -> Judgement {
 }
 
 fn is_accepted(scene: &Scene, trace: &[u8]) -> bool {
-    judged(scene, trace).verdict == Verdict::Accepted
+    judged(scene, trace).verdict == FairVerdict::Accepted
 }
 
 /// Whether nothing is found but decisions that hang on coefficients which the course's library dropped.

@@ -48,7 +48,7 @@ fn a_cut_behind_the_limit_leaves_the_count() {
         let mut frame = LenientFrame::default();
         reader.next(&mut frame).unwrap();
         assert!(frame.note.is_some() && frame.logged == 60_000, "cut at {cut}");
-        assert_eq!(reader.next(&mut frame).unwrap_err().cause, Cause::State);
+        assert_eq!(reader.next(&mut frame).unwrap_err().cause, Unreadable::State);
     }
 }
 
@@ -71,7 +71,7 @@ fn record(polynomials: &[&[f64]]) -> Vec<u8> {
 }
 
 /// Reads one record, and gives the frame and what reading another one stops at.
-fn read(bytes: &[u8]) -> (LenientFrame, Stop) {
+fn read(bytes: &[u8]) -> (LenientFrame, ReadStop) {
     let mut reader = Lenient::of_slice(bytes, LAYOUT);
     let mut frame = LenientFrame::default();
     reader.next(&mut frame).unwrap();
@@ -89,7 +89,7 @@ fn a_missing_coefficient_repeats_the_one_before() {
     let note = frame.note.unwrap();
     assert_eq!(note.what, Malformation::SizeBeyondEnd { polynomial: 1, size: 3, left: 16 });
     assert_eq!(note.offset, 36);
-    assert_eq!(stop.cause, Cause::State, "a failed stream has not even a state of zero bytes");
+    assert_eq!(stop.cause, Unreadable::State, "a failed stream has not even a state of zero bytes");
 }
 
 #[test]
@@ -144,17 +144,17 @@ fn negative_counts_and_sizes_are_zero_and_skip_nothing() {
     assert_eq!(frame.polynomials.iter().collect::<Vec<_>>(), [&[][..], &[1.0]]);
     assert_eq!(frame.note.unwrap().what, Malformation::NegativeCount { list: List::Impulses, count: -3 });
     assert!(!frame.plain);
-    assert_eq!(stop.cause, Cause::Impulses, "at the end of the file the count is missing");
+    assert_eq!(stop.cause, Unreadable::Impulses, "at the end of the file the count is missing");
 }
 
 #[test]
 fn nonsense_counts_cost_no_memory() {
     let count = |count: i32| count.to_le_bytes();
     let cases = [
-        (vec![count(i32::MAX)], Cause::Memory),
-        (vec![count(1000)], Cause::Impulses),
-        (vec![count(0), count(i32::MAX)], Cause::Memory),
-        (vec![count(0), count(1), count(i32::MAX)], Cause::Memory),
+        (vec![count(i32::MAX)], Unreadable::Memory),
+        (vec![count(1000)], Unreadable::Impulses),
+        (vec![count(0), count(i32::MAX)], Unreadable::Memory),
+        (vec![count(0), count(1), count(i32::MAX)], Unreadable::Memory),
     ];
     for (words, cause) in cases {
         let stop = Lenient::of_slice(&words.concat(), LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
@@ -173,7 +173,7 @@ fn endless_lists_end_at_the_limit() {
         let head = head.concat();
         let mut reader = Lenient::new((&head[..]).chain(std::io::repeat(0)), LAYOUT);
         reader.limit = 1 << 20;
-        let expected = if head.len() == 4 { Cause::Limit } else { Cause::Memory };
+        let expected = if head.len() == 4 { Unreadable::Limit } else { Unreadable::Memory };
         assert_eq!(reader.next(&mut LenientFrame::default()).unwrap_err().cause, expected);
         assert!(reader.offset() < 1 << 21);
     }
@@ -188,6 +188,6 @@ fn an_error_of_the_stream_is_named() {
         }
     }
     let stop = Lenient::new(Broken, LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
-    assert_eq!(stop.cause, Cause::Io);
+    assert_eq!(stop.cause, Unreadable::Io);
     assert!(stop.to_string().ends_with("reading failed: cable unplugged"), "{stop}");
 }
