@@ -2,6 +2,7 @@
 //!
 //! Nothing here changes during a simulation. Particles, edges and half-planes keep their document order, which is
 //! the order of every loop over them (simulation.md 1).
+use super::pairs::Objects;
 use crate::scene::Scene;
 use fosssim_num::vector::Vec2;
 
@@ -54,6 +55,12 @@ impl Bodies {
     /// Number of particles N.
     pub fn particles(&self) -> usize {
         self.masses.len()
+    }
+
+    /// Of what pairs consist.
+    #[inline]
+    pub fn objects(&self) -> Objects {
+        Objects { particles: self.particles(), edges: self.edges.len(), half_planes: self.points.len() }
     }
 
     /// Writes +0 into both entries of every fixed particle of an array in trace order.

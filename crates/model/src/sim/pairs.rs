@@ -1,11 +1,79 @@
 //! The pairs that a detection pass looks at: their kinds, order and number, and whose a logged polynomial is
 //! (collisions.md 1, trace-format.md 2).
 //!
-//! This is the only enumeration of a pass. The passes themselves go through the same loops with values of their own at each
-//! level; a test holds them to this order.
-use super::pair::{ByKind, Pair, PairKind};
+//! This is the only enumeration of a pass: whoever goes through the pairs of a particle, for the sake of values that pairs share, takes the
+//! ranges of each kind from [`Objects::row`].
+use super::pair::{ByKind, Pair, PairKind, pair};
 use crate::scene::Scene;
-use std::borrow::Cow;
+use std::{borrow::Cow, cmp::Ordering, ops::Range};
+
+/// How many objects there are of which pairs consist.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Objects {
+    /// Number of particles.
+    pub particles: usize,
+    /// Number of edges.
+    pub edges: usize,
+    /// Number of half-planes.
+    pub half_planes: usize,
+}
+
+/// The pair that a pass looks at next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    /// The particle.
+    pub first: usize,
+    /// What it meets.
+    pub kind: PairKind,
+    /// The number of that; behind the last one the next kind follows.
+    pub second: usize,
+}
+
+impl Place {
+    /// The first pair in which this particle comes first.
+    #[inline]
+    pub const fn of(first: usize) -> Self {
+        Self { first, kind: PairKind::ALL[0], second: 0 }
+    }
+
+    /// The pair behind one.
+    #[inline]
+    pub const fn behind(kind: PairKind, first: usize, second: usize) -> Self {
+        Self { first, kind, second: second + 1 }
+    }
+}
+
+impl Objects {
+    /// The numbers of what a particle meets: of particles the later ones, of edges all (but see [`is_end`]), of half-planes all.
+    #[inline]
+    fn seconds(self, kind: PairKind, first: usize) -> Range<usize> {
+        match kind {
+            PairKind::ParticleParticle => first + 1..self.particles,
+            PairKind::ParticleEdge => 0..self.edges,
+            PairKind::ParticleHalfPlane => 0..self.half_planes,
+        }
+    }
+
+    /// What is left of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of what it meets. Among edges
+    /// there are those that it is an end of ([`is_end`]).
+    #[inline(always)]
+    pub fn row(self, from: Place) -> [Range<usize>; PairKind::ALL.len()] {
+        PairKind::ALL.map(|kind| {
+            let Range { start, end } = self.seconds(kind, from.first);
+            match kind.cmp(&from.kind) {
+                Ordering::Less => end..end,
+                Ordering::Equal => start.max(from.second)..end,
+                Ordering::Greater => start..end,
+            }
+        })
+    }
+}
+
+/// Whether a particle is an end of an edge, with which it is no pair then.
+#[inline]
+pub(super) fn is_end(ends: [usize; 2], particle: usize) -> bool {
+    ends.contains(&particle)
+}
 
 /// The pairs of one pass over a scene.
 #[derive(Debug, Clone)]
@@ -38,21 +106,17 @@ impl Pairs<'_> {
 
     /// The pairs in which this particle comes first.
     pub fn of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
-        PairKind::ALL.into_iter().flat_map(move |kind| {
-            let (begin, end) = match kind {
-                PairKind::ParticleParticle => (first + 1, self.particles),
-                PairKind::ParticleEdge => (0, self.edges.len()),
-                PairKind::ParticleHalfPlane => (0, self.half_planes),
+        PairKind::ALL.into_iter().zip(self.objects().row(Place::of(first))).flat_map(move |(kind, seconds)| {
+            let is_pair = move |&second: &usize| match kind {
+                PairKind::ParticleEdge => !is_end(self.edges[second], first),
+                PairKind::ParticleParticle | PairKind::ParticleHalfPlane => true,
             };
-            let is_pair = move |&second: &usize| kind != PairKind::ParticleEdge || !self.edges[second].contains(&first);
-            (begin..end).filter(is_pair).map(move |second| {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    reason = "a scene with 2^32 objects does not fit into memory"
-                )]
-                Pair { kind, first: first as u32, second: second as u32 }
-            })
+            seconds.filter(is_pair).map(move |second| pair(kind, first, second))
         })
+    }
+
+    fn objects(&self) -> Objects {
+        Objects { particles: self.particles, edges: self.edges.len(), half_planes: self.half_planes }
     }
 
     /// How many pairs of each kind there are.
@@ -85,7 +149,7 @@ impl Pairs<'_> {
         let per_pass = self.polynomials();
         let (pass, mut rest) = (index.checked_div(per_pass)?, index % per_pass.max(1));
         for particle in 0..self.particles {
-            let apart = self.edges.iter().filter(|ends| !ends.contains(&particle)).count();
+            let apart = self.edges.iter().filter(|&&ends| !is_end(ends, particle)).count();
             let of_particle = PairKind::ParticleParticle.polynomials() * (self.particles - particle - 1)
                 + PairKind::ParticleEdge.polynomials() * apart
                 + PairKind::ParticleHalfPlane.polynomials() * self.half_planes;

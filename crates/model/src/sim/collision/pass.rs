@@ -8,10 +8,11 @@ use super::{
         bodies::Bodies,
         observer::{Decision, Detection, Impulse, Observer, Pass, Time, Wanted},
         pair::{Pair, PairKind, pair},
+        pairs::{Place, is_end},
         search::{RootSearch, SearchCounts},
         step_error::StepError,
     },
-    blocks::{Blocks, Place, Setting},
+    blocks::{Blocks, Setting},
     impact::time_of_impact,
     particle_edge::{self, EdgeMotions},
     particle_half_plane, particle_particle,
@@ -21,6 +22,7 @@ use fosssim_num::{
     polynomial::Polynomial,
     vector::{Vec2, at, put},
 };
+use std::ops::Range;
 
 crate::drops_leading!();
 
@@ -112,22 +114,20 @@ impl Detector {
         self.passes += 1;
         self.displacements.clear();
         self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
-        let (mut place, mut hits) = (Place::BEGIN, 0);
+        let (mut place, mut hits) = (Place::of(0), 0);
         if self.has_lanes && !matches!(observer.wanted(), Wanted::Calls) {
             hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
         }
         if place.first < bodies.particles() {
             self.prepare(bodies, q_start);
             let mut way = Way { bodies, q_start, q_end, observer, react, hits, over: 0 };
-            for i in place.first..bodies.particles() {
-                let from = |kind| if i > place.first || kind > place.kind { 0 } else { place.second };
-                if i > place.first || place.kind == PairKind::ParticleParticle {
-                    self.particles(i, from(PairKind::ParticleParticle).max(i + 1), &mut way)?;
-                }
-                if i > place.first || place.kind <= PairKind::ParticleEdge {
-                    self.edges(i, from(PairKind::ParticleEdge), &mut way)?;
-                }
-                self.half_planes(i, from(PairKind::ParticleHalfPlane), &mut way)?;
+            while place.first < bodies.particles() {
+                let i = place.first;
+                let [particles, edges, half_planes] = bodies.objects().row(place);
+                self.particles(i, particles, &mut way)?;
+                self.edges(i, edges, &mut way)?;
+                self.half_planes(i, half_planes, &mut way)?;
+                place = Place::of(i + 1);
             }
             hits = way.hits;
             way.observer.end_pass(pass, hits);
@@ -170,16 +170,21 @@ impl Detector {
         Ok(hits)
     }
 
-    /// Looks at particle `i` and all later particles from `from` on.
+    /// Looks at particle `i` and these.
     #[inline]
-    fn particles<O: Observer, R>(&mut self, i: usize, from: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    fn particles<O: Observer, R>(
+        &mut self,
+        i: usize,
+        seconds: Range<usize>,
+        way: &mut Way<'_, O, R>,
+    ) -> Result<(), StepError>
     where
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
         let Way { bodies, q_start, .. } = *way;
         let x1 = at(q_start, i);
         let mut d1 = at(&self.displacements, i);
-        for j in from..bodies.particles() {
+        for j in seconds {
             if self.is_passed_over(pair(PairKind::ParticleParticle, i, j), way) {
                 continue;
             }
@@ -193,9 +198,14 @@ impl Detector {
         Ok(())
     }
 
-    /// Looks at particle `i` and all edges from `from` on that it is no end of.
+    /// Looks at particle `i` and those of these edges that it is no end of.
     #[inline]
-    fn edges<O: Observer, R>(&mut self, i: usize, from: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    fn edges<O: Observer, R>(
+        &mut self,
+        i: usize,
+        seconds: Range<usize>,
+        way: &mut Way<'_, O, R>,
+    ) -> Result<(), StepError>
     where
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
@@ -203,14 +213,14 @@ impl Detector {
         let x1 = at(q_start, i);
         let mut d1 = at(&self.displacements, i);
         let mut polynomials = Default::default();
-        for (block, ends) in bodies.edges.chunks(LANES).enumerate().skip(from / LANES) {
+        for (block, ends) in bodies.edges.chunks(LANES).enumerate().skip(seconds.start / LANES) {
             let radii = both(block, |edge| bodies.radii[i] + bodies.edge_radii[edge], bodies.edges.len());
             let coefficients = |d1: Vec2, edges: &EdgeMotions<Two>| {
                 particle_edge::coefficients(two([x1; 2]), two([d1; 2]), edges, Two(radii))
             };
             let mut are_known = false;
             for (lane, &ends) in ends.iter().enumerate() {
-                if ends.contains(&i) || LANES * block + lane < from {
+                if is_end(ends, i) || !seconds.contains(&(LANES * block + lane)) {
                     continue;
                 }
                 let pair = pair(PairKind::ParticleEdge, i, LANES * block + lane);
@@ -233,16 +243,22 @@ impl Detector {
         Ok(())
     }
 
-    /// Looks at particle `i` and all half-planes from `from` on.
+    /// Looks at particle `i` and these half-planes.
     #[inline]
-    fn half_planes<O: Observer, R>(&mut self, i: usize, from: usize, way: &mut Way<'_, O, R>) -> Result<(), StepError>
+    fn half_planes<O: Observer, R>(
+        &mut self,
+        i: usize,
+        seconds: Range<usize>,
+        way: &mut Way<'_, O, R>,
+    ) -> Result<(), StepError>
     where
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
         let Way { bodies, q_start, .. } = *way;
         let x = at(q_start, i);
         let mut d = at(&self.displacements, i);
-        for (h, (&point, &q)) in bodies.points.iter().zip(&bodies.normals).enumerate().skip(from) {
+        for h in seconds {
+            let (point, q) = (bodies.points[h], bodies.normals[h]);
             if self.is_passed_over(pair(PairKind::ParticleHalfPlane, i, h), way) {
                 continue;
             }

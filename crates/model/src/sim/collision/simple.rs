@@ -6,6 +6,7 @@ use super::{
         bodies::Bodies,
         observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time},
         pair::{Pair, PairKind, pair},
+        pairs::{Place, is_end},
         state::State,
     },
     particle_edge, particle_half_plane, particle_particle,
@@ -30,21 +31,23 @@ pub(super) fn handle<O: Observer>(bodies: &Bodies, law: &Law, q_start: &[f64], s
         }
     };
     for i in 0..bodies.particles() {
-        for j in i + 1..bodies.particles() {
+        let [particles, edges, half_planes] = bodies.objects().row(Place::of(i));
+        for j in particles {
             let normal = particle_particle::overlap(bodies, x, v, i, j);
             look(pair(PairKind::ParticleParticle, i, j), normal, v, &|v, n| {
                 particle_particle::simple_response(bodies, law.factor, v, i, j, n)
             });
         }
-        for (e, &ends) in bodies.edges.iter().enumerate() {
-            if !ends.contains(&i) {
+        for e in edges {
+            let ends = bodies.edges[e];
+            if !is_end(ends, i) {
                 let normal = particle_edge::overlap(bodies, x, v, i, e);
                 look(pair(PairKind::ParticleEdge, i, e), normal, v, &|v, n| {
                     particle_edge::simple_response(bodies, law.factor, x, v, i, ends, n)
                 });
             }
         }
-        for h in 0..bodies.points.len() {
+        for h in half_planes {
             let normal = particle_half_plane::overlap(bodies, x, v, i, h);
             look(pair(PairKind::ParticleHalfPlane, i, h), normal, v, &|v, n| {
                 particle_half_plane::simple_response(law.factor, v, i, n)

@@ -3,7 +3,10 @@
 //! Its Hessians count as zero, as in the original. There is no guard against zero distance: the direction is NaN then,
 //! and reaches the gradient when the distance test holds.
 use super::{add, subtract};
-use crate::sim::bodies::Bodies;
+use crate::sim::{
+    bodies::Bodies,
+    pairs::{Place, is_end},
+};
 use fosssim_num::vector::{Vec2, at, length, unit};
 
 /// Stiffness `k` (force per length) and thickness `h` (length) of the layer around every body.
@@ -26,19 +29,19 @@ fn beyond(n: Vec2, reach: f64) -> bool {
 }
 
 impl Penalty {
-    /// Adds the gradient: for each particle all later particles, all edges that it is no end of, all half-planes.
+    /// Adds the gradient, pair by pair in the order of a detection pass.
     pub fn add_gradient(self, bodies: &Bodies, x: &[f64], gradient: &mut [f64]) {
-        let particles = bodies.particles();
-        for i in 0..particles {
-            for j in i + 1..particles {
+        for i in 0..bodies.particles() {
+            let [particles, edges, half_planes] = bodies.objects().row(Place::of(i));
+            for j in particles {
                 self.particle_particle(bodies, i, j, x, gradient);
             }
-            for edge in 0..bodies.edges.len() {
-                if !bodies.edges[edge].contains(&i) {
+            for edge in edges {
+                if !is_end(bodies.edges[edge], i) {
                     self.particle_edge(bodies, i, edge, x, gradient);
                 }
             }
-            for half_plane in 0..bodies.points.len() {
+            for half_plane in half_planes {
                 self.particle_half_plane(bodies, i, half_plane, x, gradient);
             }
         }

@@ -12,29 +12,13 @@ mod rows;
 mod settle;
 
 use super::super::{
-    bodies::Bodies, observer::Impulse, pair::PairKind, polynomial_bytes::PolynomialBytes, search::SearchCounts,
+    bodies::Bodies, observer::Impulse, pairs::Place, polynomial_bytes::PolynomialBytes, search::SearchCounts,
     step_error::StepError,
 };
 use fosssim_num::lanes::Instructions;
 use group::Group;
 use lists::Lists;
 use rows::Pairs;
-
-/// The pair that a pass looks at next, in the order of collisions.md 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Place {
-    /// The particle.
-    pub first: usize,
-    /// What it meets.
-    pub kind: PairKind,
-    /// The number of that; behind the last one the next kind follows.
-    pub second: usize,
-}
-
-impl Place {
-    /// The first pair.
-    pub const BEGIN: Self = Self { first: 0, kind: PairKind::ParticleParticle, second: 1 };
-}
 
 /// What a pass is about.
 #[derive(Debug, Clone, Copy)]

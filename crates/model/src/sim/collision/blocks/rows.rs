@@ -1,17 +1,19 @@
 //! Goes through all pairs in the order of the trace, particle by particle.
 use super::{
-    Group, Lists, Place, Setting,
+    Group, Lists, Setting,
     group::{OF_EDGE, OF_TWO, TRIMMED, WHOLE, of_particles},
     settle::{Output, decide},
 };
 use crate::sim::{
     observer::Impulse,
     pair::{Pair, PairKind, pair},
+    pairs::Place,
     polynomial_bytes::PolynomialBytes,
     search::SearchCounts,
     step_error::StepError,
 };
 use fosssim_num::lanes::{Lanes, MOST_LANES, Simd, Work};
+use std::ops::Range;
 
 /// The pairs from a place on, up to the next hit.
 pub(super) struct Pairs<'a> {
@@ -49,7 +51,7 @@ impl Work for Pairs<'_> {
             if ends {
                 return found;
             }
-            *self.place = Place { first: first + 1, kind: PairKind::ParticleParticle, second: first + 2 };
+            *self.place = Place::of(first + 1);
         }
         Ok(None)
     }
@@ -60,43 +62,53 @@ impl Pairs<'_> {
     /// next pair's.
     #[inline(always)]
     fn row<S: Simd>(&mut self, simd: S, output: &mut Output<'_>) -> bool {
-        let width = Lanes::<S>::COUNT;
-        let Place { first, kind, second } = *self.place;
-        let bodies = self.setting.bodies;
-        let from = |asked| if kind == asked { second } else { 0 };
-        if kind == PairKind::ParticleParticle && self.particles(simd, first, second, output) {
+        let first = self.place.first;
+        let [particles, edges, half_planes] = self.setting.bodies.objects().row(*self.place);
+        if self.particles(simd, first, particles, output) {
             return true;
         }
-        if bodies.edges.is_empty() && bodies.points.is_empty() {
+        if edges.is_empty() && half_planes.is_empty() {
             return false;
         }
         if !self.group.particles.contains(&first) {
-            self.group.fill(simd, self.lists, bodies, first);
+            self.group.fill(simd, self.lists, self.setting.bodies, first);
         }
+        self.edges(simd, first, edges, output) || self.half_planes(simd, first, half_planes, output)
+    }
+
+    /// A particle and these edges, as far as it is no end of them.
+    #[inline(always)]
+    fn edges<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut Output<'_>) -> bool {
+        let width = Lanes::<S>::COUNT;
         let lane = first - self.group.particles.start;
-        if kind <= PairKind::ParticleEdge {
-            let begin = from(PairKind::ParticleEdge);
-            let mut own = self.lists.own_edges(first, begin);
-            for edge in begin..bodies.edges.len() {
-                if let [skipped, others @ ..] = own
-                    && *skipped == edge
-                {
-                    own = others;
-                    continue;
-                }
-                let numbers = &self.group.edges[edge * OF_EDGE * width..(edge + 1) * OF_EDGE * width];
-                let pair = Numbers { numbers, width, lane };
-                if pair.settle::<17, 4, EDGE_BYTES>(
-                    (PairKind::ParticleEdge, [5, 3, 3, 6]),
-                    [first, edge],
-                    (self.setting, self.counts, self.place),
-                    output,
-                ) {
-                    return true;
-                }
+        let mut own = self.lists.own_edges(first, seconds.start);
+        for edge in seconds {
+            if let [skipped, others @ ..] = own
+                && *skipped == edge
+            {
+                own = others;
+                continue;
+            }
+            let numbers = &self.group.edges[edge * OF_EDGE * width..(edge + 1) * OF_EDGE * width];
+            let pair = Numbers { numbers, width, lane };
+            if pair.settle::<17, 4, EDGE_BYTES>(
+                (PairKind::ParticleEdge, [5, 3, 3, 6]),
+                [first, edge],
+                (self.setting, self.counts, self.place),
+                output,
+            ) {
+                return true;
             }
         }
-        for half_plane in from(PairKind::ParticleHalfPlane)..bodies.points.len() {
+        false
+    }
+
+    /// A particle and these half-planes.
+    #[inline(always)]
+    fn half_planes<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut Output<'_>) -> bool {
+        let width = Lanes::<S>::COUNT;
+        let lane = first - self.group.particles.start;
+        for half_plane in seconds {
             let numbers = &self.group.half_planes[half_plane * OF_TWO * width..(half_plane + 1) * OF_TWO * width];
             let pair = Numbers { numbers, width, lane };
             if pair.settle::<5, 2, TWO_BYTES>(
@@ -111,16 +123,16 @@ impl Pairs<'_> {
         false
     }
 
-    /// A particle and later particles.
+    /// A particle and these particles.
     #[inline(always)]
-    fn particles<S: Simd>(&mut self, simd: S, first: usize, begin: usize, output: &mut Output<'_>) -> bool {
+    fn particles<S: Simd>(&mut self, simd: S, first: usize, seconds: Range<usize>, output: &mut Output<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
         let mut numbers = [0.0; OF_TWO * MOST_LANES];
         let mut largest = Lanes::all(simd, 0.0);
-        let particles = self.setting.bodies.particles();
-        for block in (begin..particles).step_by(width) {
+        let end = seconds.end;
+        for block in seconds.step_by(width) {
             largest = of_particles(simd, self.lists, [first, block], &mut numbers[..OF_TWO * width], largest);
-            for lane in 0..width.min(particles - block) {
+            for lane in 0..width.min(end - block) {
                 let pair = Numbers { numbers: &numbers[..OF_TWO * width], width, lane };
                 if pair.settle::<5, 2, TWO_BYTES>(
                     (PairKind::ParticleParticle, [3, 2]),
@@ -182,7 +194,7 @@ impl Numbers<'_> {
             PairKind::ParticleParticle | PairKind::ParticleHalfPlane => of_two(&coefficients, open, output),
         };
         if ends {
-            *place = Place { first, kind, second: second + 1 };
+            *place = Place::behind(kind, first, second);
         }
         ends
     }
