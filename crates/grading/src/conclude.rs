@@ -11,6 +11,7 @@ use fosssim_judge::{
     Outcome, Rules, Ruling, Stop,
     fair::{self, Refusal},
 };
+use fosssim_mistakes::diagnose::Explanation;
 use fosssim_sandbox::{self as sandbox, Ended, Stream};
 
 /// What a report keeps of each of the program's streams.
@@ -35,9 +36,10 @@ pub struct Run<'a> {
     pub limits: &'a RunLimits,
 }
 
-/// The verdict on one scene. Explanations of what is wrong are for the caller to add.
+/// The result of one scene, cut to what its hints let through. `explain` says what is likely wrong; it is not asked where the
+/// fair rules find no fault, or where what the program did besides is its worse fault.
 #[must_use]
-pub fn conclude(run: &Run<'_>) -> SceneResult {
+pub fn conclude(run: &Run<'_>, explain: impl FnOnce() -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
     let of_program = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(judged, rules, run.trace_bytes);
@@ -50,14 +52,17 @@ pub fn conclude(run: &Run<'_>) -> SceneResult {
     };
     let untold = hints == Hints::None && verdict == Verdict::WrongAnswer;
     let reason = if untold { Reason::Wrong(Wrong::Untold) } else { reason };
+    let differs = fair::cause(judged);
+    let has_fault = rules == Rules::Fair || differs.is_none();
+    let is_explained = has_fault && matches!(verdict, Verdict::WrongAnswer | Verdict::BadTrace);
     SceneResult {
         scene: run.scene.to_owned(),
         verdict,
         reason,
         ended: Some(program.ended.clone()),
-        differs: fair::cause(judged),
+        differs,
         told: hints.tell(judged, rules),
-        explanations: Vec::new(),
+        explanations: if is_explained { hints.cut(explain()) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
         cpu: program.cpu,

@@ -51,6 +51,17 @@ pub struct Group {
     pub visibility: Visibility,
 }
 
+/// What of a group decides its points.
+#[derive(Debug, Clone, Copy)]
+pub struct Marking {
+    /// Points of the whole group.
+    pub points: f64,
+    /// How partial success counts.
+    pub credit: Credit,
+    /// Who sees it.
+    pub visibility: Visibility,
+}
+
 /// How the sources are built.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BuildStep {

@@ -18,7 +18,7 @@ use fosssim_judge::{
     parity::{self, Options, Progress, Remark},
     recorded::{self, RecordingError},
 };
-use fosssim_mistakes::diagnose::{self, Explanation};
+use fosssim_mistakes::diagnose;
 use fosssim_sandbox::{self as sandbox, Backend, Identity, Job, Limits, Policy, Running, SandboxError};
 use std::{
     io::{self, Read},
@@ -130,20 +130,20 @@ impl Runner<'_> {
             hints: self.hints,
             limits: self.limits,
         };
-        let result = guarded(|| conclude(&run));
-        let result = match result {
+        let mut explaining = guarded(|| fault::injected(Activity::Explaining, &program.program)).err();
+        let explain = || {
+            guarded(|| diagnose::explain(&task.scene, &kept)).unwrap_or_else(|fault| {
+                explaining = Some(fault);
+                Vec::new()
+            })
+        };
+        let mut result = match guarded(|| conclude(&run, explain)) {
             Ok(result) => result,
             Err(fault) => return Ok(failed(Activity::Judging, &fault)),
         };
-        let explained = guarded(|| {
-            fault::injected(Activity::Explaining, &program.program);
-            self.hints.cut(explain(&result, self.rules, task, &kept))
-        });
-        let result = match explained {
-            Ok(explanations) => SceneResult { explanations, ..result },
-            Err(fault) => return Ok(failed(Activity::Explaining, &fault)),
-        };
-        let mut result = result;
+        if let Some(fault) = explaining {
+            return Ok(failed(Activity::Explaining, &fault));
+        }
         if let Some(cards) = self.cards
             && !(result.verdict.is_accepted() && result.differs.is_none())
         {
@@ -257,16 +257,6 @@ impl Runner<'_> {
             folder_files: limits.files,
             ..Limits::default()
         }
-    }
-}
-
-/// What is likely wrong with a program whose trace is: nothing where the fair rules find no fault, or where what the program
-/// did besides is its worse fault.
-fn explain(result: &SceneResult, rules: Rules, task: &SceneTask, trace: &[u8]) -> Vec<Explanation> {
-    let fair_finds_fault = rules == Rules::Fair || result.differs.is_none();
-    match result.verdict {
-        Verdict::WrongAnswer | Verdict::BadTrace if fair_finds_fault => diagnose::explain(&task.scene, trace),
-        _ => Vec::new(),
     }
 }
 

@@ -26,8 +26,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-mod assemble;
-
 /// What is graded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Submission {
@@ -81,7 +79,7 @@ pub struct Grader<'a> {
 
 impl Grader<'_> {
     /// Against recordings there is nothing but the original's rules: the fair ones follow the submission.
-    const fn effective_rules(&self) -> Rules {
+    pub(super) const fn effective_rules(&self) -> Rules {
         if self.options.recorded { Rules::Parity } else { self.plan.rules }
     }
 
@@ -182,12 +180,12 @@ pub(super) enum Progress {
 /// One submission at work. Any number of jobs may take its scenes: it is staged once, by the first job that has to run it,
 /// and its copy stays until the grade is drawn.
 pub(super) struct Grading<'a> {
-    grader: &'a Grader<'a>,
+    pub(super) grader: &'a Grader<'a>,
     shared: &'a Shared<'a>,
-    submission: &'a Submission,
+    pub(super) submission: &'a Submission,
     /// The digest of the program as it lies there; none for what has to be built or copied first.
     digest: OnceLock<Option<blake3::Hash>>,
-    staged: Mutex<Option<Arc<Result<Staged, String>>>>,
+    pub(super) staged: Mutex<Option<Arc<Result<Staged, String>>>>,
     known: Mutex<Known>,
 }
 
@@ -352,7 +350,7 @@ impl<'a> Grading<'a> {
     }
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -1,14 +1,13 @@
 //! A suite with its scenes looked up: what a grading really runs.
 use super::{
     assignments,
-    config::{self, BuildStep, Hints, Patience, RunLimits, Suite, SuiteError},
+    config::{self, BuildStep, Hints, Marking, Patience, RunLimits, Suite, SuiteError},
     library,
-    score::Marking,
     task::SceneTask,
 };
 use fosssim_judge::Rules;
 use fosssim_model::{assignments::Assignment, scene};
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, fs, io, path::Path};
 
 /// A suite ready to run.
 #[derive(Debug, Clone)]
@@ -87,6 +86,53 @@ pub fn built_in(name: &str) -> Option<&'static str> {
 /// The names of the built-in suites, which are those of the assignments.
 pub fn built_in_names() -> impl Iterator<Item = &'static str> {
     Assignment::ALL.into_iter().map(Assignment::key)
+}
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum FindError {
+    /// No such suite.
+    #[error("no suite {name}: it is neither a file nor one of {}", built_in_names().collect::<Vec<_>>().join(", "))]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// Why it is no file.
+        #[source]
+        why: io::Error,
+    },
+    /// There is one, but it is not sound; each problem is a line.
+    #[error("the suite has {}{}", counted(.error.problems.len()), lines(name, .error))]
+    Unsound {
+        /// The file.
+        name: String,
+        /// What is wrong with it.
+        error: SuiteError,
+    },
+}
+
+fn counted(problems: usize) -> String {
+    if problems == 1 { "1 problem:".to_owned() } else { format!("{problems} problems:") }
+}
+
+fn lines(name: &str, error: &SuiteError) -> String {
+    error.problems.iter().map(|(at, text)| format!("\n{name}:{at}: {text}")).collect()
+}
+
+/// Finds a suite: one that comes with the program, by its name, or a file. Its own files are looked up beside it.
+///
+/// # Errors
+/// When there is none, or with everything that is wrong with it.
+pub fn find(name: &str) -> Result<Plan, FindError> {
+    let path = Path::new(name);
+    let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let loaded = match built_in(name) {
+        Some(text) => load(text, Path::new(".")),
+        None => {
+            let text = fs::read_to_string(path).map_err(|why| FindError::Unknown { name: name.to_owned(), why })?;
+            load(&text, beside)
+        }
+    };
+    loaded.map_err(|error| FindError::Unsound { name: name.to_owned(), error })
 }
 
 /// Looks up the scenes of a suite; files are relative to `folder`.

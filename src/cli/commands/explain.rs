@@ -1,6 +1,6 @@
 //! `explain`: what is likely wrong with the program that left a trace, or with a program at hand.
 use super::{
-    grade::{backend, cancelled_by_signals, load_suite},
+    grade::{backend, cancelled_by_signals},
     pages::{self, Source},
 };
 use crate::{
@@ -25,7 +25,7 @@ use crate::{
     },
     sandbox::Ended,
     scene::{self, Scene},
-    suite::{Runner, SceneTask, config::Hints},
+    suite::{Runner, SceneTask, config::Hints, plan},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -126,7 +126,7 @@ fn program_on_probes(
     let tasks = tasks(scenes)?;
     let cancellation = cancelled_by_signals();
     let backend = backend(arguments.unsafe_no_sandbox)?;
-    let plan = load_suite(Assignment::DEFAULT.key())?;
+    let plan = plan::find(Assignment::DEFAULT.key())?;
     let runner = Runner {
         backend: &backend,
         run: &plan.run,

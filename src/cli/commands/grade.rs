@@ -24,7 +24,6 @@ use crate::{
     suite::{
         Cancellation, Grade, Grader, SceneTask, Submission, Verdict, batch,
         cards::{Cards, Judged},
-        config,
         grader::Options,
         plan::{self, Plan},
         results::FolderResults,
@@ -49,7 +48,7 @@ const HARDEST: usize = 5;
 const FAULTS: &str = "fosssim-faults";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
-    let mut plan = load_suite(&arguments.suite)?;
+    let mut plan = plan::find(&arguments.suite)?;
     if let Some(rules) = arguments.rules {
         plan.rules = rules.into();
     }
@@ -116,26 +115,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         return session.watch(&submissions, &reports, &mut last_run);
     }
     session.grade_and_report(&submissions, &reports, &mut last_run).map(|(_, code)| code)
-}
-
-/// Finds a suite by name or file.
-///
-/// # Errors
-/// When there is none, or with everything that is wrong with it.
-pub(super) fn load_suite(name: &str) -> Result<Plan> {
-    if let Some(text) = plan::built_in(name) {
-        return plan::load(text, Path::new(".")).with_context(|| format!("suite {name}"));
-    }
-    let known: Vec<_> = plan::built_in_names().collect();
-    let text = fs::read_to_string(name)
-        .with_context(|| format!("no suite {name}: it is neither a file nor one of {}", known.join(", ")))?;
-    let folder = Path::new(name).parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    plan::load(&text, folder).map_err(|error| in_file(name, &error))
-}
-
-fn in_file(name: &str, error: &config::SuiteError) -> anyhow::Error {
-    let lines: Vec<String> = error.problems.iter().map(|(at, text)| format!("{name}:{at}: {text}")).collect();
-    anyhow::anyhow!("the suite has {}:\n{}", counted(lines.len() as u64, "problem"), lines.join("\n"))
 }
 
 /// The sandbox, or a refusal that says what is missing.

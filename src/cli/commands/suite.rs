@@ -1,5 +1,5 @@
 //! `suite`: writes, checks and explains suites.
-use super::{grade::load_suite, scene};
+use super::scene;
 use crate::{
     cli::{
         console, exit,
@@ -24,7 +24,7 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
             }
         },
         Suite::Check(SuiteCheck { suite }) => {
-            let plan = load_suite(suite)?;
+            let plan = plan::find(suite)?;
             console::report(&text(&plan, &undecided(&plan), console::style()))?;
         }
         Suite::List(SuiteList { format }) => {
@@ -42,7 +42,7 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
 
 /// The suites that come with the program, and what each is called by.
 fn built_in() -> Result<Vec<(&'static str, plan::Plan)>> {
-    plan::built_in_names().map(|name| Ok((name, load_suite(name)?))).collect()
+    plan::built_in_names().map(|name| Ok((name, plan::find(name)?))).collect()
 }
 
 /// Runs the reference on every scene, on all cores, and keeps those with something to say.

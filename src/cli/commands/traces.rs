@@ -9,10 +9,7 @@ use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
     diagnose,
     evidence::StepRulings,
-    judge::{
-        Rules,
-        parity::{self, Options},
-    },
+    judge::parity::{self, Options},
     report::grade::{Format, Shown, Text, rehearse},
     sandbox::{self, Ended},
     suite::{
@@ -159,11 +156,8 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
         hints: plan.hints,
         limits: &plan.limits,
     };
-    let mut result = SceneResult { ended: None, memory: None, ..conclude(&run) };
-    let fair_finds_fault = plan.rules == Rules::Fair || result.differs.is_none();
-    if matches!(result.verdict, Verdict::WrongAnswer | Verdict::BadTrace) && fair_finds_fault {
-        result.explanations = plan.hints.cut(diagnose::explain(&task.scene, &trace));
-    }
+    let explained = conclude(&run, || diagnose::explain(&task.scene, &trace));
+    let mut result = SceneResult { ended: None, memory: None, ..explained };
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())
     {

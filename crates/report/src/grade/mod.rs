@@ -16,8 +16,8 @@ mod text;
 use crate::page::{Audience, GradePage};
 use fosssim_grading::{
     Grade, SceneResult,
-    config::{Credit, Visibility},
-    score::{self, Marking},
+    config::{Credit, Marking, Visibility},
+    score,
 };
 use fosssim_judge::Rules;
 

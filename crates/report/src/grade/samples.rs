@@ -1,9 +1,9 @@
 //! Grades for tests: one good, one bad in every way, with hostile words in it.
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
-    config::{Credit, Visibility},
+    config::{Credit, Marking, Visibility},
     result::{BuildEnd, Ended, Failure, FolderContents, Unusable},
-    score::{self, Marking},
+    score,
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{Book, FindingCounts, Kind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};

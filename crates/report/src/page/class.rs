@@ -289,8 +289,8 @@ mod tests {
     use crate::grade::samples;
     use fosssim_grading::{
         GroupGrade, Reason, SceneResult,
-        config::{Credit, Visibility},
-        score::{self, Marking},
+        config::{Credit, Marking, Visibility},
+        score,
     };
 
     fn grade(name: &str, fails: impl Fn(usize) -> Option<String>) -> Grade {

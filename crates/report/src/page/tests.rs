@@ -2,9 +2,9 @@ use super::*;
 use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
 use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
-    config::{Credit, Visibility},
+    config::{Credit, Marking, Visibility},
     result::Wrong,
-    score::{self, Marking},
+    score,
 };
 use fosssim_judge::{Outcome, Rules, parity};
 use fosssim_mistakes::{
