@@ -12,7 +12,7 @@ use std::{
 /// Deflating harder gains little: most of a card is packed already.
 const LEVEL: i32 = 3;
 
-/// So many bytes of a card are read at most; what is larger is none of ours.
+/// So many bytes of a card are read at most; a larger file is not one of our cards.
 const LARGEST: u64 = 64 << 20;
 
 /// A judged trace that is at hand.

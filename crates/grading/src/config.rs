@@ -51,7 +51,7 @@ pub struct Group {
     pub visibility: Visibility,
 }
 
-/// What of a group decides its points.
+/// The settings of a group that decide its points.
 #[derive(Debug, Clone, Copy)]
 pub struct Marking {
     /// Points of the whole group.

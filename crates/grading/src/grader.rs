@@ -126,7 +126,7 @@ impl<'a> Shared<'a> {
         Key::of(digest, &scene.xml, &words)
     }
 
-    /// An earlier result. Where traces or cards are wanted, it is none without them.
+    /// An earlier result. Where traces or cards are wanted, one without them does not count.
     fn find(&self, key: &Key, trace: Option<&Path>, cards: Option<Cards<'_>>) -> Option<Done> {
         let results = self.results?;
         if lock(&self.kept).contains(key) {

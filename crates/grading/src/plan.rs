@@ -121,7 +121,7 @@ fn lines(name: &str, error: &SuiteError) -> String {
 /// Finds a suite: one that comes with the program, by its name, or a file. Its own files are looked up beside it.
 ///
 /// # Errors
-/// When there is none, or with everything that is wrong with it.
+/// When there is no such suite; otherwise everything that is wrong with it.
 pub fn find(name: &str) -> Result<Plan, FindError> {
     let path = Path::new(name);
     let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

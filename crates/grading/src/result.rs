@@ -127,7 +127,7 @@ pub enum BadTrace {
         frame: u64,
         /// The step it belongs to; 0 for the first record.
         step: u32,
-        /// What of it.
+        /// Which part of the record, or why not.
         #[serde(with = "mirror::UnreadableForm")]
         cause: Unreadable,
         /// Byte offset of the damage.

@@ -15,8 +15,8 @@ pub struct SceneFile {
     pub path: PathBuf,
 }
 
-/// The files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. What lies elsewhere, or
-/// has a name that is not UTF-8, is none of them.
+/// The files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. Files that lie elsewhere,
+/// or whose names are not UTF-8, are left out.
 ///
 /// # Errors
 /// When a folder can't be read.

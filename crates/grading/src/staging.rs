@@ -308,7 +308,7 @@ fn too_large() -> CopyError {
     ))
 }
 
-/// What of a submission may still be copied.
+/// How many bytes and files of a submission may still be copied.
 struct Budget {
     bytes: u64,
     files: u64,

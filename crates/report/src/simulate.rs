@@ -13,7 +13,7 @@ use serde_json::json;
 
 /// What a simulation did.
 #[derive(Debug, Clone, Copy)]
-pub struct Summary<'a> {
+pub struct SimulationSummary<'a> {
     /// The scene as typed.
     pub scene: &'a str,
     /// The trace as typed; `None` when nothing was kept.
@@ -28,7 +28,7 @@ pub struct Summary<'a> {
     pub audited: Option<SearchCounts>,
 }
 
-impl Summary<'_> {
+impl SimulationSummary<'_> {
     /// For people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {

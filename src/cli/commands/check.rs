@@ -17,7 +17,7 @@ use crate::{
     },
     report::{
         self,
-        check::{Shown, WrongSteps},
+        check::{StepChoice, WrongSteps},
         number::counted,
         page,
         style::Style,
@@ -60,11 +60,11 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         bail!("the scene {} has {}; there is no step {step}", scene.name, counted(steps.into(), "step"));
     }
     let shown = if arguments.all {
-        Shown::All
+        StepChoice::All
     } else if arguments.step.is_empty() {
-        Shown::None
+        StepChoice::None
     } else {
-        Shown::These(arguments.step.clone())
+        StepChoice::These(arguments.step.clone())
     };
     let mut heard = Heard { bar: console::Bar::new(steps), wrong: WrongSteps::new(shown) };
     let lasting = is_lasting(name);

@@ -15,7 +15,7 @@ use crate::{
     judge::Rules,
     report::{
         explain,
-        grade::{self, Format, Shown, Text},
+        grade::{self, Format, Text, TextDetail},
         number::counted,
         style::Style,
         words,
@@ -290,10 +290,10 @@ impl Session<'_> {
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let is_class = grades.len() > 1;
         let shown = match console::width() {
-            _ if self.arguments.quiet => Shown::Line,
-            _ if self.arguments.verbose => Shown::All,
-            Some(_) if is_class => Shown::Closing,
-            _ => Shown::Wrong,
+            _ if self.arguments.quiet => TextDetail::Line,
+            _ if self.arguments.verbose => TextDetail::All,
+            Some(_) if is_class => TextDetail::Closing,
+            _ => TextDetail::Wrong,
         };
         let trace = |submission: &str, scene: &str| self.trace(submission, scene);
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
@@ -305,7 +305,7 @@ impl Session<'_> {
         };
         let (style, width) = (console::style(), console::width());
         let text = Text { style, shown, width, again: None, closer: Some(&closer) }.render(grades);
-        match is_class && shown > Shown::Line {
+        match is_class && shown > TextDetail::Line {
             true => text + "\n" + &grade::class(grades, HARDEST, style),
             false => text,
         }

@@ -6,7 +6,7 @@ use crate::{
     evidence::{self, Evidence, Focus, StepRulings, Track},
     judge::{Outcome, Rules, parity},
     report::{
-        check::{Check, Shown, WrongSteps},
+        check::{Check, StepChoice, WrongSteps},
         page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
     },
     scene::Scene,
@@ -176,7 +176,7 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
         (Hints::Full, Some(first)) => what_if(scene, first, trace, &evidence),
         _ => None,
     };
-    let steps = WrongSteps::new(Shown::None);
+    let steps = WrongSteps::new(StepChoice::None);
     let (name, trace) = (names.0, names.1.unwrap_or_default());
     let check = Check { scene: name, trace, outcome, explanations, rules, steps: &steps, audit: false };
     let has_trace = names.1.is_some();

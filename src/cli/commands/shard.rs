@@ -89,8 +89,8 @@ impl Part {
     }
 }
 
-/// What of a list is a shard's own: every N-th, so that neighbours in the alphabet, who may have worked together and share slow
-/// programs, go to different machines.
+/// A shard's own entries of a list: every N-th one. Neighbours in the alphabet may have worked together and share slow programs;
+/// so they go to different machines.
 fn own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
 }

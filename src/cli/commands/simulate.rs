@@ -1,7 +1,7 @@
 //! `simulate`: simulates a scene and records its trace.
 use crate::{
     cli::{arguments::Simulate, console, exit, input, output::Output, values::TextOrJson},
-    report::{describe::step_error, simulate::Summary, style::Style},
+    report::{describe::step_error, simulate::SimulationSummary, style::Style},
     sim::{RootSearch, Simulation},
     trace::{EventCounts, Layout, Recorder},
 };
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &Simulate) -> Result<u8> {
     let name = arguments.output.as_ref().map(|name| input::shown(name));
     let searches = simulation.search_counts();
     let audited = arguments.audit.then_some(searches);
-    let summary = Summary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };
+    let summary = SimulationSummary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };
     let style = if to_stdout { Style::Plain } else { console::style() };
     let text = match arguments.format {
         TextOrJson::Text => summary.text(style),

@@ -8,7 +8,7 @@ use crate::{
     },
     report::{
         number::counted,
-        trace::{self as report, Record, Shown},
+        trace::{self as report, ShownRecord, ShownStep},
     },
     trace::{Frame, Layout, Reader, Summary, compare, labels},
 };
@@ -53,7 +53,7 @@ pub(super) fn show(arguments: &TraceShow) -> Result<u8> {
         }
         let number = reader.records() - 1;
         if layout.step_of(number) == step {
-            records.push(Record {
+            records.push(ShownRecord {
                 number,
                 offset: reader.record_offset(),
                 mid: layout.is_mid(number),
@@ -69,7 +69,7 @@ pub(super) fn show(arguments: &TraceShow) -> Result<u8> {
         }
     }
     let labels = if step > 0 { labels(&scene.scene, &before.state) } else { Vec::new() };
-    let shown = Shown { step, steps, records: &records, labels: &labels };
+    let shown = ShownStep { step, steps, records: &records, labels: &labels };
     let text = match arguments.format {
         TextOrJson::Text => shown.text(console::style()),
         TextOrJson::Json => shown.json(&scene.name, &trace.name),

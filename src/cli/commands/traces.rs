@@ -10,7 +10,7 @@ use crate::{
     diagnose,
     evidence::StepRulings,
     judge::parity::{self, Options},
-    report::grade::{Format, Shown, Text, rehearse},
+    report::grade::{Format, Text, TextDetail, rehearse},
     sandbox::{self, Ended},
     suite::{
         Grade, Reason, Run, SceneResult, SceneTask, Verdict,
@@ -65,9 +65,9 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     let results = Results { folder, pages: pages.as_ref(), reader, is_part, grades: &grades };
     results.write(reports, || {
         let shown = match (arguments.quiet, arguments.verbose) {
-            (true, _) => Shown::Line,
-            (_, true) => Shown::All,
-            _ => Shown::Wrong,
+            (true, _) => TextDetail::Line,
+            (_, true) => TextDetail::All,
+            _ => TextDetail::Wrong,
         };
         let (style, width) = (console::style(), console::width());
         Text { style, shown, width, again: None, closer: None }.render(&grades)

@@ -182,7 +182,7 @@ fn a_large_factor_does_not_vouch_for_garbage() {
     }
 }
 
-/// Factors that are none.
+/// Factors that the rules do not accept as factors.
 #[test]
 fn what_is_no_positive_number_is_no_factor() {
     let scene = scene(BOUNCE);

@@ -164,8 +164,8 @@ impl StepJudgement {
         self.findings.len() as u64 + self.more.total()
     }
 
-    /// Whether it has findings that the step's sensitivity could excuse. Polynomials of known positions are none: their own
-    /// bounds are all that counts.
+    /// Whether it has findings that the step's sensitivity could excuse. Those about polynomials of known
+    /// positions are not among them: their own bounds are all that counts.
     pub(super) fn hangs_on_round_off(&self) -> bool {
         self.findings.iter().any(|finding| {
             !matches!(

@@ -57,7 +57,7 @@ impl Bodies {
         self.masses.len()
     }
 
-    /// Of what pairs consist.
+    /// How many objects of each kind there are to make pairs of.
     #[inline]
     pub fn objects(&self) -> Objects {
         Objects { particles: self.particles(), edges: self.edges.len(), half_planes: self.points.len() }

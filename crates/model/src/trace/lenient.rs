@@ -120,7 +120,7 @@ pub struct ReadStop {
     pub at: TraceError,
 }
 
-/// What of a record could not be read; the original has a message for each of the first two.
+/// Which part of a record could not be read, or why; the original has a message for each of the first two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unreadable {
     /// "Failed to load timestep": the bytes end before or inside positions and velocities.

@@ -11,7 +11,7 @@ pub struct PassPlot<'a> {
     pub title: &'a str,
     /// Detection passes of each step, from the first one on, as the reference makes them.
     pub expected: &'a [u32],
-    /// Those of the trace. Where its polynomials are no whole number of passes, there is none.
+    /// Those of the trace. `None` where its polynomials do not fill a whole number of passes.
     pub actual: &'a [Option<u32>],
 }
 

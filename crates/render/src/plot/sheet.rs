@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// Widths of all sheets.
 pub const WIDTH: f64 = 640.0;
 
-/// What a mark is drawn in: the class of the style sheet and the colour where there is none.
+/// What a mark is drawn in: its class in the style sheet, and the colour for readers without one.
 #[derive(Debug, Clone, Copy)]
 pub enum Ink {
     /// Axes.

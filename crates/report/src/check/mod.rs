@@ -13,7 +13,7 @@ mod steps;
 mod text;
 
 pub use plots::plots;
-pub use steps::{LISTED, Shown, WrongSteps};
+pub use steps::{LISTED, StepChoice, WrongSteps};
 pub(crate) use text::headline;
 pub use text::stopped;
 

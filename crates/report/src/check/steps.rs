@@ -16,7 +16,7 @@ pub const LISTED: usize = 1000;
 
 /// Which steps a report shows one by one.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum Shown {
+pub enum StepChoice {
     /// None; only the numbers of the wrong ones are kept.
     #[default]
     None,
@@ -46,7 +46,7 @@ struct Steps {
 /// Hears which steps are wrong while a trace is judged.
 #[derive(Debug, Clone, Default)]
 pub struct WrongSteps {
-    shown: Shown,
+    shown: StepChoice,
     parity: Steps,
     fair: Steps,
 }
@@ -54,7 +54,7 @@ pub struct WrongSteps {
 impl WrongSteps {
     /// Keeps what a report about these steps needs.
     #[must_use]
-    pub fn new(shown: Shown) -> Self {
+    pub fn new(shown: StepChoice) -> Self {
         Self { shown, ..Self::default() }
     }
 
@@ -81,7 +81,7 @@ impl Progress for WrongSteps {
 
 impl Steps {
     /// Adds findings of a step that may be here already.
-    fn add(&mut self, step: u32, findings: StepFindings<'_>, shown: &Shown) {
+    fn add(&mut self, step: u32, findings: StepFindings<'_>, shown: &StepChoice) {
         if findings.firsts.is_empty() {
             return;
         }
@@ -90,9 +90,9 @@ impl Steps {
             self.numbers.insert(place, step);
         }
         let wanted = match shown {
-            Shown::None => false,
-            Shown::All => true,
-            Shown::These(steps) => steps.contains(&step),
+            StepChoice::None => false,
+            StepChoice::All => true,
+            StepChoice::These(steps) => steps.contains(&step),
         };
         if !wanted {
             return;
@@ -132,21 +132,21 @@ pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
 
 /// Whether only certain steps are asked for, so that the rest of the report is left out.
 pub(super) fn only_these(check: &Check<'_>) -> bool {
-    matches!(check.steps.shown, Shown::These(_))
+    matches!(check.steps.shown, StepChoice::These(_))
 }
 
 /// Whether all wrong steps are asked for.
 pub(super) fn all(check: &Check<'_>) -> bool {
-    check.steps.shown == Shown::All
+    check.steps.shown == StepChoice::All
 }
 
 /// The section about single steps; nothing when none was asked for, or none is wrong.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = steps_of(check);
     let blocks: Vec<String> = match &check.steps.shown {
-        Shown::None => return None,
-        Shown::All => steps.kept.iter().map(|step| block(check, step, style)).collect(),
-        Shown::These(asked) => asked
+        StepChoice::None => return None,
+        StepChoice::All => steps.kept.iter().map(|step| block(check, step, style)).collect(),
+        StepChoice::These(asked) => asked
             .iter()
             .map(|&number| match steps.kept.iter().find(|step| step.number == number) {
                 Some(step) => block(check, step, style),
@@ -157,7 +157,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let mut text = blocks.join("\n");
     let wrong = check.outcome.findings_by(book).wrong_steps;
     let shown = steps.kept.iter().filter(|step| step.number > 0).count() as u64;
-    if check.steps.shown == Shown::All && shown < wrong {
+    if check.steps.shown == StepChoice::All && shown < wrong {
         text += &format!("\n{} more are wrong; --step N shows any of them\n", counted(wrong - shown, "step"));
     }
     (!text.is_empty()).then_some(text)
@@ -220,9 +220,9 @@ pub(super) fn views(check: &Check<'_>) -> Option<Vec<StepView>> {
             .collect(),
     };
     match &check.steps.shown {
-        Shown::None => None,
-        Shown::All => Some(steps.kept.iter().map(view).collect()),
-        Shown::These(asked) => Some(
+        StepChoice::None => None,
+        StepChoice::All => Some(steps.kept.iter().map(view).collect()),
+        StepChoice::These(asked) => Some(
             asked
                 .iter()
                 .map(|&number| {

@@ -134,7 +134,7 @@ pub(crate) use github::annotation;
 pub use json::line as json_line;
 use phrases::wrong_first;
 pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, plain, points, reached};
-pub use text::{Advice, Shown, Text, changes, score, table as text_table};
+pub use text::{Advice, Text, TextDetail, changes, score, table as text_table};
 
 /// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at hand,
 /// and not when a whole class's reports are written.

@@ -4,7 +4,7 @@ use super::{
     case::mistakes,
     document,
     markup::text,
-    room::{self, Motion, OUTPUTS, Room},
+    room::{self, KeptMotion, OUTPUTS, Room},
     script,
 };
 use crate::{
@@ -147,9 +147,9 @@ fn likely(grade: &Grade) -> Vec<Explanation> {
     likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect()
 }
 
-/// How much it takes to see a mistake in a scene: nothing was drawn; the rule books differ, so that it may be a consequence
-/// or round-off; it is none of the likely mistakes, the likeliest first, or is not explained at all; several mistakes would
-/// do the same there; how large the motion is. The least is the most telling.
+/// The place of a scene among those to look at first; the least comes first. In this order it counts whether nothing was drawn;
+/// whether the rule books differ, so that it may be a consequence or round-off; which of the likely mistakes explains it, if any;
+/// how many other mistakes would do the same there; how large its motion is.
 fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (bool, bool, usize, usize, usize) {
     let own = &scene.explanations;
     let rank = likely.iter().position(|one| one.is_named_in(own));
@@ -290,7 +290,7 @@ fn article(
             out += "<p class=\"hint\">The pictures and the motion have no room on this page.</p>\n";
         }
         (Some(card), _) => {
-            if room == Room::Pictures(Motion::None) && card.sizes().1 > 0 {
+            if room == Room::Pictures(KeptMotion::None) && card.sizes().1 > 0 {
                 out += "<p class=\"hint\">The motion has no room on this page.</p>\n";
             }
             out += &card.html(&key);
@@ -300,8 +300,8 @@ fn article(
     out += &printed("Standard error", &scene.stderr, outputs);
     out += "</details>\n";
     out += &match (card, room) {
-        (Some(card), Room::Pictures(Motion::Exact)) => card.data(&key),
-        (Some(card), Room::Pictures(Motion::Rounded)) => card.rounded(&key),
+        (Some(card), Room::Pictures(KeptMotion::Exact)) => card.data(&key),
+        (Some(card), Room::Pictures(KeptMotion::Rounded)) => card.rounded(&key),
         _ => String::new(),
     };
     out + "</article>\n"

@@ -1,4 +1,4 @@
-//! What of each scene's card has room on a page.
+//! Which parts of each scene's card fit on a page.
 use super::{Card, script};
 
 /// A page is to stay below so many bytes: it is mailed, and opened on old machines.
@@ -10,16 +10,18 @@ pub(super) const OUTPUTS: usize = 200_000;
 /// So much of it may go to pictures and tables before the first motion has room.
 const STILL: usize = BUDGET / 3 * 2;
 
-/// What of a scene has room on the page.
+/// Which parts of a scene's card fit on the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
+    /// Its words alone.
     Words,
-    Pictures(Motion),
+    /// Words and pictures, and a motion of this precision.
+    Pictures(KeptMotion),
 }
 
-/// How a motion has room.
+/// How precisely a motion is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Motion {
+pub(super) enum KeptMotion {
     None,
     Rounded,
     Exact,
@@ -35,25 +37,25 @@ pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clon
     for (card, room) in cards.clone().zip(&mut rooms) {
         let Some((html, _)) = card.map(Card::sizes) else { continue };
         if html <= still {
-            (still, left, *room) = (still - html, left - html, Room::Pictures(Motion::None));
+            (still, left, *room) = (still - html, left - html, Room::Pictures(KeptMotion::None));
         }
     }
     for (card, room) in cards.clone().zip(&mut rooms).filter(|(_, room)| **room != Room::Words) {
         let Some(card) = card else { continue };
         let (size, how) = match card.rounded_size() {
-            Some(size) => (size, Motion::Rounded),
-            None => (card.sizes().1, Motion::Exact),
+            Some(size) => (size, KeptMotion::Rounded),
+            None => (card.sizes().1, KeptMotion::Exact),
         };
         if size <= left {
             (left, *room) = (left - size, Room::Pictures(how));
         }
     }
-    for (card, room) in cards.zip(&mut rooms).filter(|(_, room)| **room == Room::Pictures(Motion::Rounded)) {
+    for (card, room) in cards.zip(&mut rooms).filter(|(_, room)| **room == Room::Pictures(KeptMotion::Rounded)) {
         let Some((size, rounded)) = card.and_then(|card| Some((card.sizes().1, card.rounded_size()?))) else {
             continue;
         };
         if size <= left + rounded {
-            (left, *room) = (left + rounded - size, Room::Pictures(Motion::Exact));
+            (left, *room) = (left + rounded - size, Room::Pictures(KeptMotion::Exact));
         }
     }
     rooms
@@ -66,8 +68,8 @@ pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms:
         .filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0))
         .map(|(_, room)| *room)
         .collect();
-    let without = of.iter().filter(|room| matches!(room, Room::Words | Room::Pictures(Motion::None))).count();
-    let rounded = of.iter().filter(|room| **room == Room::Pictures(Motion::Rounded)).count();
+    let without = of.iter().filter(|room| matches!(room, Room::Words | Room::Pictures(KeptMotion::None))).count();
+    let rounded = of.iter().filter(|room| **room == Room::Pictures(KeptMotion::Rounded)).count();
     let scenes = |count: usize| if count == 1 { "one scene is".to_owned() } else { format!("{count} scenes are") };
     let mut says = Vec::new();
     if without > 0 {
@@ -107,15 +109,18 @@ mod tests {
     #[test]
     fn motions_are_rounded_before_they_are_left_out() {
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 3]);
-        assert_eq!((&all[..], says.as_str()), (&[Room::Pictures(Motion::Exact); 3][..], ""));
+        assert_eq!((&all[..], says.as_str()), (&[Room::Pictures(KeptMotion::Exact); 3][..], ""));
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 10]);
         let count = |room| all.iter().filter(|one| **one == Room::Pictures(room)).count();
-        assert!(count(Motion::Exact) > 0 && count(Motion::Rounded) > 0 && count(Motion::None) == 0, "{all:?}");
-        assert_eq!(all[0], Room::Pictures(Motion::Exact));
+        assert!(
+            count(KeptMotion::Exact) > 0 && count(KeptMotion::Rounded) > 0 && count(KeptMotion::None) == 0,
+            "{all:?}"
+        );
+        assert_eq!(all[0], Room::Pictures(KeptMotion::Exact));
         assert!(says.contains("scenes are here with a motion that is rounded") && !says.contains("without"), "{says}");
         let (all, says) = rooms(&vec![card(50_000, 500_000, 200_000); 30]);
         assert!(
-            all.contains(&Room::Pictures(Motion::Rounded)) && all.contains(&Room::Pictures(Motion::None)),
+            all.contains(&Room::Pictures(KeptMotion::Rounded)) && all.contains(&Room::Pictures(KeptMotion::None)),
             "{all:?}"
         );
         assert!(says.contains("scenes are without the motion here") && says.contains("rounded"), "{says}");

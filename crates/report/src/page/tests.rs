@@ -36,7 +36,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
         outcome: &outcome,
         explanations: &explanations,
         rules: Rules::Both,
-        steps: &crate::check::WrongSteps::new(crate::check::Shown::None),
+        steps: &crate::check::WrongSteps::new(crate::check::StepChoice::None),
         audit: false,
     };
     let case = Case { check, scene, evidence: Some(&evidence), what_if: None, hints, has_trace: true };
@@ -135,7 +135,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
         track: evidence.reference.clone(),
         equal: true,
     };
-    let steps = crate::check::WrongSteps::new(crate::check::Shown::None);
+    let steps = crate::check::WrongSteps::new(crate::check::StepChoice::None);
     let check = Check {
         scene: "Group/scene",
         trace: "",

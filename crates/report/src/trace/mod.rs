@@ -6,4 +6,4 @@ mod show;
 
 pub use diff::{Names, diff_json, diff_text, same};
 pub use info::info_json;
-pub use show::{Record, Shown};
+pub use show::{ShownRecord, ShownStep};

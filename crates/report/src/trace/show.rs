@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 /// A record of the step.
 #[derive(Debug, Clone)]
-pub struct Record {
+pub struct ShownRecord {
     /// Its number in the trace, from 0.
     pub number: u64,
     /// Byte offset of its beginning.
@@ -27,18 +27,18 @@ pub struct Record {
 
 /// A step to be shown.
 #[derive(Debug, Clone, Copy)]
-pub struct Shown<'a> {
+pub struct ShownStep<'a> {
     /// The step, from 1; 0 is the initial record.
     pub step: u32,
     /// Steps of the scene.
     pub steps: u32,
     /// Its records.
-    pub records: &'a [Record],
+    pub records: &'a [ShownRecord],
     /// Where the reference's polynomials of the step come from.
     pub labels: &'a [Label],
 }
 
-impl Shown<'_> {
+impl ShownStep<'_> {
     /// For people: both records, the end record alone when the mid record says the same.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
@@ -62,7 +62,7 @@ impl Shown<'_> {
         text
     }
 
-    fn record(&self, record: &Record, style: Style) -> String {
+    fn record(&self, record: &ShownRecord, style: Style) -> String {
         let kind = if record.mid {
             "mid record"
         } else if self.step == 0 {
@@ -124,7 +124,7 @@ impl Shown<'_> {
         format!("{value:#}\n")
     }
 
-    fn record_view(&self, record: &Record) -> Value {
+    fn record_view(&self, record: &ShownRecord) -> Value {
         let frame = &record.frame;
         let polynomial = |(index, coefficients): (usize, &[f64])| {
             let label = self.labels.get(index);

@@ -18,7 +18,7 @@ const TURN: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 
 /// A program's coordinates.
 #[derive(Clone, Copy)]
-pub enum Frame {
+pub enum Axes {
     /// Those of the scene.
     Scene,
     /// Another origin.
@@ -29,7 +29,7 @@ pub enum Frame {
     Rotated,
 }
 
-impl Frame {
+impl Axes {
     /// The coordinates that this student computes in.
     pub fn of(student: Student) -> Self {
         match student.mistake_in(HERE) {
@@ -79,6 +79,6 @@ mod tests {
         let (cosine, sine) = TURN;
         assert!((cosine * cosine + sine * sine - 1.0).abs() < f64::EPSILON);
         let v = Vec2::new(3.0, -7.0);
-        assert!(length(Frame::Rotated.back(Frame::Rotated.direction(v)) - v) < 1e-14);
+        assert!(length(Axes::Rotated.back(Axes::Rotated.direction(v)) - v) < 1e-14);
     }
 }

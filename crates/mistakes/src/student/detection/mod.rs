@@ -30,13 +30,13 @@ mod particle_particle;
 mod quintic;
 mod wide;
 
-use frame::Frame;
+use frame::Axes;
 
 fosssim_model::drops_leading!();
 
 impl Encounter {
     fn new(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
-        let frame = frame_of(world.student, pair);
+        let frame = axes_of(world.student, pair);
         let body = |index| {
             let start = frame.point(at(q_start, index), at(q_start, pair.particle));
             let end = frame.point(at(q_end, index), at(q_end, pair.particle));
@@ -101,9 +101,9 @@ impl Encounter {
 }
 
 /// The coordinates for this pair. A half-plane that moves has no formulas, so nobody moves along with its particle.
-fn frame_of(student: Student, pair: Pair) -> Frame {
-    match (Frame::of(student), pair.object) {
-        (Frame::Comoving, Object::HalfPlane(_)) => Frame::Scene,
+fn axes_of(student: Student, pair: Pair) -> Axes {
+    match (Axes::of(student), pair.object) {
+        (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,
         (frame, _) => frame,
     }
 }
@@ -158,7 +158,7 @@ pub fn detect(
     if !counts {
         return Ok(None);
     }
-    let mut n = frame_of(student, pair).back(encounter.contact_vector(student, time));
+    let mut n = axes_of(student, pair).back(encounter.contact_vector(student, time));
     if let Some(Change::Vector(change)) = student.change() {
         n = change(&encounter, time, n);
     }

@@ -19,7 +19,7 @@ const SHOWN_LINES: usize = 10;
 
 /// How much is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub enum Shown {
+pub enum TextDetail {
     /// A line per submission.
     Line,
     /// What each submission's grading comes to.
@@ -40,7 +40,7 @@ pub struct Text<'a> {
     /// The decoration.
     pub style: Style,
     /// How much of each submission.
-    pub shown: Shown,
+    pub shown: TextDetail,
     /// The room for tables, in columns; without it there is no limit.
     pub width: Option<usize>,
     /// What to type to grade one scene again, shown with each scene that is wrong.
@@ -55,14 +55,14 @@ impl Text<'_> {
     pub fn render(&self, grades: &[Grade]) -> String {
         let mut text = String::new();
         for grade in grades {
-            if self.shown == Shown::Line {
+            if self.shown == TextDetail::Line {
                 let why = words::unfit(grade).map(|unfit| format!(": {}", one_line(&unfit))).unwrap_or_default();
                 let _ = writeln!(text, "{}{why}", self.verdict(grade));
             } else {
                 self.submission(&mut text, grade);
             }
         }
-        if grades.len() > 1 && self.shown > Shown::Line {
+        if grades.len() > 1 && self.shown > TextDetail::Line {
             text += &table(grades, self.width, self.style);
         }
         text
@@ -102,7 +102,7 @@ impl Text<'_> {
             let _ = writeln!(text, "{}", one_line(&unfit));
         }
         if let Some(build) = build {
-            let most = if self.shown < Shown::Wrong { SHOWN_LINES } else { usize::MAX };
+            let most = if self.shown < TextDetail::Wrong { SHOWN_LINES } else { usize::MAX };
             let _ = writeln!(text, "\n{}\n{}", plain(&words::build(&build.end)), output(&build.output, most));
         }
         text

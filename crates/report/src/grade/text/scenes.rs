@@ -1,6 +1,6 @@
 //! The scenes of a submission, group by group: what is accepted is counted, what is not is told, and what is told of many
 //! scenes in the same words is told once.
-use super::{Shown, Text, look, output};
+use super::{Text, TextDetail, look, output};
 use crate::{
     explain,
     grade::{difference, one_line, points, reached, text::SHOWN_LINES},
@@ -18,10 +18,10 @@ const NAMED: usize = 3;
 /// The groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     // What is wrong with the submission itself is not said of each scene.
-    if options.shown < Shown::Wrong || grade.unfit().is_some() {
+    if options.shown < TextDetail::Wrong || grade.unfit().is_some() {
         return String::new();
     }
-    let shown = |scene: &SceneGrade| options.shown == Shown::All || !scene.verdict.is_accepted();
+    let shown = |scene: &SceneGrade| options.shown == TextDetail::All || !scene.verdict.is_accepted();
     let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| columns(&one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
     let mut scenes = Scenes { options, grade, width, told: BTreeMap::new(), alike: alike(grade) };
@@ -65,7 +65,7 @@ impl<'a> Scenes<'a, '_> {
         let name = style.paint(Look::Strong, &one_line(&group.name));
         let mut text = format!("\n{name} ({} of {})\n", reached(group.points), points(group.max_points));
         let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
-        let folds = self.options.shown < Shown::All;
+        let folds = self.options.shown < TextDetail::All;
         if folds && accepted > 0 {
             let code = style.paint(Look::Good, "AC ");
             let _ = writeln!(text, "  {code} {}", counted(accepted as u64, "scene"));
