@@ -9,7 +9,7 @@ use super::{
 };
 use fosssim_judge::{
     Outcome, Rules, Ruling, Stop,
-    fair::{self, Refusal},
+    fair::{self, FairRefusal},
 };
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_sandbox::{self as sandbox, Ended, Stream};
@@ -131,10 +131,10 @@ fn wrong(judged: &Outcome, rules: Rules) -> Wrong {
 /// Why the fair rules refuse a trace that the original reads to its end.
 fn refusal(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
-        Some(Refusal::Damaged) => BadTrace::Damaged,
-        Some(Refusal::TrailingBytes) => BadTrace::TrailingBytes,
-        Some(Refusal::Stopped) => BadTrace::NoEnd,
-        Some(Refusal::Undecided) => BadTrace::Undecided,
+        Some(FairRefusal::Damaged) => BadTrace::Damaged,
+        Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,
+        Some(FairRefusal::Stopped) => BadTrace::NoEnd,
+        Some(FairRefusal::Undecided) => BadTrace::Undecided,
         None => BadTrace::Unfinished,
     }
 }

@@ -1,7 +1,7 @@
 //! The verdict on one trace.
 use super::{
     counts::FindingCounts,
-    fair::{Judgement, Refusal},
+    fair::{FairRefusal, Judgement},
     finding::Finding,
 };
 use fosssim_model::{
@@ -156,11 +156,11 @@ impl Outcome {
     fn conclude_fair(&mut self) {
         let Some(fair) = &mut self.fair else { return };
         let refusal = if self.stop.is_some() {
-            Some(Refusal::Stopped)
+            Some(FairRefusal::Stopped)
         } else if self.damage.is_some() {
-            Some(Refusal::Damaged)
+            Some(FairRefusal::Damaged)
         } else if self.trailing_bytes {
-            Some(Refusal::TrailingBytes)
+            Some(FairRefusal::TrailingBytes)
         } else {
             None
         };

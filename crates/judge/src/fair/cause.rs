@@ -2,7 +2,7 @@
 //!
 //! It looks at what both have found, no closer: the first divergence of the book that rejects names the rule. What the
 //! original's rules are is written in oracle-behaviour.md 4 to 6, why they can't be trusted in numerics.md 1.
-use super::judgement::{FairVerdict, Form, Judgement, Refusal};
+use super::judgement::{FairRefusal, FairVerdict, Form, Judgement};
 use crate::{
     finding::{Detail, Finding, Role},
     outcome::{Outcome, Overall},
@@ -205,10 +205,10 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
 /// Parity passes what fair rejects.
 fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     match fair.refusal {
-        Some(Refusal::Damaged) => return Cause::Damage,
-        Some(Refusal::TrailingBytes) if fair.counts.total() == 0 => return Cause::TrailingBytes,
+        Some(FairRefusal::Damaged) => return Cause::Damage,
+        Some(FairRefusal::TrailingBytes) if fair.counts.total() == 0 => return Cause::TrailingBytes,
         // The original came to its end: it is the trace's own polynomials that lead nowhere.
-        Some(Refusal::Stopped) => return Cause::OwnPolynomials,
+        Some(FairRefusal::Stopped) => return Cause::OwnPolynomials,
         _ => {}
     }
     let Some(first) = &fair.first_divergence else { return Cause::SmallErrors };

@@ -1,5 +1,5 @@
 //! Whether a logged polynomial is the expected one up to a positive factor and round-off (numerics.md 2).
-use super::formulas::Coefficients;
+use super::formulas::BoundedCoefficients;
 use fosssim_num::{
     bounded::{Bounded, UNIT_ROUNDOFF},
     polynomial::MAX_COEFFICIENTS,
@@ -95,7 +95,7 @@ fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Resul
     if actual.len() > MAX_COEFFICIENTS {
         return Err(Mismatch::TooLong);
     }
-    let mut right: Coefficients = [Bounded::default(); MAX_COEFFICIENTS];
+    let mut right: BoundedCoefficients = [Bounded::default(); MAX_COEFFICIENTS];
     let mut logged = [0.0; MAX_COEFFICIENTS];
     right[MAX_COEFFICIENTS - expected.len()..].copy_from_slice(expected);
     logged[MAX_COEFFICIENTS - actual.len()..].copy_from_slice(actual);

@@ -1,5 +1,5 @@
 //! Traces that no program wrote in earnest: each shows what the fair rules must not fall for.
-use super::{FairVerdict, Judgement, Refusal};
+use super::{FairRefusal, FairVerdict, Judgement};
 use crate::{
     finding::{Detail, Kind},
     samples::{BOUNCE, ZONES, changed, judged, relog, run, scene, written},
@@ -304,6 +304,6 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     let plain = fair(&scene, &written(&scene, &run(&scene, ())));
     assert_eq!(plain.verdict, FairVerdict::Accepted);
     let forged = fair(&scene, &written(&scene, &run(&scene, Push)));
-    assert_eq!(forged.refusal, Some(Refusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
+    assert_eq!(forged.refusal, Some(FairRefusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
     assert_eq!(forged.counts.total(), 0, "{:?}", forged.first_divergence);
 }

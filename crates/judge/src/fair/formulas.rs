@@ -49,15 +49,15 @@ pub enum BoundedPairMotion {
 }
 
 /// A polynomial, highest power first, nothing dropped.
-pub type Coefficients = [Bounded; MAX_COEFFICIENTS];
+pub type BoundedCoefficients = [Bounded; MAX_COEFFICIENTS];
 
 /// The polynomials of a pair; each uses the last `sizes()` entries.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Expected {
-    polynomials: [Coefficients; 4],
+    polynomials: [BoundedCoefficients; 4],
     sizes: [usize; 4],
     /// Particle-edge: the approach polynomial without the slip of the course's formula (numerics.md 1.1).
-    right_approach: Option<Coefficients>,
+    right_approach: Option<BoundedCoefficients>,
 }
 
 impl Expected {

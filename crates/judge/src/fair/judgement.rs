@@ -25,7 +25,7 @@ pub enum FairVerdict {
 
 /// Why a trace is refused as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Refusal {
+pub enum FairRefusal {
     /// It can't be read to its end, or a step of its states has no result.
     Stopped,
     /// It can be read only as the original reads damaged files.
@@ -54,7 +54,7 @@ pub struct Judgement {
     /// The verdict.
     pub verdict: FairVerdict,
     /// Why the trace is refused as a whole, whatever its steps hold.
-    pub refusal: Option<Refusal>,
+    pub refusal: Option<FairRefusal>,
     /// Counts per kind of finding.
     pub counts: FindingCounts,
     /// Steps with at least one finding; the initial record is not one.
@@ -122,7 +122,7 @@ impl Judgement {
         }
         self.lost += step.lost;
         if step.endless {
-            self.refusal = Some(Refusal::Stopped);
+            self.refusal = Some(FairRefusal::Stopped);
         }
         self.shares.widen(&step.shares);
         let mut is_wrong = !step.findings.is_empty() || step.endless;
@@ -185,8 +185,8 @@ impl Judgement {
     }
 
     /// Draws the verdict.
-    pub(crate) fn conclude(&mut self, refusal: Option<Refusal>, complete: bool) {
-        self.refusal = self.refusal.or(refusal).or(self.is_undecided().then_some(Refusal::Undecided));
+    pub(crate) fn conclude(&mut self, refusal: Option<FairRefusal>, complete: bool) {
+        self.refusal = self.refusal.or(refusal).or(self.is_undecided().then_some(FairRefusal::Undecided));
         self.settle_pending();
         self.examples.sort_by_key(Finding::kind);
         self.verdict = if self.refusal.is_some() || self.counts.total() > 0 {

@@ -47,7 +47,7 @@ pub use borderline::borderline;
 pub use cause::{Cause, cause};
 pub use contact::decides;
 pub(super) use context::{Context, Records};
-pub use judgement::{FairVerdict, Form, Judgement, Refusal};
+pub use judgement::{FairRefusal, FairVerdict, Form, Judgement};
 pub(super) use reach::Reach;
 pub(super) use step::{judge, judge_initial};
 pub(super) use step_judgement::StepJudgement;

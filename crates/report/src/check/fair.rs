@@ -6,7 +6,7 @@ use super::super::{
 };
 use fosssim_judge::{
     Outcome, PairWords, PassWords,
-    fair::{FairVerdict, Form, Judgement, Refusal, cause},
+    fair::{FairRefusal, FairVerdict, Form, Judgement, cause},
     share,
 };
 
@@ -76,10 +76,10 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
 /// What the fair verdict rests on, in one line.
 pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     let refusal = match fair.refusal {
-        Some(Refusal::Stopped) => Some("the trace can't be followed to its end"),
-        Some(Refusal::Damaged) => Some("the trace is damaged"),
-        Some(Refusal::TrailingBytes) => Some("bytes follow the last record"),
-        Some(Refusal::Undecided) => {
+        Some(FairRefusal::Stopped) => Some("the trace can't be followed to its end"),
+        Some(FairRefusal::Damaged) => Some("the trace is damaged"),
+        Some(FairRefusal::TrailingBytes) => Some("bytes follow the last record"),
+        Some(FairRefusal::Undecided) => {
             Some("most of its decisions are not the reference's, though round-off may flip them")
         }
         None => None,

@@ -2,7 +2,7 @@
 use super::super::view::{FindingView, Number, PairView, PassView};
 use fosssim_judge::{
     Outcome,
-    fair::{Borderline, Cause, FairVerdict, Form, Judgement, Refusal, Shares, cause},
+    fair::{Borderline, Cause, FairRefusal, FairVerdict, Form, Judgement, Shares, cause},
 };
 use serde::Serialize;
 
@@ -80,10 +80,10 @@ impl From<&Judgement> for FairView {
                 FairVerdict::None => "none",
             },
             refusal: fair.refusal.map(|refusal| match refusal {
-                Refusal::Stopped => "stopped",
-                Refusal::Damaged => "damaged",
-                Refusal::TrailingBytes => "trailing_bytes",
-                Refusal::Undecided => "undecided",
+                FairRefusal::Stopped => "stopped",
+                FairRefusal::Damaged => "damaged",
+                FairRefusal::TrailingBytes => "trailing_bytes",
+                FairRefusal::Undecided => "undecided",
             }),
             wrong_steps: fair.wrong_steps,
             first_divergence: fair.first_divergence.as_ref().map(FindingView::fair),
