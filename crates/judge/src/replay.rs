@@ -26,11 +26,14 @@ use fosssim_model::{
 use std::{io::Read, sync::Mutex};
 
 /// A batch is full when its frames hold this many bytes ...
-const BATCH_BYTES: usize = 1 << 18;
+const BATCH_BYTES: usize = 1 << 20;
 /// ... but beside one that holds more than this, no other is read: one record is enough to have in memory then.
 const LARGE_BATCH_BYTES: usize = 1 << 24;
-/// ... or this many steps.
+/// ... or this many steps ...
 const BATCH_STEPS: usize = 256;
+/// ... or this many that are done as they are read: for those nobody has to be called, and fewer slots take less memory.
+const DONE_STEPS: usize = 16;
+
 /// One step as read, and what judging it yields.
 #[derive(Debug, Default)]
 struct Slot {
@@ -245,7 +248,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     /// Fills a batch. A stop is that of the first step that could not be read; the batch holds the steps before it.
     fn read_batch(&mut self, batch: &mut Batch) -> Option<Stop> {
         (batch.filled, batch.bytes) = (0, 0);
-        while !self.complete() && batch.filled < BATCH_STEPS && batch.bytes < BATCH_BYTES {
+        let mut most = DONE_STEPS;
+        while !self.complete() && batch.filled < most && batch.bytes < BATCH_BYTES {
             if batch.filled == batch.slots.len() {
                 batch.slots.push(Mutex::default());
             }
@@ -253,6 +257,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if let Err(stop) = self.read_step(slot) {
                 self.damage = slot.damage.take();
                 return Some(stop);
+            }
+            if !slot.is_done {
+                most = BATCH_STEPS;
             }
             batch.bytes += slot.bytes;
             batch.filled += 1;

@@ -26,7 +26,7 @@ fn a_batch_counts_all_lists() {
     let scene = crate::samples::scene(crate::samples::BOUNCE);
     let scene = Scene { duration: 100.0, ..scene };
     let impulse = LoggedImpulse { kind: 2, first: 0, second: 0, normal: Vec2::zeros(), time: 0.5 };
-    for (impulses, polynomials) in [(20_000, 0), (0, 100_000)] {
+    for (impulses, polynomials) in [(40_000, 0), (0, 200_000)] {
         let trace = changed(&scene, |frames| {
             for frame in &mut frames[1..21] {
                 frame.impulses = vec![impulse; impulses];
@@ -38,7 +38,7 @@ fn a_batch_counts_all_lists() {
         replay.read_initial().expect("a first record");
         let mut batch = Batch::default();
         assert!(replay.read_batch(&mut batch).is_none());
-        assert!(batch.filled == 1 && batch.bytes > 500_000, "{} steps, {} bytes", batch.filled, batch.bytes);
+        assert!(batch.filled == 1 && batch.bytes > 1_000_000, "{} steps, {} bytes", batch.filled, batch.bytes);
     }
 }
 

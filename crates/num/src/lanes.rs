@@ -95,7 +95,17 @@ impl Default for Instructions {
     }
 }
 
+/// Fewer pairs than this are not worth looking for wide instructions.
+const FEW_PAIRS: usize = 24;
+
 impl Instructions {
+    /// The widest instructions, where so many pairs are looked at together that it pays to look for them: a virtual machine may
+    /// take longer to say what its processor can do than small scenes take to simulate.
+    #[must_use]
+    pub fn for_pairs(pairs: usize) -> Self {
+        if pairs < FEW_PAIRS { Self::plain() } else { Self::default() }
+    }
+
     /// One lane, on every machine.
     #[must_use]
     pub const fn plain() -> Self {
@@ -205,6 +215,13 @@ impl<S: Simd> Lanes<S> {
         Mask { simd: self.simd, lanes: self.simd.equal_f64s(self.values, other.values) }
     }
 
+    /// Where a lane is the other one bit for bit.
+    #[inline(always)]
+    pub fn is_same(self, other: Self) -> Mask<S> {
+        let (own, other) = (self.simd.transmute_u64s_f64s(self.values), self.simd.transmute_u64s_f64s(other.values));
+        Mask { simd: self.simd, lanes: self.simd.equal_u64s(own, other) }
+    }
+
     /// Where a lane is less than a number.
     #[inline(always)]
     pub fn below(self, bound: f64) -> Mask<S> {
@@ -297,8 +314,7 @@ impl<S: Simd> Mask<S> {
     /// Whether any lane says yes.
     #[inline(always)]
     pub fn any(self) -> bool {
-        // Cheaper than to look for the largest.
-        self.simd.reduce_sum_f64s(self.as_numbers().values) > 0.0
+        self.simd.first_true_m64s(self.lanes) < S::F64_LANES
     }
 
     /// Whether all lanes say yes.

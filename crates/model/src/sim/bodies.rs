@@ -63,6 +63,11 @@ impl Bodies {
         Objects { particles: self.particles(), edges: self.edges.len(), half_planes: self.points.len() }
     }
 
+    /// About how many pairs a pass looks at.
+    pub fn pairs(&self) -> usize {
+        self.particles() * (self.particles() / 2 + self.edges.len() + self.points.len())
+    }
+
     /// Writes +0 into both entries of every fixed particle of an array in trace order.
     pub fn zero_fixed(&self, array: &mut [f64]) {
         for (index, &fixed) in self.fixed.iter().enumerate() {

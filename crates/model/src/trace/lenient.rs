@@ -205,12 +205,8 @@ impl<R: Read> Lenient<R> {
         for pieces in step.records() {
             begin = self.source.offset();
             if !pieces.into_iter().all(|piece| self.source.follow(piece)) {
-                let mut seen = usize::try_from(self.source.offset() - start).unwrap_or(usize::MAX);
-                self.source.unread(step.records().flatten().map(|piece| {
-                    let piece = &piece[..piece.len().min(seen)];
-                    seen -= piece.len();
-                    piece
-                }));
+                let seen = usize::try_from(self.source.offset() - start).unwrap_or(usize::MAX);
+                self.source.unread(seen, step.records().flatten());
                 return false;
             }
             records += 1;

@@ -5,8 +5,9 @@
 //! still name it.
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show at once.
-pub(crate) const WINDOW: usize = 256 * 1024;
+/// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show at once. A larger one makes no faster reading:
+/// its pages have to be made, and its bytes do not stay near the processor.
+pub(crate) const WINDOW: usize = 64 * 1024;
 
 #[derive(Debug)]
 pub(crate) struct Source<R> {
@@ -110,13 +111,23 @@ impl<R: Read> Source<R> {
         true
     }
 
-    /// Puts `bytes`, which were consumed last, in front of what follows.
-    pub(crate) fn unread<'a>(&mut self, bytes: impl Iterator<Item = &'a [u8]>) {
-        let mut buffer = Vec::new();
-        bytes.for_each(|piece| buffer.extend_from_slice(piece));
-        self.offset -= buffer.len() as u64;
+    /// Puts the `count` bytes that were consumed last in front of what follows; `bytes` are these, piece by piece, and may go on.
+    pub(crate) fn unread<'a>(&mut self, count: usize, bytes: impl Iterator<Item = &'a [u8]>) {
+        self.offset -= count as u64;
+        if let Some(start) = self.start.checked_sub(count) {
+            // They are still there.
+            self.start = start;
+            return;
+        }
+        let size = self.buffer.len().max(count + self.window().len());
+        let mut buffer = Vec::with_capacity(size);
+        for piece in bytes {
+            buffer.extend_from_slice(&piece[..piece.len().min(count - buffer.len())]);
+        }
         buffer.extend_from_slice(self.window());
         (self.start, self.end) = (0, buffer.len());
+        // As long as it was at least, lest the stream be read in small pieces from now on.
+        buffer.resize(size, 0);
         self.buffer = buffer;
     }
 
@@ -230,7 +241,7 @@ mod tests {
         assert!(source.follow(&bytes[..2 * WINDOW]));
         assert!(!source.follow(&[0; 9]) && !source.follow(&[&bytes[2 * WINDOW..], &[1]].concat()));
         let count = usize::try_from(source.offset()).unwrap();
-        source.unread([&bytes[..7], &bytes[7..count]].into_iter());
+        source.unread(count, [&bytes[..7], &bytes[7..]].into_iter());
         assert_eq!((source.offset(), &source.window()[..9]), (0, &bytes[..9]));
         let mut read = Vec::new();
         while source.ensure(WINDOW) > 0 {
@@ -239,6 +250,35 @@ mod tests {
             source.consume(there);
         }
         assert!(read == bytes && source.offset() == bytes.len() as u64);
+    }
+
+    /// A stream that counts how often it is read.
+    struct Counting<'a>(&'a [u8], &'a mut usize);
+
+    impl Read for Counting<'_> {
+        fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+            *self.1 += 1;
+            self.0.read(out)
+        }
+    }
+
+    /// Each call is one of the system: what is given back must not make them more.
+    #[test]
+    fn what_is_given_back_makes_no_smaller_pieces() {
+        let bytes = vec![7; 8 * WINDOW];
+        for followed in [5, WINDOW - 3, WINDOW + 9] {
+            let mut count = 0;
+            let mut source = Source::new(Counting(&bytes, &mut count), None);
+            assert!(source.follow(&bytes[..followed]));
+            source.unread(followed, [&bytes[..followed]].into_iter());
+            while source.ensure(4) > 0 {
+                let there = source.window().len();
+                source.consume(there);
+            }
+            assert_eq!(source.offset(), bytes.len() as u64);
+            drop(source);
+            assert!(count <= 12, "{count} pieces after {followed} bytes");
+        }
     }
 
     #[test]

@@ -4,18 +4,21 @@ use fosssim_model::{
     scene::Scene,
     sim::{
         PairKind,
-        formulas::{EdgeMotions, particle_edge_and_right_cubic, particle_half_plane, particle_particle},
+        formulas::{
+            EdgeCoefficients, EdgeMotions, particle_edge_and_right_cubic, particle_half_plane, particle_particle,
+        },
     },
     trace::PolynomialLog,
 };
 use fosssim_num::{
-    bounded::{Bounded, Bounded2},
+    bounded::{Bounded, Bounded2, UNIT_ROUNDOFF},
     certificate::{
         excludes_unit_interval,
         lanes::{excludes_edge, excludes_two, is_small, search_ends},
     },
     lanes::{Lanes, MOST_LANES, Mask, Plane, Simd, Work},
     polynomial::{MAX_COEFFICIENTS, Polynomial},
+    tolerances::FAIR_NORM_UNITS,
 };
 
 /// Coefficients of a pair with an edge, and of another one.
@@ -23,10 +26,10 @@ const OF_EDGE: [usize; 4] = [5, 3, 3, 6];
 const OF_TWO: [usize; 2] = [3, 2];
 const MOST_COEFFICIENTS: usize = 17;
 
-/// What a lane says of a call, as bits of a small number: that the polynomials are equal as numbers; that they are right up to
+/// What a lane says of a call, as bits of a small number: that the polynomials are the same; that they are right up to
 /// a factor, and can be searched; that those of the approach fit the definition, too; that the reference's exclude an impact;
 /// that the logged ones do; that these have lost other leading coefficients.
-const EQUAL: u32 = 1;
+const SAME: u32 = 1;
 const ALIKE: u32 = 2;
 const RIGHT_FORM: u32 = 4;
 const OWN_EXCLUDED: u32 = 8;
@@ -46,6 +49,8 @@ pub(super) struct Look<'a> {
     pub share: f64,
     /// Whether what is found alike will be found so by a close look, too, so that its share of the tolerances is used.
     pub is_certain: bool,
+    /// Whether it is tried first if all calls of a block are the same, for which no bounds are needed.
+    pub tries_same: bool,
     pub known: &'a mut [Known],
 }
 
@@ -95,8 +100,16 @@ impl Work for Look<'_> {
                 // The last lanes repeat the last call.
                 let member = &block[lane.min(block.len() - 1)];
                 match self.kind {
-                    PairKind::ParticleEdge => self.gather::<4, 17>(member, lane, &mut logged, OF_EDGE),
-                    _ => self.gather::<2, 5>(member, lane, &mut logged, OF_TWO),
+                    PairKind::ParticleEdge => {
+                        if !self.gather::<4, 17>(member, lane, &mut logged, OF_EDGE) {
+                            self.gather_edge(member, lane, &mut logged);
+                        }
+                    }
+                    PairKind::ParticleParticle | PairKind::ParticleHalfPlane => {
+                        if !self.gather::<2, 5>(member, lane, &mut logged, OF_TWO) {
+                            self.gather_two(member, lane, &mut logged);
+                        }
+                    }
                 }
             }
             match self.kind {
@@ -106,8 +119,8 @@ impl Work for Look<'_> {
             }
             for (lane, member) in block.iter().enumerate() {
                 let known = match self.kind {
-                    PairKind::ParticleEdge => self.conclude(member, lane, &logged, &answers, OF_EDGE),
-                    _ => self.conclude(member, lane, &logged, &answers, OF_TWO),
+                    PairKind::ParticleEdge => self.conclude(member, lane, &answers, OF_EDGE),
+                    _ => self.conclude(member, lane, &answers, OF_TWO),
                 };
                 self.known[member.call] = known;
                 if self.is_certain {
@@ -120,6 +133,7 @@ impl Work for Look<'_> {
 
 impl Look<'_> {
     /// Takes a call's logged coefficients into a lane; complete polynomials have `lengths` of them, `ALL` together.
+    /// Whether they are complete; if not, nothing is taken.
     #[inline(always)]
     fn gather<const COUNT: usize, const ALL: usize>(
         &self,
@@ -127,7 +141,7 @@ impl Look<'_> {
         lane: usize,
         logged: &mut Logged,
         lengths: [usize; COUNT],
-    ) {
+    ) -> bool {
         let first = self.index + member.polynomial;
         let begin = if first == 0 { 0 } else { self.log.ends[first - 1] };
         let mut is_whole = true;
@@ -137,30 +151,49 @@ impl Look<'_> {
             is_whole &= self.log.ends[first + number] == end;
             logged.missing[number][lane] = 0.0;
         }
-        match self.log.coefficients[begin..].first_chunk::<ALL>() {
-            Some(list) if is_whole => {
-                for (number, coefficient) in list.iter().enumerate() {
-                    logged.coefficients[number][lane] = *coefficient;
-                }
-            }
-            _ => self.gather_parts(first, lane, logged, &lengths),
+        let list = self.log.coefficients[begin..].first_chunk::<ALL>().filter(|_| is_whole);
+        let Some(list) = list else { return false };
+        for (number, coefficient) in list.iter().enumerate() {
+            logged.coefficients[number][lane] = *coefficient;
         }
+        true
     }
 
-    /// The same where coefficients were dropped, or there are too many.
+    /// The same of a pair with an edge, where coefficients were dropped, or there are too many.
     #[inline(never)]
-    fn gather_parts(&self, first: usize, lane: usize, logged: &mut Logged, lengths: &[usize]) {
-        let mut at = 0;
-        for (number, &length) in lengths.iter().enumerate() {
-            let list = self.log.get(first + number);
-            let dropped = length.checked_sub(list.len());
-            logged.missing[number][lane] = dropped.unwrap_or(0) as f64;
-            let filler = if dropped.is_some() { 0.0 } else { f64::NAN };
-            let own = &mut logged.coefficients[at..at + length];
-            let (head, tail) = own.split_at_mut(dropped.unwrap_or(length));
-            head.iter_mut().for_each(|place| place[lane] = filler);
-            tail.iter_mut().zip(list).for_each(|(place, coefficient)| place[lane] = *coefficient);
-            at += length;
+    fn gather_edge(&self, member: &Member, lane: usize, logged: &mut Logged) {
+        let first = self.index + member.polynomial;
+        self.gather_one::<5>(first, [0, 0], lane, logged);
+        self.gather_one::<3>(first, [1, 5], lane, logged);
+        self.gather_one::<3>(first, [2, 8], lane, logged);
+        self.gather_one::<6>(first, [3, 11], lane, logged);
+    }
+
+    /// The same of another pair.
+    #[inline(never)]
+    fn gather_two(&self, member: &Member, lane: usize, logged: &mut Logged) {
+        let first = self.index + member.polynomial;
+        self.gather_one::<3>(first, [0, 0], lane, logged);
+        self.gather_one::<2>(first, [1, 3], lane, logged);
+    }
+
+    /// One polynomial of a call: its number, and the place of its coefficients.
+    #[inline(always)]
+    fn gather_one<const LENGTH: usize>(
+        &self,
+        first: usize,
+        [number, place]: [usize; 2],
+        lane: usize,
+        logged: &mut Logged,
+    ) {
+        let list = self.log.get(first + number);
+        let dropped = LENGTH.checked_sub(list.len());
+        let mut own = [if dropped.is_some() { 0.0 } else { f64::NAN }; LENGTH];
+        let dropped = dropped.unwrap_or(LENGTH);
+        own[dropped..].iter_mut().zip(list).for_each(|(place, coefficient)| *place = *coefficient);
+        logged.missing[number][lane] = if list.len() > LENGTH { 0.0 } else { dropped as f64 };
+        for (place, coefficient) in logged.coefficients[place..place + LENGTH].iter_mut().zip(own) {
+            place[lane] = coefficient;
         }
     }
 
@@ -178,6 +211,12 @@ impl Look<'_> {
         }
         let [size, value, bound] = loads(simd, &numbers, 14);
         let ([x1, d1], [x2, d2]) = (way(simd, &numbers, 0, size), way(simd, &numbers, 7, size));
+        if self.tries_same {
+            let (overlap, approach) = particle_particle(values(x1), values(d1), values(x2), values(d2), value);
+            if self.are_same_two(simd, &overlap, &approach, logged, answers) {
+                return;
+            }
+        }
         let (overlap, approach) = particle_particle(x1, d1, x2, d2, Bounded { value, bound });
         self.two(simd, &overlap, &approach, logged, answers);
     }
@@ -198,8 +237,83 @@ impl Look<'_> {
         let [x, d] = way(simd, &numbers, 0, size);
         let radius = Bounded { value, bound: value.like(0.0) };
         let (point, normal) = (within(loads(simd, &numbers, 9)), within(loads(simd, &numbers, 12)));
+        if self.tries_same {
+            let own = values(normal);
+            let (overlap, approach) =
+                particle_half_plane(values(x), values(d), value, values(point), own, own.dot(own));
+            if self.are_same_two(simd, &overlap, &approach, logged, answers) {
+                return;
+            }
+        }
         let (overlap, approach) = particle_half_plane(x, d, radius, point, normal, normal.dot(normal));
         self.two(simd, &overlap, &approach, logged, answers);
+    }
+
+    /// Whether all pairs with a parabola and a line have logged these coefficients bit for bit; decides about them then.
+    #[inline(always)]
+    fn are_same_two<S: Simd>(
+        &self,
+        simd: S,
+        overlap: &[Lanes<S>; 3],
+        approach: &[Lanes<S>; 2],
+        logged: &Logged,
+        answers: &mut Answers,
+    ) -> bool {
+        let missing: [Lanes<S>; 2] = loads(simd, &logged.missing, 0);
+        let (own, dropped) = trimmed(overlap);
+        let (own_line, dropped_line) = trimmed(approach);
+        let are_same = are_same(&own, &loads(simd, &logged.coefficients, 0))
+            & are_same(&own_line, &loads(simd, &logged.coefficients, 3))
+            & are_equal(&[dropped, dropped_line], &missing);
+        if !are_same.all() {
+            return false;
+        }
+        store(&own, &mut answers.own[..3]);
+        store(&own_line, &mut answers.own[3..5]);
+        let bits = bit(SAME, are_same) + bit(OWN_EXCLUDED, excludes_two(own, own_line));
+        bits.store(&mut answers.bits);
+        true
+    }
+
+    /// The same of pairs with an edge, and whether their approach fits the definition, too. `right_cubic` is what the definition
+    /// gives for t^3.
+    #[inline(always)]
+    fn are_same_edges<S: Simd>(
+        &self,
+        simd: S,
+        pair: &EdgeCoefficients<Lanes<S>>,
+        right_cubic: Lanes<S>,
+        logged: &Logged,
+        answers: &mut Answers,
+    ) -> bool {
+        let missing: [Lanes<S>; 4] = loads(simd, &logged.missing, 0);
+        let (distance, dropped_0) = trimmed(&pair.distance);
+        let (beyond, dropped_1) = trimmed(&pair.beyond_first);
+        let (before, dropped_2) = trimmed(&pair.before_second);
+        let (approach, dropped_3) = trimmed(&pair.approach);
+        let are_same = are_same(&distance, &loads(simd, &logged.coefficients, 0))
+            & are_same(&beyond, &loads(simd, &logged.coefficients, 5))
+            & are_same(&before, &loads(simd, &logged.coefficients, 8))
+            & are_same(&approach, &loads(simd, &logged.coefficients, 11))
+            & are_equal(&[dropped_0, dropped_1, dropped_2, dropped_3], &missing);
+        if !are_same.all() {
+            return false;
+        }
+        store(&distance, &mut answers.own[..5]);
+        store(&beyond, &mut answers.own[5..8]);
+        store(&before, &mut answers.own[8..11]);
+        store(&approach, &mut answers.own[11..]);
+        // A bound is at least as large as its value, so this is within the tolerance with the factor 1.
+        let mut sum = pair.approach[0].abs();
+        for coefficient in &pair.approach[1..] {
+            sum = sum + coefficient.abs();
+        }
+        let room = (0.25 * FAIR_NORM_UNITS * UNIT_ROUNDOFF) * sum;
+        let bits = bit(SAME, are_same)
+            + bit(RIGHT_FORM, (right_cubic - pair.approach[2]).abs().le(room))
+            + bit(OWN_EXCLUDED, excludes_edge(distance, beyond, before, approach));
+        bits.store(&mut answers.bits);
+        true
     }
 
     /// Compares and decides about pairs with a parabola and a line.
@@ -218,14 +332,14 @@ impl Look<'_> {
         let missing: [Lanes<S>; 2] = loads(simd, &logged.missing, 0);
         let first = fits(overlap, &parabola, missing[0], share);
         let second = fits(approach, &line, missing[1], share);
-        let (own, dropped) = trimmed(overlap);
-        let (own_line, dropped_line) = trimmed(approach);
+        let (own, dropped) = trimmed(&values_of(overlap));
+        let (own_line, dropped_line) = trimmed(&values_of(approach));
         store(&own, &mut answers.own[..3]);
         store(&own_line, &mut answers.own[3..5]);
         store(&[first.scale, second.scale], &mut answers.scales[..2]);
         first.share.max(second.share).store(&mut answers.share);
         let has_kept = dropped.equals(missing[0]) & dropped_line.equals(missing[1]);
-        let bits = bit(EQUAL, has_kept & are_equal(&own, &parabola) & are_equal(&own_line, &line))
+        let bits = bit(SAME, has_kept & are_same(&own, &parabola) & are_same(&own_line, &line))
             + bit(ALIKE, first.is_right & second.is_right & search_ends(&parabola) & search_ends(&line))
             + bit(OWN_EXCLUDED, excludes_two(own, own_line))
             + bit(LOGGED_EXCLUDED, excludes_two(parabola, line))
@@ -250,6 +364,13 @@ impl Look<'_> {
         let [size, value, bound] = loads(simd, &numbers, 21);
         let [x1, d1] = way(simd, &numbers, 0, size);
         let ([x2, d2], [x3, d3]) = (way(simd, &numbers, 7, size), way(simd, &numbers, 14, size));
+        if self.tries_same {
+            let motions = EdgeMotions::new(values(x2), values(d2), values(x3), values(d3));
+            let (pair, right_cubic) = particle_edge_and_right_cubic(values(x1), values(d1), &motions, value);
+            if self.are_same_edges(simd, &pair, right_cubic, logged, answers) {
+                return;
+            }
+        }
         let motions = EdgeMotions::new(x2, d2, x3, d3);
         let (pair, right_cubic) = particle_edge_and_right_cubic(x1, d1, &motions, Bounded { value, bound });
         let distance = loads::<S, 5, _>(simd, &logged.coefficients, 0);
@@ -266,10 +387,10 @@ impl Look<'_> {
         defined[2] = right_cubic;
         // Its share is never asked for.
         let has_right_form = fits(&defined, &approach, missing[3], Lanes::all(simd, 1e100)).is_right;
-        let (own_distance, dropped_0) = trimmed(&pair.distance);
-        let (own_beyond, dropped_1) = trimmed(&pair.beyond_first);
-        let (own_before, dropped_2) = trimmed(&pair.before_second);
-        let (own_approach, dropped_3) = trimmed(&pair.approach);
+        let (own_distance, dropped_0) = trimmed(&values_of(&pair.distance));
+        let (own_beyond, dropped_1) = trimmed(&values_of(&pair.beyond_first));
+        let (own_before, dropped_2) = trimmed(&values_of(&pair.before_second));
+        let (own_approach, dropped_3) = trimmed(&values_of(&pair.approach));
         store(&own_distance, &mut answers.own[..5]);
         store(&own_beyond, &mut answers.own[5..8]);
         store(&own_before, &mut answers.own[8..11]);
@@ -280,11 +401,11 @@ impl Look<'_> {
         let are_right = first.is_right & second.is_right & third.is_right & fourth.is_right;
         let can_be_searched =
             search_ends(&distance) & search_ends(&beyond) & search_ends(&before) & search_ends(&approach);
-        let are_equal = are_equal(&own_distance, &distance)
-            & are_equal(&own_beyond, &beyond)
-            & are_equal(&own_before, &before)
-            & are_equal(&own_approach, &approach);
-        let bits = bit(EQUAL, has_kept & are_equal)
+        let are_same = are_same(&own_distance, &distance)
+            & are_same(&own_beyond, &beyond)
+            & are_same(&own_before, &before)
+            & are_same(&own_approach, &approach);
+        let bits = bit(SAME, has_kept & are_same)
             + bit(ALIKE, are_right & can_be_searched)
             + bit(RIGHT_FORM, has_right_form)
             + bit(OWN_EXCLUDED, excludes_edge(own_distance, own_beyond, own_before, own_approach))
@@ -299,21 +420,14 @@ impl Look<'_> {
         &self,
         member: &Member,
         lane: usize,
-        logged: &Logged,
         answers: &Answers,
         lengths: [usize; COUNT],
     ) -> Known {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sum of small bits")]
         let bits = answers.bits[lane] as u32;
         let has = |bit: u32| bits & bit != 0;
-        let is_same = has(EQUAL);
-        // Zeros may have other signs.
-        let coefficients = answers.own.iter().zip(&logged.coefficients).take(if COUNT == 2 { 5 } else { 17 });
-        let is_open = if is_same {
-            coefficients.fold(0, |all, (own, logged)| all | own[lane].to_bits() ^ logged[lane].to_bits()) != 0
-        } else {
-            !has(ALIKE)
-        };
+        let is_same = has(SAME);
+        let is_open = !is_same && !has(ALIKE);
         let is_excluded = || {
             (has(OWN_EXCLUDED) || excludes_unit_interval(&own(lane, answers, lengths)))
                 && (is_same || has(LOGGED_EXCLUDED) || excludes_unit_interval(&self.logged(member, lengths)))
@@ -399,14 +513,30 @@ fn within<S: Simd>([x, y, size]: [Lanes<S>; 3]) -> Bounded2<Lanes<S>> {
     Plane { x: Bounded { value: x, bound: size }, y: Bounded { value: y, bound: size } }
 }
 
-/// Coefficients without their bounds, 0 in the place of small leading ones, and the number of these.
+/// A vector without its bounds.
 #[inline(always)]
-fn trimmed<S: Simd, const LENGTH: usize>(coefficients: &[Bounded<Lanes<S>>; LENGTH]) -> ([Lanes<S>; LENGTH], Lanes<S>) {
-    let zero = coefficients[0].value.like(0.0);
+fn values<S: Simd>(vector: Bounded2<Lanes<S>>) -> Plane<Lanes<S>> {
+    Plane { x: vector.x.value, y: vector.y.value }
+}
+
+/// Coefficients without their bounds.
+#[inline(always)]
+fn values_of<S: Simd, const LENGTH: usize>(coefficients: &[Bounded<Lanes<S>>; LENGTH]) -> [Lanes<S>; LENGTH] {
+    let mut values = [coefficients[0].value; LENGTH];
+    for (value, coefficient) in values.iter_mut().zip(coefficients) {
+        *value = coefficient.value;
+    }
+    values
+}
+
+/// Coefficients with 0 in the place of small leading ones, and the number of these.
+#[inline(always)]
+fn trimmed<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGTH]) -> ([Lanes<S>; LENGTH], Lanes<S>) {
+    let zero = coefficients[0].like(0.0);
     let (mut trimmed, mut dropped, mut leads) = ([zero; LENGTH], zero, zero.is_zero());
     for (own, coefficient) in trimmed.iter_mut().zip(coefficients) {
-        leads = leads & is_small(coefficient.value);
-        *own = leads.choose(zero, coefficient.value);
+        leads = leads & is_small(*coefficient);
+        *own = leads.choose(zero, *coefficient);
         dropped = dropped + leads.as_numbers();
     }
     (trimmed, dropped)
@@ -423,6 +553,15 @@ fn are_equal<S: Simd, const LENGTH: usize>(one: &[Lanes<S>; LENGTH], other: &[La
     let mut all = one[0].equals(other[0]);
     for (one, other) in one[1..].iter().zip(&other[1..]) {
         all = all & one.equals(*other);
+    }
+    all
+}
+
+#[inline(always)]
+fn are_same<S: Simd, const LENGTH: usize>(one: &[Lanes<S>; LENGTH], other: &[Lanes<S>; LENGTH]) -> Mask<S> {
+    let mut all = one[0].is_same(other[0]);
+    for (one, other) in one[1..].iter().zip(&other[1..]) {
+        all = all & one.is_same(*other);
     }
     all
 }

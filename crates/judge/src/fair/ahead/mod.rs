@@ -90,6 +90,8 @@ pub(crate) struct Ahead {
     known: Vec<Known>,
     /// How many times a kind is not looked at.
     pauses: ByKind<u32>,
+    /// Whether at least half of the calls of a kind were not the reference's bit for bit.
+    are_other: ByKind<bool>,
     /// The next call.
     at: usize,
     /// How many calls were looked at; nothing is known of others.
@@ -111,6 +113,7 @@ impl Ahead {
             ways: Vec::new(),
             known: Vec::new(),
             pauses: ByKind::default(),
+            are_other: ByKind::default(),
             at: 0,
             seen: 0,
             next_row: 0,
@@ -158,18 +161,20 @@ impl Ahead {
         // Where responses move particles within the pass, what is seen may not be what is compared.
         let is_certain = !matches!(stage, Stage::ContinuousTime);
         for kind in PairKind::ALL {
-            let Self { instructions, members, ways, known, pauses, .. } = self;
+            let Self { instructions, members, ways, known, pauses, are_other, .. } = self;
             let members = &members[kind];
             if pauses[kind] > 0 {
                 pauses[kind] -= 1;
                 members.iter().for_each(|member| known[member.call] = Known::default());
                 continue;
             }
-            instructions.run(Look { scene, kind, members, ways, log, index, share, is_certain, known });
-            let is_open = |member: &&Member| known[member.call].likeness == Likeness::Open;
-            if 4 * members.iter().filter(is_open).count() > 3 * members.len() {
+            let tries_same = !are_other[kind];
+            instructions.run(Look { scene, kind, members, ways, log, index, share, is_certain, tries_same, known });
+            let count = |asked| members.iter().filter(|member| known[member.call].likeness == asked).count();
+            if 4 * count(Likeness::Open) > 3 * members.len() {
                 pauses[kind] = PAUSE;
             }
+            are_other[kind] = 2 * count(Likeness::Same) < members.len();
         }
     }
 

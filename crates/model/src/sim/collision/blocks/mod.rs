@@ -36,7 +36,8 @@ pub(super) struct Setting<'a> {
 /// Goes through the pairs of passes; keeps its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Blocks {
-    instructions: Instructions,
+    /// Those that suit the scene, once it is known.
+    instructions: Option<Instructions>,
     lists: Lists,
     group: Group,
 }
@@ -66,6 +67,7 @@ impl Blocks {
         bytes: Option<&mut PolynomialBytes>,
     ) -> Result<Option<Impulse>, StepError> {
         let Self { instructions, lists, group } = self;
+        let instructions = instructions.get_or_insert_with(|| Instructions::for_pairs(setting.bodies.pairs()));
         instructions.run(Pairs { lists, group, setting, place, counts, bytes })
     }
 }

@@ -206,15 +206,26 @@ type Open<'a> = Option<(Setting<'a>, &'a mut SearchCounts, Pair)>;
 /// Decides about a pair of particles, or with a half-plane, if it is open, and writes its polynomials.
 #[inline(never)]
 fn of_two(coefficients: &[f64], open: Open<'_>, output: &mut Output<'_>) -> bool {
-    settle(coefficients, [3, 2], open, output)
+    let Some(all) = coefficients.first_chunk::<5>() else { return false };
+    let ends = settle(coefficients, [3, 2], open, output);
+    if output.found.is_ok() {
+        output.write_two(all);
+    }
+    ends
 }
 
 /// Decides about a pair with an edge, if it is open, and writes its polynomials.
 #[inline(never)]
 fn of_edge(coefficients: &[f64], open: Open<'_>, output: &mut Output<'_>) -> bool {
-    settle(coefficients, [5, 3, 3, 6], open, output)
+    let Some(all) = coefficients.first_chunk::<17>() else { return false };
+    let ends = settle(coefficients, [5, 3, 3, 6], open, output);
+    if output.found.is_ok() {
+        output.write_edge(all);
+    }
+    ends
 }
 
+/// Whether a pair that is open is a hit, or its search has no end; the output holds which.
 #[inline(always)]
 fn settle<const COUNT: usize>(
     coefficients: &[f64],
@@ -222,19 +233,12 @@ fn settle<const COUNT: usize>(
     open: Open<'_>,
     output: &mut Output<'_>,
 ) -> bool {
-    if let Some((setting, counts, pair)) = open {
-        match decide(setting, counts, pair, coefficients, lengths) {
-            Ok(None) => {}
-            found => {
-                let is_hit = found.is_ok();
-                output.found = found;
-                if is_hit {
-                    output.write(coefficients, lengths);
-                }
-                return true;
-            }
+    let Some((setting, counts, pair)) = open else { return false };
+    match decide(setting, counts, pair, coefficients, lengths) {
+        Ok(None) => false,
+        found => {
+            output.found = found;
+            true
         }
     }
-    output.write(coefficients, lengths);
-    false
 }

@@ -10,12 +10,15 @@ use crate::sim::{
     step_error::StepError,
 };
 use fosssim_num::{
-    polynomial::Polynomial,
+    polynomial::{MAX_COEFFICIENTS, Polynomial},
     tolerances::LEADING_COEFFICIENT,
     vector::{Vec2, at},
 };
 
 crate::drops_leading!();
+
+/// Room for the coefficients of any pair, and as many more as a polynomial has.
+const PADDED: usize = 17 + MAX_COEFFICIENTS;
 
 /// Where polynomials go, and how many have gone there.
 pub(super) struct Output<'a> {
@@ -63,28 +66,51 @@ impl<'a> Output<'a> {
         self.polynomials += COUNT;
     }
 
-    /// Writes a pair's polynomials without their small leading coefficients.
+    /// Writes the polynomials of a pair with an edge without their small leading coefficients.
     #[inline(always)]
-    pub fn write<const COUNT: usize>(&mut self, coefficients: &[f64], lengths: [usize; COUNT]) {
-        let Some(room) = &mut self.room else { return };
-        let (mut at, mut number) = (self.used, 0);
-        for length in lengths {
-            // Each coefficient is written; the next one takes its place if it is dropped.
-            let mut end = at + 4;
-            let mut leads = true;
-            for coefficient in &coefficients[number..number + length] {
-                room[end..end + 8].copy_from_slice(&coefficient.to_le_bytes());
-                leads &= coefficient.abs() < LEADING_COEFFICIENT;
-                end += if leads { 0 } else { 8 };
-            }
-            #[expect(clippy::cast_possible_truncation, reason = "at most six")]
-            let size = ((end - at - 4) / 8) as u32;
-            room[at..at + 4].copy_from_slice(&size.to_le_bytes());
-            (at, number) = (end, number + length);
-        }
-        self.used = at;
-        self.polynomials += COUNT;
+    pub fn write_edge(&mut self, coefficients: &[f64; 17]) {
+        let padded = padded(coefficients);
+        self.write_one::<5, 44>(&padded, 0);
+        self.write_one::<3, 28>(&padded, 5);
+        self.write_one::<3, 28>(&padded, 8);
+        self.write_one::<6, 52>(&padded, 11);
     }
+
+    /// The same of another pair.
+    #[inline(always)]
+    pub fn write_two(&mut self, coefficients: &[f64; 5]) {
+        let padded = padded(coefficients);
+        self.write_one::<3, 28>(&padded, 0);
+        self.write_one::<2, 20>(&padded, 3);
+    }
+
+    /// One polynomial, whose coefficients begin there; a copy of `LENGTH` coefficients takes `BYTES`, of which less may count.
+    #[inline(always)]
+    fn write_one<const LENGTH: usize, const BYTES: usize>(&mut self, padded: &[f64; PADDED], begin: usize) {
+        let Some(room) = &mut self.room else { return };
+        let mut dropped = 0;
+        while dropped < LENGTH && padded[begin + dropped].abs() < LEADING_COEFFICIENT {
+            dropped += 1;
+        }
+        let Some(kept) = padded[begin + dropped..].first_chunk::<LENGTH>() else { return };
+        let mut bytes = [0; BYTES];
+        #[expect(clippy::cast_possible_truncation, reason = "at most six")]
+        bytes[..4].copy_from_slice(&((LENGTH - dropped) as u32).to_le_bytes());
+        for (place, coefficient) in bytes[4..].as_chunks_mut::<8>().0.iter_mut().zip(kept) {
+            *place = coefficient.to_le_bytes();
+        }
+        room[self.used..self.used + BYTES].copy_from_slice(&bytes);
+        self.used += 4 + 8 * (LENGTH - dropped);
+        self.polynomials += 1;
+    }
+}
+
+/// The coefficients of a pair, and zeros behind them.
+#[inline(always)]
+fn padded<const COEFFICIENTS: usize>(coefficients: &[f64; COEFFICIENTS]) -> [f64; PADDED] {
+    let mut padded = [0.0; PADDED];
+    padded[..COEFFICIENTS].copy_from_slice(coefficients);
+    padded
 }
 
 /// Asks the certificate about a pair, and the root finder where it knows no answer.
