@@ -17,6 +17,10 @@ pub struct PolynomialBytes {
 /// Bytes of the largest polynomial that a detection logs.
 const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 
+/// Small lists double; larger ones grow by so many bytes at most: a hostile trace may make a step's list take hundreds of
+/// megabytes, but not twice as many.
+const MOST_GROWTH: usize = 16 << 20;
+
 impl PolynomialBytes {
     /// Empties the list.
     pub fn clear(&mut self) {
@@ -98,7 +102,9 @@ impl PolynomialBytes {
 
     #[cold]
     fn grow(&mut self, bytes: usize) {
-        let most = (self.used + bytes).max(2 * self.bytes.len());
+        let size = self.bytes.len();
+        let most = (self.used + bytes).max(size + size.min(MOST_GROWTH));
+        self.bytes.reserve_exact(most - size);
         self.bytes.resize(most, 0);
     }
 }
@@ -106,6 +112,16 @@ impl PolynomialBytes {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A long list takes little more memory than its bytes.
+    #[test]
+    fn long_lists_do_not_double() {
+        let mut list = PolynomialBytes::default();
+        while list.bytes().len() < 5 * MOST_GROWTH {
+            list.push(&[0.5; 6]);
+        }
+        assert!(list.bytes.capacity() <= list.bytes().len() + MOST_GROWTH, "{}", list.bytes.capacity());
+    }
 
     #[test]
     fn polynomials_stand_one_behind_the_other() {

@@ -101,7 +101,7 @@ impl<'a> Follower<'a> {
             sensitivity,
             flips,
             judged,
-            decisions: Vec::with_capacity(context.pairs.min(DECISIONS)),
+            decisions: Vec::new(),
             borderline: Vec::new(),
             pass: Pass { stage: Stage::Simple, index: 0 },
             passes: [0; 2],
@@ -118,6 +118,8 @@ impl<'a> Follower<'a> {
             seen: None,
         };
         follower.count_passes();
+        let passes = follower.logged_passes.map_or(1, |[before, after]| before + after);
+        follower.decisions.reserve(passes.saturating_mul(context.pairs).min(DECISIONS));
         follower
     }
 
