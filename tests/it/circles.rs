@@ -158,7 +158,8 @@ fn read(text: &str) -> File {
             continue;
         }
         let token = tokens[at].as_str();
-        if token == "use" {
+        // `use<>` says what a type captures.
+        if token == "use" && !is(at + 1, &["<"]) {
             let passes_on = at > 0 && (tokens[at - 1] == "pub" || tokens[at - 1] == ")");
             at += 1;
             let mut found = Vec::new();

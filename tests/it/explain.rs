@@ -4,9 +4,10 @@ use super::{
     workspace::Workspace,
 };
 use fosssim_oracle::{
-    diagnose::{Explanation, common, explain, formula_in, known},
+    diagnose::{ExamplePlace, Explanation, common, explain, formula_in, known},
     judge::{fair::FairVerdict, parity},
     scene::Scene,
+    sim::PairKind,
     student::{self, KNOWN_ACCUSED, Row, RowKind},
 };
 use fosssim_testing::{Need, skip};
@@ -164,7 +165,8 @@ fn the_example_of_a_wrong_normal_shows_both() {
     let trace = simulated(&scene, student::find("pp-contact-reversed")).unwrap();
     let explanations = explain(&scene, &trace);
     let example = explanations[0].example.as_ref().expect("an example");
-    assert!(example.place.starts_with("contact of particle 0 and particle 1"), "{example:?}");
+    let (kind, first, second) = (Some(PairKind::ParticleParticle), 0, 1);
+    assert_eq!(example.place, ExamplePlace::Contact { kind, first, second });
     assert!(example.expected.len() == 3 && example.expected[0] == -example.actual[0], "{example:?}");
     assert_eq!(example.expected[2].to_bits(), example.actual[2].to_bits());
 }

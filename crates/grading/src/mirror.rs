@@ -7,7 +7,6 @@ use fosssim_judge::{
     Book, Damage, Detail, Finding, FindingCounts, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role,
     Rules, Ruling, Unreadable, fair::Cause,
 };
-use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation, OfPolynomials, StepStage};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
     trace::LoggedImpulse,
@@ -109,19 +108,11 @@ fn counts_of_pairs(pairs: Vec<(String, u64)>) -> Option<FindingCounts> {
     Some(counts)
 }
 
+mod explained;
+
+pub(crate) use explained::explanations;
+
 /// Types of other rooms inside of lists and options.
-#[derive(Serialize, Deserialize)]
-struct OneExplanation(#[serde(with = "ExplanationForm")] Explanation);
-
-#[derive(Serialize, Deserialize)]
-struct OneValue(#[serde(with = "ExampleValueForm")] ExampleValue);
-
-#[derive(Serialize, Deserialize)]
-struct OneExample(#[serde(with = "ExampleForm")] Example);
-
-#[derive(Serialize, Deserialize)]
-struct OneKind(#[serde(with = "PairKindForm")] PairKind);
-
 #[derive(Serialize, Deserialize)]
 struct OneDamage(#[serde(with = "DamageForm")] Damage);
 
@@ -131,23 +122,6 @@ struct OneRescaled(#[serde(with = "RescaledForm")] Rescaled);
 #[derive(Serialize, Deserialize)]
 struct AllResiduals(#[serde(with = "ResidualsForm")] Residuals);
 
-written_as!(
-    explanations,
-    Vec<Explanation>,
-    Vec<OneExplanation>,
-    |explanations| explanations.iter().cloned().map(OneExplanation).collect(),
-    |form| Some(form.into_iter().map(|one| one.0).collect())
-);
-written_as!(
-    example_values,
-    Vec<ExampleValue>,
-    Vec<OneValue>,
-    |values| values.iter().cloned().map(OneValue).collect(),
-    |form| Some(form.into_iter().map(|one| one.0).collect())
-);
-written_as!(example, Option<Example>, Option<OneExample>, |example| example.clone().map(OneExample), |form| {
-    Some(form.map(|one| one.0))
-});
 written_as!(damage, Option<Damage>, Option<OneDamage>, |damage| damage.clone().map(OneDamage), |form| {
     Some(form.map(|one| one.0))
 });
@@ -464,77 +438,4 @@ enum DetailForm {
         #[serde(with = "PolynomialPlaceForm")]
         place: PolynomialPlace,
     },
-}
-
-written_as!(kinds, Vec<PairKind>, Vec<OneKind>, |kinds| kinds.iter().copied().map(OneKind).collect(), |kinds| Some(
-    kinds.into_iter().map(|OneKind(kind)| kind).collect()
-));
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "About")]
-enum AboutForm {
-    Mistake,
-    Unfinished,
-    Scene,
-    Polynomials {
-        #[serde(with = "kinds")]
-        kinds: Vec<PairKind>,
-        #[serde(with = "OfPolynomialsForm")]
-        found: OfPolynomials,
-    },
-    Stage(#[serde(with = "StepStageForm")] StepStage),
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "OfPolynomials")]
-enum OfPolynomialsForm {
-    Guess,
-    Missing,
-    NearlyRight,
-    Nothing,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "StepStage")]
-enum StepStageForm {
-    Detection,
-    ContactVectors,
-    Responses,
-    Zones,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Explanation")]
-struct ExplanationForm {
-    key: String,
-    #[serde(with = "AboutForm")]
-    about: About,
-    what: String,
-    details: Vec<String>,
-    reproduced: u64,
-    samples: u64,
-    #[serde(with = "example")]
-    example: Option<Example>,
-    same_as: Vec<String>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Example")]
-struct ExampleForm {
-    step: u32,
-    place: String,
-    #[serde(with = "example_values")]
-    given: Vec<ExampleValue>,
-    #[serde(with = "numbers")]
-    expected: Vec<f64>,
-    #[serde(with = "numbers")]
-    actual: Vec<f64>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "ExampleValue")]
-struct ExampleValueForm {
-    name: String,
-    #[serde(with = "numbers")]
-    value: Vec<f64>,
 }

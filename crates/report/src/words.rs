@@ -1,4 +1,6 @@
 //! What happened on scenes, in words. Results travel as values up to here; every report takes its sentences from this place.
+pub mod explanation;
+
 use fosssim_grading::{
     Grade, Unfit, Verdict,
     result::{

@@ -8,6 +8,7 @@ use crate::{
     report::{
         check::{Check, StepChoice, WrongSteps},
         page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
+        words::explanation,
     },
     scene::Scene,
     student,
@@ -199,5 +200,5 @@ pub(super) fn what_if(scene: &Scene, named: &Explanation, trace: &[u8], evidence
     let row = student::find(&named.key)?;
     let run = student::trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
     let track = Track::read(&run[..], evidence.layout, evidence.window);
-    Some(WhatIf { id: named.key.clone(), sentence: named.what.clone(), track, equal: run == trace })
+    Some(WhatIf { id: named.key.clone(), sentence: explanation::what(named), track, equal: run == trace })
 }

@@ -1,3 +1,5 @@
+mod explanations;
+
 use super::*;
 use crate::{
     Key, Verdict,
@@ -11,7 +13,6 @@ use fosssim_judge::{
     Book, Damage, Detail, Finding, FindingCounts, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role,
     Ruling, Unreadable, fair::Cause,
 };
-use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation, OfPolynomials};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
     trace::LoggedImpulse,
@@ -117,23 +118,6 @@ fn wrong() -> SceneResult {
     };
     let residuals = Residuals { accumulated_position: f64::INFINITY, maximum_position: 0.1, ..Residuals::default() };
     let damage = Damage { frame: 1, step: 2, offset: 3, message: "\u{1b}[31m\n\"".to_owned() };
-    let example = Example {
-        step: 7,
-        place: "particles 0 and 1".to_owned(),
-        given: vec![ExampleValue { name: "x1".to_owned(), value: vec![0.1, -1e-300] }],
-        expected: vec![f64::INFINITY, 1.0 / 3.0],
-        actual: vec![f64::NEG_INFINITY],
-    };
-    let explanation = |example| Explanation {
-        key: "reversed".to_owned(),
-        about: About::Polynomials { kinds: vec![PairKind::ParticleEdge], found: OfPolynomials::Guess },
-        what: "The coefficients are reversed.".to_owned(),
-        details: vec!["t^2".to_owned()],
-        reproduced: 4,
-        samples: 5,
-        example,
-        same_as: vec!["other".to_owned()],
-    };
     let why = Reason::Wrong(Wrong::Steps { wrong: 3, first: 7, kind: Kind::Coefficient });
     SceneResult {
         ended: Some(Ended::Exited(0)),
@@ -146,7 +130,7 @@ fn wrong() -> SceneResult {
             damage: Some(damage),
             trailing_bytes: true,
         }),
-        explanations: vec![explanation(Some(example)), explanation(None)],
+        explanations: explanations::all(),
         right_steps: 3,
         cpu: Duration::new(5, 123_456_789),
         wall: Duration::MAX,
@@ -246,8 +230,10 @@ fn another_version_and_damage_are_not_read() {
     let written = String::from_utf8(write(&key(), "submission", &wrong())).expect("text");
     assert!(read(written.as_bytes()).is_some());
     assert!(!written.contains('\n'), "one line");
-    assert!(read(written.replacen("\"form\":2", "\"form\":3", 1).as_bytes()).is_none());
+    assert!(read(written.replacen("\"form\":3", "\"form\":4", 1).as_bytes()).is_none());
     assert!(read(written.replacen("\"coefficient\"", "\"coeficient\"", 1).as_bytes()).is_none());
+    assert!(read(written.replacen("\"end-positions\"", "\"another-mistake\"", 1).as_bytes()).is_none());
+    assert!(read(written.replacen("\"R^2\"", "\"Q^2\"", 1).as_bytes()).is_none(), "no formula has such a letter");
     let seven = "[1,2,3,4,5,6,7]";
     let many = written.replacen("[1e-300,\"-inf\",0.3]", seven, 1);
     assert!(many.contains(seven) && read(many.as_bytes()).is_none(), "no polynomial is that long");

@@ -5,7 +5,11 @@
 use std::process::ExitCode;
 
 use fosssim_oracle::{
-    diagnose::outside::{Rated, Rating, rated},
+    diagnose::{
+        Explanation,
+        outside::{Rated, Rating, rated},
+    },
+    report::words::explanation::{details, what},
     student::mutants::mutants,
 };
 use rayon::prelude::*;
@@ -14,11 +18,12 @@ fn main() -> ExitCode {
     let part = std::env::args().nth(1).unwrap_or_default();
     let wanted: Vec<usize> =
         mutants().enumerate().filter(|(_, mutant)| mutant.id.contains(&part)).map(|(number, _)| number).collect();
-    let all: Vec<Rated> = wanted.into_par_iter().flat_map_iter(|number| rated(move |other| other == number)).collect();
+    let all: Vec<Rated> =
+        wanted.into_par_iter().flat_map_iter(|number| rated(move |other| other == number, words)).collect();
     for one in &all {
         println!("{:<32} {:<10} ({})", one.id, format!("{:?}", one.rating), one.what);
         for told in &one.told {
-            println!("    {} [{}] {}", told.what, told.key, told.details.join(" | "));
+            println!("    {} [{}] {}", what(told), told.key, details(told).join(" | "));
         }
     }
     let count = |rating: Rating| all.iter().filter(|one| one.rating == rating).count();
@@ -31,4 +36,9 @@ fn main() -> ExitCode {
         count(Rating::Misleading)
     );
     ExitCode::from(u8::from(count(Rating::Misleading) > 0))
+}
+
+/// What an explanation says.
+fn words(told: &Explanation) -> String {
+    format!("{} {}", what(told), details(told).join(" "))
 }

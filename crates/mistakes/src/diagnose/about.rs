@@ -1,4 +1,6 @@
 //! What explanations are about.
+use super::{fault::StageFault, guess::Guess};
+use crate::assignments::t2m2::Subject;
 use fosssim_model::sim::PairKind;
 
 /// What an explanation is about.
@@ -9,40 +11,38 @@ pub enum About {
     /// Stages that are not written yet; their keys are in [`Explanation::same_as`](super::Explanation::same_as).
     Unfinished,
     /// The question whether the trace is of its scene.
-    Scene,
+    Scene {
+        /// Whether at least the number of records is right.
+        has_length: bool,
+    },
     /// Wrong polynomials.
     Polynomials {
-        /// The kinds of their pairs, each polynomial's.
-        kinds: Vec<PairKind>,
+        /// Which ones.
+        subjects: Vec<Subject>,
         /// What is found out about them.
         found: OfPolynomials,
     },
     /// A stage of a step: what it leaves is wrong, and everything before is right.
-    Stage(StepStage),
+    Stage(StageFault),
+}
+
+impl About {
+    /// The kinds of pairs whose polynomials it is about, each once.
+    pub(super) fn kinds(&self) -> Vec<PairKind> {
+        let Self::Polynomials { subjects, .. } = self else { return Vec::new() };
+        PairKind::ALL.into_iter().filter(|kind| subjects.iter().any(|subject| subject.kind() == *kind)).collect()
+    }
 }
 
 /// What is found out about wrong polynomials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum OfPolynomials {
     /// A guess that reproduces them, or a part.
-    Guess,
+    Guess(Guess),
     /// They are not handed over.
     Missing,
     /// They are right but for too much round-off.
     NearlyRight,
     /// Nothing.
     Nothing,
-}
-
-/// The stages of a step that can be told apart, in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum StepStage {
-    /// Which pairs collide, and when.
-    Detection,
-    /// The vectors between colliding objects.
-    ContactVectors,
-    /// Responses and impulse rounds.
-    Responses,
-    /// Impact zones and the rigid failsafe.
-    Zones,
 }

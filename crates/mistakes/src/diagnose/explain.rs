@@ -1,15 +1,13 @@
 //! Puts the explanations of a trace together.
 use super::{
-    Explanation,
-    about::{About, StepStage},
+    Detail, Explanation,
+    about::About,
+    fault::StepStage,
     known::{is_empty_stage, known_or_open, shows},
-    notation, polynomial, samples, stages,
+    polynomial, samples, stages,
 };
-use crate::{
-    plain::formula_in,
-    student::{Area, CATALOGUE, Mistake, Row, find},
-};
-use fosssim_model::{scene::Scene, sim::PairKind};
+use crate::student::{Area, CATALOGUE, Row, find};
+use fosssim_model::scene::Scene;
 use std::collections::BTreeMap;
 
 /// What is likely wrong with the program that left this trace, the likeliest first; empty when nothing is, or when
@@ -72,31 +70,24 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.
     all.sort_by_key(|explanation| (explanation.is_unexplained(), !explanation.is_complete()));
-    debug_assert!(all.iter().all(|one| formula_in(&one.what).is_none()), "a sentence gives a formula away: {all:?}");
     all
 }
 
-/// Says once, behind an explanation's formulas, what their letters mean.
+/// Says once, behind an explanation's formulas, that their letters are to be explained.
 fn explain_letters(explanation: &mut Explanation) {
     if explanation.is_unexplained() {
         return;
     }
-    let named: Vec<PairKind> = match &explanation.about {
-        About::Polynomials { kinds, .. } => kinds_of(|kind| kinds.contains(&kind)),
-        _ => {
-            let sentence = explanation.what.to_lowercase();
-            kinds_of(|kind| sentence.contains(kind.name()))
-        }
+    let row = find(&explanation.key);
+    let kinds = match &explanation.about {
+        About::Mistake => row.and_then(Row::kind_of_pair).into_iter().collect(),
+        about => about.kinds(),
     };
     // A known mistake's last line says where to look.
-    let end = explanation.details.len() - usize::from(find(&explanation.key).is_some());
-    if let Some(letters) = notation::of(&explanation.details[..end], &named) {
-        explanation.details.insert(end, letters);
+    let end = explanation.details.len() - usize::from(row.is_some());
+    if end > 0 {
+        explanation.details.insert(end, Detail::Letters(kinds));
     }
-}
-
-fn kinds_of(is_meant: impl Fn(PairKind) -> bool) -> Vec<PairKind> {
-    PairKind::ALL.into_iter().filter(|kind| is_meant(*kind)).collect()
 }
 
 /// Whether mistakes of this part of the assignment are mistakes of polynomials.
@@ -133,7 +124,7 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
             }
         }
     }
-    votes.remove(polynomial::UNEXPLAINED);
+    votes.remove(Explanation::UNEXPLAINED);
     votes.remove(Explanation::NEARLY_RIGHT);
     votes.remove(Explanation::OTHER_SCENE);
     let weight = |vote: &Vote<'_>| (vote.complete, vote.traces);
@@ -148,8 +139,8 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
     match vote.told {
         Some(told) => Some(Explanation { same_as, ..told.clone() }),
         None => {
-            let what = find(key)?.sentence();
-            Some(Explanation { key: (*key).to_owned(), about: About::Mistake, what, same_as, ..shared.clone() })
+            let key = find(key)?.id.to_owned();
+            Some(Explanation { key, about: About::Mistake, same_as, ..shared.clone() })
         }
     }
 }
@@ -170,14 +161,14 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
             if let Some(row) =
                 named.iter().find(|row| explanation.is_in_other_words(row) && !is_refuted(&row.id.to_owned()))
             {
-                let (key, about, what) = (row.id.to_owned(), About::Mistake, row.sentence());
-                return Some(Explanation { key, about, what, ..explanation.clone() });
+                let (key, about) = (row.id.to_owned(), About::Mistake);
+                return Some(Explanation { key, about, ..explanation.clone() });
             }
             if key == explanation.key {
                 return Some(Explanation { same_as, ..explanation.clone() });
             }
-            let what = find(&key)?.sentence();
-            Some(Explanation { key, about: About::Mistake, what, same_as, ..explanation.clone() })
+            find(&key)?;
+            Some(Explanation { key, about: About::Mistake, same_as, ..explanation.clone() })
         };
         list.iter().filter_map(settle).collect()
     };
@@ -199,9 +190,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
     for one in &mut found {
         if one.is_unfinished() && one.same_as.len() == 1 {
             one.about = About::Mistake;
-            (one.key, one.what) =
-                (one.same_as[0].clone(), find(&one.same_as[0]).map_or_else(String::new, Row::sentence));
-            one.same_as.clear();
+            one.key = one.same_as.remove(0);
         }
     }
     found
@@ -304,25 +293,12 @@ fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
     (!rows.is_empty()).then(|| Explanation {
         key: Explanation::UNFINISHED.to_owned(),
         about: About::Unfinished,
-        what: format!("Not written yet: {}.", rows.iter().map(|row| stage(row)).collect::<Vec<_>>().join(", ")),
         details: Vec::new(),
         reproduced: of_rows().map(|one| one.reproduced).sum(),
         samples: of_rows().map(|one| one.samples).sum(),
         example: None,
         same_as: rows.iter().map(|row| row.id.to_owned()).collect(),
     })
-}
-
-/// An empty stage in a few words.
-fn stage(row: &Row) -> &'static str {
-    match row.mistake {
-        Mistake::ParticleParticleEmpty => "the particle-particle detection, which logs nothing",
-        Mistake::ParticleEdgeEmpty => "the particle-edge detection, which logs nothing",
-        Mistake::HalfPlaneEmpty => "the particle-half-plane detection, which logs nothing",
-        Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => "the impulse loop",
-        Mistake::GeometricEmpty => "the geometric part",
-        _ => "the rigid failsafe",
-    }
 }
 
 /// What speaks for a key.

@@ -1,5 +1,10 @@
-//! What an explanation says.
-use super::about::{About, OfPolynomials, StepStage};
+//! What an explanation says, as values: sentences are made of it where reports are.
+use super::{
+    about::{About, OfPolynomials},
+    detail::Detail,
+    example::Example,
+    fault::{self, StepStage},
+};
 use crate::student::{Row, find};
 
 /// A likely mistake, with the evidence for it.
@@ -7,12 +12,10 @@ use crate::student::{Row, find};
 pub struct Explanation {
     /// A stable key for machines: the id of a known mistake (`pe-square-no-eh`) or of a general finding (`reversed`).
     pub key: String,
-    /// What it is about: whoever decides by an explanation asks this and the key; the texts are for people.
+    /// What is wrong: what can be said in a sentence to the student without giving a formula away.
     pub about: About,
-    /// What is wrong, in one sentence to the student, without the remedy's formula.
-    pub what: String,
-    /// The exact form, one line each: "t^2: R^2 (e1.e1) has weight 2, expected 1". May give the right formula away.
-    pub details: Vec<String>,
+    /// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away.
+    pub details: Vec<Detail>,
     /// Of the samples that were looked at, how many it reproduces to round-off.
     pub reproduced: u64,
     /// Samples that were looked at: polynomials, or steps.
@@ -31,18 +34,19 @@ impl Explanation {
     pub const UNFINISHED: &'static str = "unfinished";
 
     /// The key of pairs that are looked at in another order.
-    pub const ORDER: &'static str = "stage-order";
+    pub const ORDER: &'static str = fault::ORDER;
+
+    /// The key of what nothing is known to explain.
+    pub(super) const UNEXPLAINED: &'static str = "unexplained";
 
     /// The key of what is right but for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
     /// The question whether a trace is of its scene; `has_length` says that at least the number of records is right.
     pub(super) fn of_other_scene(has_length: bool) -> Self {
-        let length = if has_length { "" } else { ", and neither is its length" };
         Self {
             key: Self::OTHER_SCENE.to_owned(),
-            about: About::Scene,
-            what: format!("Is this trace of this scene? Its first record is not the scene's{length}."),
+            about: About::Scene { has_length },
             details: Vec::new(),
             reproduced: 0,
             samples: 0,
@@ -54,7 +58,7 @@ impl Explanation {
     /// Whether this is the question whether the trace is of its scene.
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
-        self.about == About::Scene
+        matches!(self.about, About::Scene { .. })
     }
 
     /// Whether it names stages that are still empty.
@@ -92,8 +96,8 @@ impl Explanation {
     /// edges is `pe-radii-squared-apart`.
     pub(super) fn is_in_other_words(&self, row: &Row) -> bool {
         let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == self.key);
-        let About::Polynomials { kinds, .. } = &self.about else { return false };
-        is_called_so && kinds.first().is_some_and(|kind| kind.name().eq_ignore_ascii_case(row.place()))
+        let About::Polynomials { subjects, .. } = &self.about else { return false };
+        is_called_so && subjects.first().is_some_and(|first| Some(first.kind()) == row.kind_of_pair())
     }
 
     /// Whether it says which stage of a step is wrong, which is an observation and no guess.
@@ -104,8 +108,8 @@ impl Explanation {
 
     /// The stage of a step that it says is wrong.
     pub(super) fn stage(&self) -> Option<StepStage> {
-        match self.about {
-            About::Stage(stage) => Some(stage),
+        match &self.about {
+            About::Stage(fault) => Some(fault.stage()),
             _ => None,
         }
     }
@@ -115,28 +119,4 @@ impl Explanation {
     pub const fn is_complete(&self) -> bool {
         self.reproduced == self.samples && self.samples > 0
     }
-}
-
-/// A small instance of the mistake.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Example {
-    /// Step, from 1.
-    pub step: u32,
-    /// Where, in words: "particle 3 and edge 1, pass 0".
-    pub place: String,
-    /// What went in, by name and in the assignment's notation.
-    pub given: Vec<ExampleValue>,
-    /// What should have come out.
-    pub expected: Vec<f64>,
-    /// What did.
-    pub actual: Vec<f64>,
-}
-
-/// A named input of an example.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExampleValue {
-    /// Its name, such as `x1` or `R`.
-    pub name: String,
-    /// Its components.
-    pub value: Vec<f64>,
 }

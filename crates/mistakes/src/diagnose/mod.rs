@@ -1,24 +1,34 @@
 //! From findings to the likely mistake.
 //!
 //! Knows nothing of processes and reports. It looks at the steps of a trace that the fair rules find wrong, asks which
-//! mistake reproduces them, and yields [`Explanation`]s, the likeliest first.
+//! mistake reproduces them, and yields [`Explanation`]s, the likeliest first: values, of which reports make sentences.
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod about;
+mod detail;
+mod example;
 mod explain;
 mod explanation;
+mod fault;
+mod guess;
 mod known;
-mod notation;
 pub mod outside;
 pub mod polynomial;
 mod samples;
 mod stages;
 
 pub use crate::{assignments::probe_scenes, plain::formula_in};
-pub use about::{About, OfPolynomials, StepStage};
+pub use about::{About, OfPolynomials};
+pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Stand, Weight};
+pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use explain::{common, explain, refuted, several};
-pub use explanation::{Example, ExampleValue, Explanation};
+pub use explanation::Explanation;
+pub use fault::{
+    Changed, LoopEnd, Quantity, StageFault, StepStage, WrongDecisions, WrongMotion, WrongNumber, WrongResponses,
+    WrongVectors, WrongZoneRounds, WrongZones,
+};
+pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use known::{known, shows};
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 //! What is told of programs whose mistake the catalogue does not have: the measure of explanations where they can't know.
-use super::{Explanation, explain, probe_scenes, refuted, several};
+use super::{About, Explanation, explain, probe_scenes, refuted, several};
 use crate::student::{
     self, Area, Student,
     mutants::{Mutant, mutants},
@@ -8,7 +8,7 @@ use fosssim_judge::{
     fair::FairVerdict,
     parity::{Options, judge},
 };
-use fosssim_model::{assignments::Assignment, scene::Scene, sim::PairKind};
+use fosssim_model::{assignments::Assignment, scene::Scene};
 
 /// How what is told of a mistake stands to it, from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,48 +53,40 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
     several(traces, &refuted)
 }
 
-/// Asks about the mutants with these numbers.
-pub fn rated(wanted: impl Fn(usize) -> bool) -> impl Iterator<Item = Rated> {
-    mutants().enumerate().filter(move |(number, _)| wanted(*number)).map(|(_, mutant)| {
+/// Asks about the mutants with these numbers. What an explanation says is told by `words`: a mutant names words by which it
+/// is recognised.
+pub fn rated(wanted: impl Fn(usize) -> bool, words: impl Fn(&Explanation) -> String) -> impl Iterator<Item = Rated> {
+    mutants().enumerate().filter(move |(number, _)| wanted(*number)).map(move |(_, mutant)| {
         let told = told_of(Student::default().with_mutant(mutant));
-        Rated { id: mutant.id, what: mutant.what, rating: overall(mutant, &told), told }
+        Rated { id: mutant.id, what: mutant.what, rating: overall(mutant, &told, &words), told }
     })
 }
 
 /// The best of what is told, unless something misleads.
-fn overall(mutant: &Mutant, told: &[Explanation]) -> Rating {
-    let ratings = || told.iter().map(|one| rating(mutant, one));
+fn overall(mutant: &Mutant, told: &[Explanation], words: &dyn Fn(&Explanation) -> String) -> Rating {
+    let ratings = || told.iter().map(|one| rating(mutant, one, &words(one)));
     match ratings().max() {
         Some(Rating::Misleading) => Rating::Misleading,
         _ => ratings().min().unwrap_or(Rating::Unknown),
     }
 }
 
-/// The place that explanations have to name for a mistake.
-fn place(mutant: &Mutant) -> &'static str {
-    match mutant.area {
-        Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane => mutant.kind,
-        Area::Decision => "detection",
-        Area::ContactVector => "contact vector",
-        Area::Response => "response",
-        Area::ImpulseLoop => "impulse loop",
-        Area::ImpactZones => "impact zones",
-        _ => "rigid failsafe",
-    }
-}
-
-fn rating(mutant: &Mutant, told: &Explanation) -> Rating {
-    let what = told.what.to_lowercase();
-    let named = &what[..what.find(':').unwrap_or(0)];
-    let names_other_kind = PairKind::ALL.into_iter().any(|kind| named.contains(kind.name()))
-        && !mutant.kind.is_empty()
-        && !named.contains(mutant.kind);
-    let of_row = student::find(&told.key);
-    let is_there = of_row.map_or(named.contains(place(mutant)), |row| row.area == mutant.area);
-    if !is_there || names_other_kind {
+fn rating(mutant: &Mutant, told: &Explanation, words: &str) -> Rating {
+    let row = student::find(&told.key);
+    let (is_there, kinds) = match (row, &told.about) {
+        (Some(row), _) => (row.area == mutant.area, row.kind_of_pair().into_iter().collect()),
+        (None, About::Stage(fault)) => (fault.areas().contains(&mutant.area), fault.kind().into_iter().collect()),
+        (None, about) => (is_of_polynomials(mutant), about.kinds()),
+    };
+    let is_of_other_kind =
+        !mutant.kind.is_empty() && !kinds.is_empty() && kinds.iter().all(|kind| kind.name() != mutant.kind);
+    if !is_there || is_of_other_kind {
         return Rating::Misleading;
     }
-    let all = format!("{} {} {}", told.key, told.what, told.details.join(" "));
-    let is_told = mutant.told_by.iter().any(|word| all.contains(word));
-    if of_row.is_none() && is_told { Rating::Right } else { Rating::Partly }
+    let is_told = mutant.told_by.iter().any(|word| told.key.contains(word) || words.contains(word));
+    if row.is_none() && is_told { Rating::Right } else { Rating::Partly }
+}
+
+const fn is_of_polynomials(mutant: &Mutant) -> bool {
+    matches!(mutant.area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane)
 }

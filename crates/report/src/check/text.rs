@@ -6,6 +6,7 @@ use super::{
         number::{count, counted, general},
         style::{Look, Style},
         table::{Align, Cell, Table},
+        words,
     },
     Check, closer, divergence, fair,
     first::{first, is_other_scene},
@@ -65,7 +66,7 @@ fn head(check: &Check<'_>, style: Style) -> String {
 pub(crate) fn headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
     if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
-        return question.what.clone();
+        return words::explanation::what(question);
     }
     let steps = count(u64::from(outcome.steps));
     let parity = match outcome.overall {

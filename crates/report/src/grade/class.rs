@@ -4,6 +4,7 @@ use crate::{
     number::counted,
     style::{Look, Style},
     table::{Align, Table},
+    words,
 };
 use fosssim_grading::{Grade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
@@ -98,7 +99,7 @@ pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, Share)>, usize) {
 fn frequent(grades: &[Grade]) -> Vec<(String, usize)> {
     let mut counts: BTreeMap<String, (String, usize)> = BTreeMap::new();
     for (mistake, _) in grades.iter().flat_map(likely_mistakes) {
-        counts.entry(mistake.key).or_insert_with(|| (mistake.what, 0)).1 += 1;
+        counts.entry(mistake.key.clone()).or_insert_with(|| (words::explanation::what(&mistake), 0)).1 += 1;
     }
     let mut sorted: Vec<(String, usize)> = counts.into_values().collect();
     sorted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));

@@ -48,7 +48,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
     let line = |(number, (mistake, explained)): (usize, (Explanation, usize))| {
         let rank = if number == 0 { "most likely mistake" } else { "also likely" };
-        format!("{rank}: {} (explains {explained} of {wrong})", mistake.what)
+        format!("{rank}: {} (explains {explained} of {wrong})", words::explanation::what(&mistake))
     };
     likely_mistakes(grade).into_iter().enumerate().map(line).collect()
 }

@@ -81,7 +81,8 @@ impl ClassPage<'_> {
             out += &number(grade.points, &format!("{} of {}", reached(grade.points), points(grade.max_points)));
             let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
             let _ = write!(out, "<td class=\"num\" data-sort=\"{accepted}\">{accepted} of {all}</td>");
-            let likely: Vec<String> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake.what).collect();
+            let likely: Vec<String> =
+                likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake)).collect();
             let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
             let _ = write!(out, "<td class=\"words\">{}</td>", text(&short(&words)));
             for name in &groups {
@@ -188,7 +189,8 @@ fn by_mistake(grades: &[Grade]) -> (Vec<(String, Vec<usize>)>, Vec<usize>) {
             rest.push(number);
         }
         for (mistake, _) in likely {
-            found.entry(mistake.key).or_insert_with(|| (mistake.what, Vec::new())).1.push(number);
+            let told = || (words::explanation::what(&mistake), Vec::new());
+            found.entry(mistake.key.clone()).or_insert_with(told).1.push(number);
         }
     }
     let mut several: Vec<_> = found.into_values().filter(|(_, members)| members.len() > 1).collect();

@@ -133,7 +133,7 @@ impl GradePage<'_> {
                 let _ = writeln!(
                     out,
                     "<div class=\"mistake\"><p>{} <span class=\"hint\">(explains {explained} of {wrong})</span>{}</p></div>",
-                    text(&mistake.what),
+                    text(&words::explanation::what(&mistake)),
                     shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene)))
                 );
             }
@@ -314,7 +314,7 @@ fn over_all(scene: &SceneGrade, likely: &[Explanation]) -> String {
     match (meant, first) {
         (Some(meant), Some(first)) if meant.key != first.key => format!(
             "<p>All scenes together: <strong>{}</strong> This one alone does not tell it from the following:</p>\n",
-            text(&meant.what)
+            text(&words::explanation::what(meant))
         ),
         _ => String::new(),
     }

@@ -3,6 +3,8 @@
 //! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
 //! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
 //! a mistake is made asks [`Student::makes`](crate::student::Student::makes).
+use fosssim_model::sim::PairKind;
+
 /// What is to be thought of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowKind {
@@ -102,6 +104,12 @@ impl Row {
     #[must_use]
     pub fn sentence(&self) -> String {
         format!("{}: {}", self.place(), self.what)
+    }
+
+    /// The kind of pair for which alone the mistake is made.
+    #[must_use]
+    pub fn kind_of_pair(&self) -> Option<PairKind> {
+        PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.place()))
     }
 
     /// The part of the program in which the mistake is made: the kind of pair where it is made for one kind only, else

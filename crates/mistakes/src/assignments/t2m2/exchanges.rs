@@ -4,7 +4,7 @@ use fosssim_model::sim::PairKind;
 use fosssim_num::bounded::{Bounded, Bounded2};
 
 /// One thing that stands for another.
-pub(crate) struct Exchange {
+pub struct Exchange {
     /// The explanation's key.
     pub key: &'static str,
     /// The explanation's sentence, without its full stop.
@@ -12,14 +12,15 @@ pub(crate) struct Exchange {
     /// The exact form.
     pub detail: &'static str,
     /// How unlikely it is; see `study`.
-    pub cost: f64,
+    pub(crate) cost: f64,
     kinds: &'static [PairKind],
     /// Makes the exchange.
-    pub apply: fn(&mut Inputs),
+    pub(crate) apply: fn(&mut Inputs),
 }
 
 impl Exchange {
     /// Whether it makes sense for this kind of pair.
+    #[must_use]
     pub fn concerns(&self, kind: PairKind) -> bool {
         self.kinds.contains(&kind)
     }
@@ -66,8 +67,14 @@ const fn exchange(
     Exchange { key, sentence, detail, cost, kinds, apply }
 }
 
+/// The exchange with this key.
+#[must_use]
+pub fn find_exchange(key: &str) -> Option<&'static Exchange> {
+    EXCHANGES.iter().find(|exchange| exchange.key == key)
+}
+
 /// All of them.
-pub(crate) const EXCHANGES: &[Exchange] = &[
+pub const EXCHANGES: &[Exchange] = &[
     exchange(
         "end-positions",
         &[PP, PE, PH],

@@ -7,15 +7,15 @@ use super::{Inputs, Subject};
 use fosssim_num::bounded::Bounded;
 
 /// A quantity of a formula.
-pub(crate) struct Letter {
+pub struct Letter {
     /// How a message calls it.
     pub name: &'static str,
     /// What it is, in the assignment's notation; empty where the name says it.
     pub meaning: &'static str,
     /// Of which degree it is in the displacements.
-    pub order: u8,
+    pub(crate) order: u8,
     /// Its value.
-    pub value: fn(&Inputs) -> Bounded,
+    pub(crate) value: fn(&Inputs) -> Bounded,
 }
 
 /// `weight` times the product of `letters` (indices into the formula's) in the coefficient of `t^power`.

@@ -3,7 +3,7 @@ use super::{Inputs, Subject};
 use fosssim_num::bounded::{Bounded, Bounded2};
 
 /// A wrong polynomial, highest power first.
-pub(crate) struct Special {
+pub struct Special {
     /// The polynomial that it is about.
     pub subject: Subject,
     /// The explanation's key.
@@ -13,11 +13,17 @@ pub(crate) struct Special {
     /// The exact form.
     pub detail: &'static str,
     /// Its coefficients.
-    pub polynomial: fn(&Inputs) -> Vec<Bounded>,
+    pub(crate) polynomial: fn(&Inputs) -> Vec<Bounded>,
+}
+
+/// The misunderstanding with this key.
+#[must_use]
+pub fn find_special(key: &str) -> Option<&'static Special> {
+    SPECIALS.iter().find(|special| special.key == key)
 }
 
 /// All of them.
-pub(crate) const SPECIALS: &[Special] = &[
+pub const SPECIALS: &[Special] = &[
     Special {
         subject: Subject::EdgeApproach,
         key: "constant-alpha",

@@ -3,7 +3,7 @@ use fosssim_model::sim::PairKind;
 
 /// What a polynomial of a detection says (collisions.md 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Subject {
+pub enum Subject {
     /// Two particles overlap.
     ParticleOverlap,
     /// Two particles approach each other.

@@ -6,13 +6,13 @@ use super::{
     scan::Sample,
 };
 use crate::{
-    diagnose::Example,
+    diagnose::{Example, ExamplePlace, StepRecord},
     student::{StepLog, World},
 };
 use fosssim_judge::Role;
 use fosssim_model::{
     scene::Scene,
-    sim::{Pair, PairKind, RootSearch, Simulation, State},
+    sim::{RootSearch, Simulation, State},
     trace::LoggedImpulse,
 };
 use fosssim_num::vector::at;
@@ -35,37 +35,34 @@ pub(super) fn example(scene: &Scene, correct: Correct, sample: &Sample) -> Examp
             let list = |log: &fosssim_model::trace::PolynomialLog| {
                 if index < log.len() { log.get(index).to_vec() } else { Vec::new() }
             };
-            let place = capture.place(index).map_or_else(
-                || format!("polynomial {index}"),
-                |(pair, pass, number)| {
-                    let role = Role::of(pair.kind, number);
-                    format!("{}, pass {}, {role} polynomial", describe(pair), pass.index)
-                },
-            );
+            let place = capture.place(index).map_or(ExamplePlace::NumberedPolynomial(index), |(pair, pass, number)| {
+                ExamplePlace::Polynomial { pair, pass: pass.index, role: Role::of(pair.kind, number) }
+            });
             (place, list(&ours.end.polynomials), list(&theirs.end.polynomials))
         }
         Some(Difference::PolynomialCount) => {
             let (ours, theirs) = (ours.end.polynomials.len(), theirs.end.polynomials.len());
-            ("number of polynomials".to_owned(), count(ours), count(theirs))
+            (ExamplePlace::PolynomialCount, count(ours), count(theirs))
         }
         Some(Difference::Impulses) => contacts(&ours.end.impulses, &theirs.end.impulses),
         Some(Difference::MidState(particle)) => match (&ours.mid, &theirs.mid) {
-            (Some(ours), Some(theirs)) => state(particle, "mid record", &ours.state, &theirs.state),
-            _ => (format!("particle {particle}, mid record"), Vec::new(), Vec::new()),
+            (Some(ours), Some(theirs)) => state(particle, StepRecord::Mid, &ours.state, &theirs.state),
+            _ => (ExamplePlace::MidParticle(particle), Vec::new(), Vec::new()),
         },
-        Some(Difference::EndState(particle)) => state(particle, "end record", &ours.end.state, &theirs.end.state),
-        Some(Difference::MidLists) | None => ("lists of the mid record".to_owned(), Vec::new(), Vec::new()),
+        Some(Difference::EndState(particle)) => state(particle, StepRecord::End, &ours.end.state, &theirs.end.state),
+        Some(Difference::MidLists) | None => (ExamplePlace::MidLists, Vec::new(), Vec::new()),
     };
     Example { step: sample.step, place, given: Vec::new(), expected, actual }
 }
 
 /// The first contact that differs: normal and time, three numbers.
-fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (String, Vec<f64>, Vec<f64>) {
+fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let key = |contact: &LoggedImpulse| (contact.kind, contact.first, contact.second);
     let values = |contact: &LoggedImpulse| vec![contact.normal.x, contact.normal.y, contact.time];
-    let place = |contact: &LoggedImpulse| {
-        let other = contact.kind().map_or("object of unknown kind", PairKind::second);
-        format!("contact of particle {} and {other} {}, normal and time", contact.first, contact.second)
+    let place = |contact: &LoggedImpulse| ExamplePlace::Contact {
+        kind: contact.kind(),
+        first: contact.first,
+        second: contact.second,
     };
     for contact in ours {
         match theirs.iter().find(|other| key(other) == key(contact)) {
@@ -78,25 +75,21 @@ fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (String, Vec<f6
     }
     match theirs.iter().find(|contact| ours.iter().all(|other| key(other) != key(contact))) {
         Some(contact) => (place(contact), Vec::new(), values(contact)),
-        None => ("number of impulses".to_owned(), count(ours.len()), count(theirs.len())),
+        None => (ExamplePlace::ContactCount, count(ours.len()), count(theirs.len())),
     }
 }
 
 /// Position and velocity of a particle: four numbers.
-fn state(particle: usize, when: &str, ours: &State, theirs: &State) -> (String, Vec<f64>, Vec<f64>) {
+fn state(particle: usize, record: StepRecord, ours: &State, theirs: &State) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let values = |state: &State| {
         let (x, v) = (at(&state.positions, particle), at(&state.velocities, particle));
         vec![x.x, x.y, v.x, v.y]
     };
-    (format!("position and velocity of particle {particle}, {when}"), values(ours), values(theirs))
+    (ExamplePlace::Particle { particle, record }, values(ours), values(theirs))
 }
 
 fn count(number: usize) -> Vec<f64> {
     #[expect(clippy::cast_precision_loss, reason = "a count of things in memory")]
     let number = number as f64;
     vec![number]
-}
-
-fn describe(pair: Pair) -> String {
-    format!("particle {} and {} {}", pair.first, pair.kind.second(), pair.second)
 }

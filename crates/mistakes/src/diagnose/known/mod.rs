@@ -14,7 +14,6 @@ mod capture;
 mod compare;
 mod example;
 mod refute;
-mod remedy;
 mod resimulate;
 mod scan;
 mod several;
@@ -27,7 +26,7 @@ pub use refute::shows;
 pub(super) use scan::Sample;
 pub(super) use several::is_empty_stage;
 
-use super::{Explanation, about::About};
+use super::{Detail, Explanation, about::About};
 use crate::student::{Mistake, Row, RowKind, find};
 use candidates::{Candidates, Score};
 use fosssim_model::{scene::Scene, trace::Layout};
@@ -165,18 +164,12 @@ fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
         key: row.id.to_owned(),
         about: About::Mistake,
-        what: row.sentence(),
-        details: details(row),
+        details: vec![Detail::Term(row.id), Detail::Look(row.area)],
         reproduced,
         samples,
         example: None,
         same_as: Vec::new(),
     }
-}
-
-/// The exact form of a row's mistake, and where to look.
-fn details(row: &Row) -> Vec<String> {
-    vec![row.term.to_owned(), remedy::remedy(row.area).to_owned()]
 }
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 //! Traces with mistakes, made in memory, and what is said of them.
 use super::{known, shows};
 use crate::{
-    diagnose::{Explanation, explain, several},
+    diagnose::{About, ExamplePlace, Explanation, explain, several},
     student::{self, Student, find},
 };
+use fosssim_judge::Role;
 use fosssim_model::{
     scene::{Scene, original},
-    sim::State,
+    sim::{Pair, PairKind, State},
     trace::{Frame, Layout, Writer},
 };
 
@@ -81,10 +82,10 @@ fn another_scenes_trace_is_asked_about_only() {
     other.particles[1].position.y = 0.125;
     let right = student::trace(&other, Student::default()).expect("a trace");
     let longer = [right.as_slice(), &[0; 64]].concat();
-    for (trace, question) in [(right, "first record is not the scene's."), (longer, "and neither is its length.")] {
+    for (trace, has_length) in [(right, true), (longer, false)] {
         let explanations = explain(&scene(), &trace);
         let [explanation] = &explanations[..] else { panic!("one question, not {explanations:?}") };
-        assert!(explanation.is_other_scene() && explanation.what.ends_with(question), "{explanation:?}");
+        assert!(explanation.is_other_scene() && explanation.about == (About::Scene { has_length }), "{explanation:?}");
     }
 }
 
@@ -98,7 +99,8 @@ fn a_right_approach_hides_no_mistake() {
         let [explanation] = &explanations[..] else { panic!("{id} is not explained") };
         assert!(explanation.key == id || explanation.same_as.iter().any(|other| other == id), "{id}: {explanation:?}");
         let example = explanation.example.as_ref().expect("an example");
-        assert!(!example.place.ends_with("approach polynomial"), "the approach is right: {example:?}");
+        let is_approach = matches!(example.place, ExamplePlace::Polynomial { role: Role::Approach, .. });
+        assert!(!is_approach, "the approach is right: {example:?}");
     }
     let trace = student::trace(&scene(), Student::default().with_right_approach()).expect("a trace");
     assert_eq!(known(&scene(), &trace[..]), []);
@@ -110,10 +112,11 @@ fn an_example_names_the_first_wrong_step() {
     let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
     let explanations = known(&scene(), &trace[..]);
     let [explanation] = &explanations[..] else { panic!("one explanation") };
-    assert_eq!((&*explanation.key, &explanation.what), (row.id, &row.sentence()));
+    assert_eq!((&*explanation.key, &explanation.about), (row.id, &About::Mistake));
     assert_eq!(explanation.reproduced, explanation.samples);
     let example = explanation.example.as_ref().expect("an example");
-    assert_eq!((example.step, example.place.as_str()), (1, "particle 0 and particle 1, pass 0, overlap polynomial"));
+    let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
+    assert_eq!((example.step, example.place), (1, ExamplePlace::Polynomial { pair, pass: 0, role: Role::Overlap }));
     assert_eq!(example.expected.len(), 3);
     assert!((example.expected[1] - 2.0 * example.actual[1]).abs() < 1e-9, "{example:?}");
 }
@@ -212,7 +215,10 @@ fn mistakes_of_several_scenes_are_settled_together() {
     let other = explain(&scene(), &made(&scene(), &["pe-empty", "ph-empty"]));
     let found = several([alone.as_slice(), other.as_slice()], &[]);
     assert_eq!((found.len(), found[0].key.as_str()), (1, Explanation::UNFINISHED), "{found:#?}");
-    assert!(found[0].what.starts_with("Not written yet: the particle-particle detection"), "{}", found[0].what);
+    assert_eq!(
+        (&found[0].about, &found[0].same_as[..]),
+        (&About::Unfinished, &["pp-empty", "pe-empty", "ph-empty"].map(str::to_owned)[..])
+    );
     assert!(found[0].is_named_in(&alone) && found[0].is_named_in(&other));
     let (one, two) =
         (explain(&scene(), &made(&scene(), &["pp-no-two"])), explain(&scene(), &made(&scene(), &["response-sign"])));

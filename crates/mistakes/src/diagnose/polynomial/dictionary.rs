@@ -67,23 +67,9 @@ impl Dictionary {
         same.fold(0.0, |sum, term| sum + term.weight)
     }
 
-    /// The name of a product, such as `e h`.
-    pub fn name(&self, product: usize) -> String {
-        let names: Vec<&str> = self.products[product].letters.iter().map(|&index| self.letters[index].name).collect();
-        names.join(" ")
-    }
-
-    /// What its letters mean, such as `e = d21.x21`; empty where the names say it.
-    pub fn meanings(&self, product: usize) -> Vec<String> {
-        let mut list: Vec<String> = self.products[product]
-            .letters
-            .iter()
-            .map(|&index| self.letters[index])
-            .filter(|letter| !letter.meaning.is_empty())
-            .map(|letter| format!("{} = {}", letter.name, letter.meaning))
-            .collect();
-        list.dedup();
-        list
+    /// The names of a product's letters, such as `e` and `h`.
+    pub fn names(&self, product: usize) -> Vec<&'static str> {
+        self.products[product].letters.iter().map(|&index| self.letters[index].name).collect()
     }
 }
 

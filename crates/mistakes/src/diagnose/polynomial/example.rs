@@ -1,8 +1,7 @@
 //! The sample that shows a mistake best: wrong, with inputs that are quickly written down, early.
 use super::study::{Case, Study};
-use crate::assignments::t2m2::{Body, Motion};
-use crate::diagnose::{Example, ExampleValue};
-use fosssim_judge::PairWords;
+use crate::assignments::t2m2::{Body, Input, Motion};
+use crate::diagnose::{Example, ExamplePlace, ExampleValue};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
 fosssim_model::drops_leading!();
@@ -19,7 +18,7 @@ fn example(study: &Study, case: &Case) -> Example {
     let expected: Vec<f64> = case.expected.iter().map(|coefficient| coefficient.value).collect();
     Example {
         step: sample.step,
-        place: format!("{}, pass {}, {} polynomial", PairWords(sample.pair), sample.pass, study.subject.name()),
+        place: ExamplePlace::Given { pair: sample.pair, pass: sample.pass, subject: study.subject },
         given: given(&sample.motion),
         // As the course's library would log it.
         expected: Polynomial::trimmed(&expected).coefficients().to_vec(),
@@ -36,34 +35,38 @@ fn given(motion: &Motion) -> Vec<ExampleValue> {
     match motion {
         Motion::Particles { bodies, radii } => {
             let mut list = moving(bodies);
-            list.extend([number("r1", radii[0]), number("r2", radii[1])]);
+            list.extend([number(Input::R1, radii[0]), number(Input::R2, radii[1])]);
             list
         }
         Motion::Edge { bodies, radii } => {
             let mut list = moving(bodies);
-            list.extend([number("r1", radii[0]), number("re", radii[1])]);
+            list.extend([number(Input::R1, radii[0]), number(Input::Re, radii[1])]);
             list
         }
         Motion::HalfPlane { body, radius, point, normal } => vec![
-            vector("x", body.start),
-            vector("dx", body.displacement),
-            vector("p", *point),
-            vector("n", *normal),
-            number("r", *radius),
+            vector(Input::X, body.start),
+            vector(Input::Dx, body.displacement),
+            vector(Input::P, *point),
+            vector(Input::N, *normal),
+            number(Input::R, *radius),
         ],
     }
 }
 
 fn moving(bodies: &[Body]) -> Vec<ExampleValue> {
-    let starts = ["x1", "x2", "x3"].into_iter().zip(bodies).map(|(name, body)| vector(name, body.start));
-    let moves = ["dx1", "dx2", "dx3"].into_iter().zip(bodies).map(|(name, body)| vector(name, body.displacement));
+    let starts =
+        [Input::X1, Input::X2, Input::X3].into_iter().zip(bodies).map(|(input, body)| vector(input, body.start));
+    let moves = [Input::Dx1, Input::Dx2, Input::Dx3]
+        .into_iter()
+        .zip(bodies)
+        .map(|(input, body)| vector(input, body.displacement));
     starts.chain(moves).collect()
 }
 
-fn vector(name: &'static str, value: Vec2) -> ExampleValue {
-    ExampleValue { name: name.to_owned(), value: vec![value.x, value.y] }
+fn vector(input: Input, value: Vec2) -> ExampleValue {
+    ExampleValue { input, value: vec![value.x, value.y] }
 }
 
-fn number(name: &'static str, value: f64) -> ExampleValue {
-    ExampleValue { name: name.to_owned(), value: vec![value] }
+fn number(input: Input, value: f64) -> ExampleValue {
+    ExampleValue { input, value: vec![value] }
 }

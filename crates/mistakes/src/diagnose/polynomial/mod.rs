@@ -25,23 +25,18 @@ pub use crate::assignments::t2m2::{Body, Motion};
 pub use sample::Sample;
 
 use super::{
-    Explanation,
+    Detail, Explanation, PolynomialDetail,
     about::{About, OfPolynomials},
-    notation,
+    guess::Guess,
 };
-use crate::{
-    assignments::t2m2::{
-        Subject,
-        exchanges::{EXCHANGES, Exchange},
-    },
-    plain::formula_in,
+use crate::assignments::t2m2::{
+    Subject,
+    exchanges::{EXCHANGES, Exchange},
+    formulas::readings,
 };
 use fosssim_model::sim::PairKind;
 use std::collections::BTreeMap;
 use study::{Candidate, Study};
-
-/// The key of what nothing is known to explain.
-pub(super) const UNEXPLAINED: &str = "unexplained";
 
 /// So many other keys are told per explanation.
 const MOST_OTHERS: usize = 5;
@@ -69,8 +64,8 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     open.retain(|suspect| nearly_right(suspect).is_none());
     while let Some(key) = best_shared_key(&open) {
         let (covered, rest): (Vec<Suspect>, Vec<Suspect>) =
-            open.into_iter().partition(|suspect| suspect.full().any(|candidate| candidate.key == key));
-        explanations.push(shared(&covered, &key));
+            open.into_iter().partition(|suspect| suspect.full().any(|candidate| candidate.guess.key() == key));
+        explanations.push(shared(&covered, key));
         open = rest;
     }
     let (hopeless, open): (Vec<Suspect>, Vec<Suspect>) =
@@ -79,28 +74,24 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     explanations.extend(unexplained(&hopeless));
     explanations.extend(missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
-    debug_assert!(explanations.iter().all(|one| formula_in(&one.what).is_none()), "{explanations:?}");
     explanations
 }
 
 /// Tells that no detection of a kind has all its polynomials.
 fn missing(samples: &[Sample]) -> Option<Explanation> {
-    let (mut names, mut kinds, mut details, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut subjects, mut details, mut count) = (Vec::new(), Vec::new(), 0);
     for kind in PairKind::ALL {
         let of_kind = || samples.iter().filter(|sample| sample.motion.kind() == kind);
         let logged = of_kind().map(|sample| sample.polynomials.len()).max().unwrap_or(usize::MAX);
-        let absent = Subject::of(kind).iter().skip(logged);
         if logged < kind.polynomials() {
-            details.push(format!("{logged} of {} polynomials per detection", kind.polynomials()));
+            details.push(Detail::Polynomial(PolynomialDetail::Logged { logged, of: kind.polynomials() }));
             count += of_kind().count() as u64;
-            kinds.push(kind);
         }
-        names.extend(absent.map(|subject| subject.name()));
+        subjects.extend(Subject::of(kind).iter().skip(logged));
     }
-    (!names.is_empty()).then(|| Explanation {
+    (!subjects.is_empty()).then(|| Explanation {
         key: "missing-polynomials".to_owned(),
-        about: About::Polynomials { kinds, found: OfPolynomials::Missing },
-        what: format!("Polynomials are not handed over: {}.", names.join(", ")),
+        about: About::Polynomials { subjects, found: OfPolynomials::Missing },
         details: distinct(details.into_iter()),
         reproduced: count,
         samples: count,
@@ -127,24 +118,27 @@ impl Suspect<'_> {
         let best = &self.candidates[0];
         let equal = |other: &&Candidate| {
             let is_likely = other.cost <= best.cost + AS_LIKELY;
-            is_likely && other.reproduced == best.reproduced && other.key != best.key
+            is_likely && other.reproduced == best.reproduced && other.guess.key() != best.guess.key()
         };
-        let found = if best.key == UNEXPLAINED { OfPolynomials::Nothing } else { OfPolynomials::Guess };
+        let found = OfPolynomials::Guess(best.guess.clone());
         Explanation {
-            key: best.key.clone(),
-            about: About::Polynomials { kinds: vec![self.study.subject.kind()], found },
-            what: placed(&[self.study.subject.name()], &best.sentence),
-            details: best
-                .details
-                .iter()
-                .map(|line| notation::radii(line.clone(), &[self.study.subject.kind()]))
-                .collect(),
+            key: best.guess.key().to_owned(),
+            about: About::Polynomials { subjects: vec![self.study.subject], found },
+            details: best.details.iter().cloned().map(|one| detail(one, &[self.study.subject])).collect(),
             reproduced: best.reproduced as u64,
             samples,
             example: example::smallest(&self.study).map(|(_, example)| example),
-            same_as: distinct(self.candidates.iter().filter(equal).map(|other| other.key.clone())),
+            same_as: distinct(self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned())),
         }
     }
+}
+
+/// A line of the exact form of a guess about these polynomials.
+fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
+    if let PolynomialDetail::Exchange { of_edges, .. } = &mut detail {
+        *of_edges = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);
+    }
+    Detail::Polynomial(detail)
 }
 
 /// All guesses about a polynomial, the one that reproduces most first, among equals the likeliest.
@@ -162,7 +156,7 @@ fn candidates(study: &Study) -> Vec<Candidate> {
 }
 
 fn exchanged_inputs(study: &Study) -> Vec<Candidate> {
-    let formula = &study.formulas()[0];
+    let formula = &readings(study.subject)[0];
     let of = |exchange: &Exchange| {
         let (reproduced, scaled) = study.count(|case| {
             let mut inputs = case.inputs;
@@ -170,9 +164,8 @@ fn exchanged_inputs(study: &Study) -> Vec<Candidate> {
             formula.polynomial(&inputs)
         })?;
         Some(Candidate {
-            key: exchange.key.to_owned(),
-            sentence: exchange.sentence.to_owned(),
-            details: vec![exchange.detail.to_owned()],
+            guess: Guess::Exchange(exchange.key),
+            details: vec![PolynomialDetail::Exchange { key: exchange.key, of_edges: false }],
             cost: exchange.cost + if scaled { 1.5 } else { 0.0 },
             reproduced,
             general: true,
@@ -187,9 +180,8 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let (error, samples) = (study.error(), study.cases.len() as u64);
     (error < NEARLY && suspect.full().next().is_none()).then(|| Explanation {
         key: Explanation::NEARLY_RIGHT.to_owned(),
-        about: About::Polynomials { kinds: vec![study.subject.kind()], found: OfPolynomials::NearlyRight },
-        what: placed(&[study.subject.name()], "The formula is right, but for more round-off than the rules allow"),
-        details: vec![format!("right up to {error:.0e} of the size of its terms")],
+        about: About::Polynomials { subjects: vec![study.subject], found: OfPolynomials::NearlyRight },
+        details: vec![Detail::Polynomial(PolynomialDetail::RightUpTo(error))],
         reproduced: 0,
         samples,
         example: example::smallest(study).map(|(_, example)| example),
@@ -200,19 +192,16 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
 /// One explanation that says for which polynomials there is none.
 fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
     let first = hopeless.first()?;
-    let names: Vec<&str> = hopeless.iter().map(|suspect| suspect.study.subject.name()).collect();
-    let plural = if names.len() > 1 { "s" } else { "" };
     let lines = |suspect: &Suspect| {
-        let name = if names.len() > 1 { format!("{}: ", suspect.study.subject.name()) } else { String::new() };
-        suspect.study.differences().into_iter().map(move |line| format!("{name}{line}")).collect::<Vec<_>>()
+        let subject = (hopeless.len() > 1).then_some(suspect.study.subject);
+        suspect.study.differences(subject).into_iter().map(Detail::Polynomial)
     };
     Some(Explanation {
-        key: UNEXPLAINED.to_owned(),
+        key: Explanation::UNEXPLAINED.to_owned(),
         about: About::Polynomials {
-            kinds: hopeless.iter().map(|suspect| suspect.study.subject.kind()).collect(),
+            subjects: hopeless.iter().map(|suspect| suspect.study.subject).collect(),
             found: OfPolynomials::Nothing,
         },
-        what: format!("No simple mistake explains the polynomial{plural}: {}.", names.join(", ")),
         details: distinct(hopeless.iter().flat_map(lines)),
         reproduced: 0,
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
@@ -223,62 +212,53 @@ fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
 
 /// The key of general guesses that reproduces all samples of the most polynomials, among equals the likeliest; a
 /// polynomial's own likeliest guess counts for that polynomial. `None` if nothing reproduces all samples of any.
-fn best_shared_key(open: &[Suspect]) -> Option<String> {
-    let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
+fn best_shared_key(open: &[Suspect]) -> Option<&'static str> {
+    let mut keys: BTreeMap<&'static str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
         let mut seen: Vec<&str> = Vec::new();
         for candidate in suspect.full().filter(|candidate| candidate.general) {
-            if !seen.contains(&candidate.key.as_str()) {
-                seen.push(&candidate.key);
-                let entry = keys.entry(&candidate.key).or_default();
+            let key = candidate.guess.key();
+            if !seen.contains(&key) {
+                seen.push(key);
+                let entry = keys.entry(key).or_default();
                 *entry = (entry.0 + 1, entry.1 + candidate.cost);
             }
         }
     }
     let best = keys.into_iter().max_by(|one, two| one.1.0.cmp(&two.1.0).then(two.1.1.total_cmp(&one.1.1)))?;
-    (best.1.0 > 1).then(|| best.0.to_owned())
+    (best.1.0 > 1).then_some(best.0)
 }
 
 /// One explanation for several polynomials.
 fn shared(covered: &[Suspect], key: &str) -> Explanation {
     let guesses: Vec<&Candidate> =
-        covered.iter().filter_map(|suspect| suspect.full().find(|candidate| candidate.key == key)).collect();
-    let names: Vec<&str> = covered.iter().map(|suspect| suspect.study.subject.name()).collect();
-    let kinds: Vec<PairKind> = covered.iter().map(|suspect| suspect.study.subject.kind()).collect();
+        covered.iter().filter_map(|suspect| suspect.full().find(|candidate| candidate.guess.key() == key)).collect();
+    let subjects: Vec<Subject> = covered.iter().map(|suspect| suspect.study.subject).collect();
     let likely = covered[0].full().filter(|candidate| candidate.cost <= guesses[0].cost + AS_LIKELY);
-    let others = likely.map(|candidate| candidate.key.clone()).filter(|other| {
-        other != key && covered.iter().all(|suspect| suspect.full().any(|candidate| candidate.key == *other))
+    let others = likely.map(|candidate| candidate.guess.key()).filter(|other| {
+        *other != key && covered.iter().all(|suspect| suspect.full().any(|candidate| candidate.guess.key() == *other))
     });
     let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();
     let examples = covered.iter().filter_map(|suspect| example::smallest(&suspect.study));
-    let details = guesses.iter().flat_map(|guess| &guess.details).map(|line| notation::radii(line.clone(), &kinds));
-    let found = if key == UNEXPLAINED { OfPolynomials::Nothing } else { OfPolynomials::Guess };
+    let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| detail(one.clone(), &subjects));
+    let found = OfPolynomials::Guess(guesses[0].guess.clone());
     Explanation {
         key: key.to_owned(),
-        what: placed(&names, &guesses[0].sentence),
         details: distinct(details),
-        about: About::Polynomials { kinds, found },
+        about: About::Polynomials { subjects, found },
         reproduced: samples,
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
-        same_as: distinct(others),
+        same_as: distinct(others.map(str::to_owned)),
     }
 }
 
-/// A sentence with its place in front: `Particle-edge overlap: The linear coefficient is zero.`
-fn placed(names: &[&str], sentence: &str) -> String {
-    let names = names.join(", ");
-    let mut letters = names.chars();
-    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-    format!("{first}{}: {sentence}.", letters.as_str())
-}
-
 /// The first few different ones, in their order.
-fn distinct(keys: impl Iterator<Item = String>) -> Vec<String> {
-    let mut list: Vec<String> = Vec::new();
-    for key in keys {
-        if !list.contains(&key) && list.len() < MOST_OTHERS {
-            list.push(key);
+fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
+    let mut list: Vec<T> = Vec::new();
+    for one in all {
+        if !list.contains(&one) && list.len() < MOST_OTHERS {
+            list.push(one);
         }
     }
     list

@@ -1,14 +1,15 @@
 //! Right formulas with one wrong letter: scaled, of the wrong sign, or another dot product.
 use super::study::{Candidate, Study};
 use crate::assignments::t2m2::{
-    Inputs,
+    Inputs, Reading,
     formulas::{Formula, Letter},
     ingredients::{Ingredient, ingredients},
 };
+use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Stand};
 use fosssim_num::bounded::Bounded;
 
-/// What stands for a letter.
-enum Stand<'a> {
+/// What is tried in a letter's place.
+enum Trial<'a> {
     /// The letter itself, multiplied.
     Scaled(f64),
     /// Another letter.
@@ -19,7 +20,7 @@ enum Stand<'a> {
     One,
 }
 
-impl Stand<'_> {
+impl Trial<'_> {
     fn value(&self, slot: usize, values: &[Bounded], inputs: &Inputs) -> Bounded {
         match self {
             Self::Scaled(factor) => *factor * values[slot],
@@ -29,13 +30,21 @@ impl Stand<'_> {
         }
     }
 
-    fn words(&self, letter: &Letter, letters: &[Letter]) -> String {
-        let sign = |sign: f64| if sign < 0.0 { "-" } else { "" };
+    fn told(&self, letters: &[Letter]) -> Stand {
         match self {
-            Self::Scaled(factor) => format!("{factor} {}", letter.name),
-            Self::Letter(other) => described(&letters[*other]),
-            Self::Dot(one, two, factor) => format!("{}{}.{}", sign(*factor), one.name, two.name),
-            Self::One => "1".to_owned(),
+            Self::Scaled(factor) => Stand::Scaled(*factor),
+            Self::Letter(other) => Stand::Letter(letters[*other].name),
+            Self::Dot(one, two, sign) => Stand::Dot { vectors: [one.name, two.name], negated: *sign < 0.0 },
+            Self::One => Stand::One,
+        }
+    }
+
+    fn guess(&self) -> QuantityGuess {
+        match self {
+            Self::Scaled(factor) if *factor < 0.0 => QuantityGuess::Sign,
+            Self::Scaled(0.0) => QuantityGuess::Zero,
+            Self::Scaled(_) => QuantityGuess::Factor,
+            _ => QuantityGuess::Other,
         }
     }
 
@@ -50,17 +59,12 @@ impl Stand<'_> {
     }
 }
 
-/// A letter with what it stands for.
-pub(super) fn described(letter: &Letter) -> String {
-    if letter.meaning.is_empty() { letter.name.to_owned() } else { format!("{} = {}", letter.name, letter.meaning) }
-}
-
 /// One-letter slips that reproduce at least half of the wrong samples.
 pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
-    study.formulas().iter().enumerate().flat_map(|(index, formula)| in_formula(study, formula, index)).collect()
+    study.formulas().flat_map(|(reading, formula)| in_formula(study, formula, reading)).collect()
 }
 
-fn in_formula(study: &Study, formula: &Formula, reading: usize) -> Vec<Candidate> {
+fn in_formula(study: &Study, formula: &Formula, reading: Reading) -> Vec<Candidate> {
     let pool = ingredients(study.subject.kind());
     let mut found = Vec::new();
     for (slot, letter) in formula.letters.iter().enumerate() {
@@ -68,34 +72,23 @@ fn in_formula(study: &Study, formula: &Formula, reading: usize) -> Vec<Candidate
         if uses == 0 {
             continue;
         }
-        let scaled = [-1.0, 0.0, 2.0, 0.5].into_iter().filter(|_| uses > 1).map(Stand::Scaled);
-        let letters = (0..formula.letters.len()).filter(|&other| other != slot).map(Stand::Letter);
+        let scaled = [-1.0, 0.0, 2.0, 0.5].into_iter().filter(|_| uses > 1).map(Trial::Scaled);
+        let letters = (0..formula.letters.len()).filter(|&other| other != slot).map(Trial::Letter);
         let dots = pool.iter().enumerate().flat_map(|(index, one)| {
-            pool[index..].iter().flat_map(move |two| [1.0, -1.0].map(|sign| Stand::Dot(one, two, sign)))
+            pool[index..].iter().flat_map(move |two| [1.0, -1.0].map(|sign| Trial::Dot(one, two, sign)))
         });
-        for stand in scaled.chain(letters).chain(dots).chain([Stand::One]) {
+        for trial in scaled.chain(letters).chain(dots).chain([Trial::One]) {
             let counted = study.count(|case| {
                 let mut values = formula.values(&case.inputs);
-                values[slot] = stand.value(slot, &values, &case.inputs);
+                values[slot] = trial.value(slot, &values, &case.inputs);
                 formula.evaluate(&values)
             });
             let Some((reproduced, rescaled)) = counted else { continue };
-            let words = stand.words(letter, formula.letters);
-            let detail = match letter.meaning {
-                "" => format!("{words} stands for {}", letter.name),
-                meaning => format!("{}: {words} stands for {meaning}", letter.name),
-            };
-            let sentence = match stand {
-                Stand::Scaled(factor) if factor < 0.0 => "A dot product of the formula has the wrong sign",
-                Stand::Scaled(0.0) => "A quantity of the formula is zero",
-                Stand::Scaled(_) => "A quantity of the formula has a wrong factor",
-                _ => "Another quantity stands where a dot product of the formula belongs",
-            };
+            let stand = trial.told(formula.letters);
             found.push(Candidate {
-                key: if matches!(stand, Stand::Scaled(_)) { "letter-factor" } else { "letter" }.to_owned(),
-                sentence: sentence.to_owned(),
-                details: vec![detail],
-                cost: stand.cost() + if rescaled { 2.0 } else { 0.0 } + 0.1 * reading as f64,
+                guess: Guess::Quantity(trial.guess()),
+                details: vec![PolynomialDetail::StandsFor { reading, letter: letter.name, stand }],
+                cost: trial.cost() + if rescaled { 2.0 } else { 0.0 } + 0.1 * reading.number as f64,
                 reproduced,
                 general: false,
             });

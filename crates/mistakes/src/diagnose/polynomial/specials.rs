@@ -1,15 +1,15 @@
 //! Tries misunderstandings that have a formula of their own.
 use super::study::{Candidate, Study};
 use crate::assignments::t2m2::specials::{SPECIALS, Special};
+use crate::diagnose::{Guess, PolynomialDetail};
 
 /// Those that reproduce at least half of the wrong samples.
 pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
     let of = |special: &Special| {
         let (reproduced, scaled) = study.count(|case| (special.polynomial)(&case.inputs))?;
         Some(Candidate {
-            key: special.key.to_owned(),
-            sentence: special.sentence.to_owned(),
-            details: vec![special.detail.to_owned()],
+            guess: Guess::Special(special.key),
+            details: vec![PolynomialDetail::Special(special.key)],
             cost: if scaled { 3.5 } else { 2.5 },
             reproduced,
             general: true,

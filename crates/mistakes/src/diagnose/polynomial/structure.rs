@@ -4,6 +4,7 @@ use super::{
     study::{Candidate, Case, Study, median, ratio},
 };
 use crate::assignments::t2m2::{Subject, formulas::readings};
+use crate::diagnose::{Guess, ListGuess, PolynomialDetail};
 use fosssim_num::{
     bounded::Bounded,
     tolerances::{FAIR_UNITS, LEADING_COEFFICIENT},
@@ -25,49 +26,39 @@ pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
     found
 }
 
-fn general(key: &str, sentence: &str, detail: &str, cost: f64, reproduced: usize) -> Candidate {
-    let details = if detail.is_empty() { Vec::new() } else { vec![detail.to_owned()] };
-    Candidate { key: key.to_owned(), sentence: sentence.to_owned(), details, cost, reproduced, general: true }
+fn general(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reproduced: usize) -> Candidate {
+    let details = detail.into_iter().collect();
+    Candidate { guess: Guess::List(guess), details, cost, reproduced, general: true }
 }
 
 /// Properties that need no prediction.
 fn properties(study: &Study, found: &mut Vec<Candidate>) {
-    let mut check = |key, sentence, detail: &str, cost, holds: &dyn Fn(&Case) -> bool| {
+    let mut check = |guess, detail, cost, holds: &dyn Fn(&Case) -> bool| {
         if let Some(reproduced) = study.count_if(holds) {
-            found.push(general(key, sentence, detail, cost, reproduced));
+            found.push(general(guess, detail, cost, reproduced));
         }
     };
-    check("not-finite", "Coefficients are not finite numbers", "", 1.0, &|case| {
-        case.right || case.logged.iter().any(|value| !value.is_finite())
-    });
-    check("all-zero", "All coefficients are zero, or none is logged", "", 1.0, &|case| {
-        case.logged.iter().all(|&value| value == 0.0)
-    });
+    check(ListGuess::NotFinite, None, 1.0, &|case| case.right || case.logged.iter().any(|value| !value.is_finite()));
+    check(ListGuess::AllZero, None, 1.0, &|case| case.logged.iter().all(|&value| value == 0.0));
     if let Some(first) = study.probes().next().map(|case| case.logged)
         && let [value, ..] = *first
         && value != 0.0
     {
         if first.len() == 1 {
-            let detail = format!("the list holds {value} and nothing else, whatever moves");
-            let sentence = "A constant stands in the place of the polynomial";
-            check("constant", sentence, &detail, 1.5, &|case| case.logged == [value]);
+            let detail = PolynomialDetail::Holds(value);
+            check(ListGuess::Constant, Some(detail), 1.5, &|case| case.logged == [value]);
         }
-        let detail = format!("every coefficient is {value}");
-        check("all-equal", "All coefficients are the same constant", &detail, 1.2, &|case| {
+        check(ListGuess::AllEqual, Some(PolynomialDetail::Every(value)), 1.2, &|case| {
             case.logged.len() > 1 && case.logged.iter().all(|&other| other == value)
         });
     }
-    check("single-precision", "The coefficients have single precision only", "every value is a float", 2.0, &|case| {
-        is_single(case)
-    });
-    check("monic", "The polynomial is divided by its leading coefficient, whose sign gets lost", "", 1.5, &|case| {
+    check(ListGuess::SinglePrecision, Some(PolynomialDetail::SinglePrecision), 2.0, &|case| is_single(case));
+    check(ListGuess::Monic, None, 1.5, &|case| {
         let leading = case.logged.first() == Some(&1.0);
         let power = case.logged.len().saturating_sub(1);
         case.right || leading && matches(&case.expected, case.logged, 1.0 / expected_at(&case.expected, power).value)
     });
-    check("too-long", "The polynomial has too high a degree", "", 8.0, &|case| {
-        case.right || case.logged.len() > case.expected.len()
-    });
+    check(ListGuess::TooLong, None, 8.0, &|case| case.right || case.logged.len() > case.expected.len());
 }
 
 /// Whether everything logged is a float and close to what it should be.
@@ -105,18 +96,14 @@ fn predicted(study: &Study, mut candidate: Candidate, predict: impl Fn(&Case) ->
 
 /// The polynomial's own coefficients in another order or with another sign.
 fn rearrangements(study: &Study, found: &mut Vec<Candidate>) {
-    let mut check = |key, sentence, cost, change: &dyn Fn(&[Bounded]) -> Vec<Bounded>| {
-        let candidate = general(key, sentence, "", cost, 0);
+    let mut check = |guess, cost, change: &dyn Fn(&[Bounded]) -> Vec<Bounded>| {
+        let candidate = general(guess, None, cost, 0);
         found.extend(predicted(study, candidate, |case| change(&case.expected)));
     };
-    check("reversed", "The coefficients are in the wrong order, lowest power first", 1.0, &reversed);
-    check("negated", "The whole polynomial has the wrong sign", 1.0, &negated);
-    check("reversed-negated", "The coefficients are in the wrong order and have the wrong sign", 2.5, &|list| {
-        negated(&reversed(list))
-    });
-    check("trailing-zero", "A zero is appended, which raises the degree by one", 2.5, &|list| {
-        list.iter().copied().chain([Bounded::exact(0.0)]).collect()
-    });
+    check(ListGuess::Reversed, 1.0, &reversed);
+    check(ListGuess::Negated, 1.0, &negated);
+    check(ListGuess::ReversedNegated, 2.5, &|list| negated(&reversed(list)));
+    check(ListGuess::TrailingZero, 2.5, &|list| list.iter().copied().chain([Bounded::exact(0.0)]).collect());
 }
 
 /// Polynomials of the same detection in each other's places.
@@ -126,12 +113,10 @@ fn other_polynomials(study: &Study, found: &mut Vec<Candidate>) {
             continue;
         }
         let formula = &readings(other)[0];
-        let detail = format!("the {} polynomial stands where {} belongs", other.name(), study.subject.name());
-        let sentence = "Polynomials of a pair stand in each other's places";
-        let candidate = general("other-polynomial", sentence, &detail, 1.5, 0);
+        let detail = || Some(PolynomialDetail::InPlaceOf { stands: other, belongs: study.subject });
+        let candidate = general(ListGuess::OtherPolynomial, detail(), 1.5, 0);
         found.extend(predicted(study, candidate, |case| formula.polynomial(&case.inputs)));
-        let sentence = "A polynomial of the pair stands in another one's place, with the wrong sign";
-        let candidate = general("other-polynomial-negated", sentence, &detail, 3.0, 0);
+        let candidate = general(ListGuess::OtherPolynomialNegated, detail(), 3.0, 0);
         found.extend(predicted(study, candidate, |case| negated(&formula.polynomial(&case.inputs))));
     }
 }
@@ -139,21 +124,14 @@ fn other_polynomials(study: &Study, found: &mut Vec<Candidate>) {
 /// The polynomial's first or last coefficients only.
 fn cuts(study: &Study, found: &mut Vec<Candidate>) {
     for length in 1..=study.subject.degree() {
-        let detail = match length {
-            1 => "only the constant coefficient is there".to_owned(),
-            _ => format!("only the last {length} coefficients are there"),
-        };
-        let sentence = match length {
-            1 => "The polynomial is cut to its constant coefficient: it is looked at when the step begins only",
-            _ => "The polynomial is cut: leading coefficients are missing",
-        };
-        let candidate = general("cut", sentence, &detail, 2.0 + 0.01 * length as f64, 0);
+        let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
+        let detail = PolynomialDetail::LastOnly(length);
+        let candidate = general(guess, Some(detail), 2.0 + 0.01 * length as f64, 0);
         found.extend(predicted(study, candidate, |case| {
             let missing = case.expected.len() - length;
             case.expected[missing..].to_vec()
         }));
-        let detail = format!("only the first {length} coefficients are there");
-        let candidate = general("cut-end", "The polynomial is cut: its last coefficients are missing", &detail, 2.5, 0);
+        let candidate = general(ListGuess::CutEnd, Some(PolynomialDetail::FirstOnly(length)), 2.5, 0);
         found.extend(predicted(study, candidate, |case| case.expected[..length].to_vec()));
     }
 }
@@ -167,9 +145,8 @@ fn scaled_displacements(study: &Study) -> Option<Candidate> {
         return None;
     }
     let factor = Bounded { value: factor, bound: 16.0 * factor };
-    let detail = format!("every displacement is multiplied by {}", factor.value);
-    let sentence = "All displacements carry the same factor, as velocities or those of another time step do";
-    let candidate = general("displacement-scale", sentence, &detail, 3.0, 0);
+    let detail = PolynomialDetail::Displacements(factor.value);
+    let candidate = general(ListGuess::DisplacementScale, Some(detail), 3.0, 0);
     predicted(study, candidate, |case| {
         let mut power = Bounded::exact(1.0);
         let mut list = reversed(&case.expected);

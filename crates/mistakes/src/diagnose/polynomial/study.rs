@@ -4,9 +4,10 @@ use super::{
     sample::Sample,
 };
 use crate::assignments::t2m2::{
-    Inputs, Subject,
+    Inputs, Reading, Subject,
     formulas::{Formula, readings},
 };
+use crate::diagnose::{Guess, PolynomialDetail};
 use fosssim_num::{bounded::Bounded, tolerances::LEADING_COEFFICIENT};
 
 fosssim_model::drops_leading!();
@@ -54,12 +55,10 @@ pub(super) struct Study<'a> {
 /// A guess that reproduces samples.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
-    /// The explanation's key.
-    pub key: String,
-    /// Its sentence, without its full stop.
-    pub sentence: String,
+    /// What it says.
+    pub guess: Guess,
     /// Its exact form.
-    pub details: Vec<String>,
+    pub details: Vec<PolynomialDetail>,
     /// How unlikely it is: 1 to 3 for a change of the whole list, about 3 for one factor or sign, 4 for one wrong input, 5 and more
     /// for wrong letters and foreign terms; edits add up.
     pub cost: f64,
@@ -242,21 +241,22 @@ impl<'a> Study<'a> {
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }
 
-    /// In how many samples each coefficient differs, one line per coefficient that does.
-    pub fn differences(&self) -> Vec<String> {
+    /// In how many samples each coefficient differs, one line per coefficient that does, with this name of the polynomial.
+    pub fn differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
         let differs = |case: &&Case, power: usize| {
             !coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), case.scale)
         };
         let line = |power: usize| {
             let count = self.cases.iter().filter(|case| differs(case, power)).count();
-            (count > 0).then(|| format!("t^{power} differs in {count} of {} samples", self.cases.len()))
+            (count > 0).then_some(PolynomialDetail::Differs { subject, power, count, of: self.cases.len() })
         };
         (0..=self.subject.degree()).rev().filter_map(line).collect()
     }
 
     /// The ways to write this polynomial down.
-    pub fn formulas(&self) -> &'static [Formula] {
-        readings(self.subject)
+    pub fn formulas(&self) -> impl Iterator<Item = (Reading, &'static Formula)> + use<> {
+        let subject = self.subject;
+        readings(subject).iter().enumerate().map(move |(number, formula)| (Reading { subject, number }, formula))
     }
 }
 

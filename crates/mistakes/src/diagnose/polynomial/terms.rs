@@ -5,7 +5,8 @@ use super::{
     sparse::{Columns, Support},
     study::{Candidate, Case, Study, median, spread},
 };
-use crate::assignments::t2m2::formulas::Formula;
+use crate::assignments::t2m2::{Reading, formulas::Formula};
+use crate::diagnose::{self, CoefficientGuess, PolynomialDetail, Weight};
 use fosssim_num::bounded::Bounded;
 
 /// A fit looks at so many wrong samples, and half as many right ones.
@@ -49,10 +50,10 @@ struct Guess {
 
 /// What makes each coefficient wrong, where at least one wrong coefficient can be explained.
 pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
-    study.formulas().iter().enumerate().filter_map(|(index, formula)| candidate(study, formula, index)).collect()
+    study.formulas().filter_map(|(reading, formula)| candidate(study, formula, reading)).collect()
 }
 
-fn candidate(study: &Study, formula: &'static Formula, reading: usize) -> Option<Candidate> {
+fn candidate(study: &Study, formula: &'static Formula, reading: Reading) -> Option<Candidate> {
     let fitting = Fitting::new(study, formula);
     let mut guesses = Vec::new();
     for power in (0..=formula.degree).rev() {
@@ -74,12 +75,11 @@ fn candidate(study: &Study, formula: &'static Formula, reading: usize) -> Option
     let (right, wrong): (Vec<usize>, Vec<usize>) =
         (0..study.cases.len()).filter(|&index| holds(index)).partition(|&index| study.cases[index].right);
     let reproduced = right.len() + wrong.len();
-    let words = Words { dictionary: &fitting.dictionary, formula };
+    let telling = Telling { dictionary: &fitting.dictionary, formula, reading };
     Some(Candidate {
-        key: words.key(&guesses).to_owned(),
-        sentence: words.sentence(&guesses),
-        details: guesses.iter().flat_map(|guess| words.details(guess)).collect(),
-        cost: guesses.iter().map(|guess| guess.cost).sum::<f64>() + 0.1 * reading as f64,
+        guess: telling.guess(&guesses),
+        details: guesses.iter().flat_map(|guess| telling.details(guess)).collect(),
+        cost: guesses.iter().map(|guess| guess.cost).sum::<f64>() + 0.1 * reading.number as f64,
         reproduced,
         general: false,
     })
@@ -263,85 +263,62 @@ fn snapped(support: &Support) -> Option<Vec<(usize, f64)>> {
         .collect()
 }
 
-/// The coefficient of a power, in a word.
-const fn power_name(power: usize) -> &'static str {
-    match power {
-        0 => "constant",
-        1 => "linear",
-        2 => "quadratic",
-        3 => "cubic",
-        4 => "quartic",
-        _ => "quintic",
-    }
-}
-
-/// Guesses in words.
-struct Words<'a> {
+/// Guesses as what is told of them.
+struct Telling<'a> {
     dictionary: &'a Dictionary,
     formula: &'a Formula,
+    reading: Reading,
 }
 
-impl Words<'_> {
+impl Telling<'_> {
     fn weights(&self, power: usize, (product, change): (usize, f64)) -> (f64, f64) {
         let expected = self.dictionary.weight(self.formula, power, product);
         (expected, expected + change)
     }
 
-    /// The key of what is wrong, and a sentence about it, where `{}` stands for the coefficient.
-    fn kind(&self, guesses: &[Guess]) -> (&'static str, &'static str) {
-        let [Guess { power, edit, .. }] = guesses else {
-            return ("coefficients", "Several coefficients are wrong ({})");
-        };
+    fn guess(&self, guesses: &[Guess]) -> diagnose::Guess {
+        let powers = guesses.iter().map(|guess| guess.power).collect();
+        diagnose::Guess::Coefficients { powers, wrong: self.wrong(guesses) }
+    }
+
+    fn wrong(&self, guesses: &[Guess]) -> CoefficientGuess {
+        let [Guess { power, edit, .. }] = guesses else { return CoefficientGuess::Several };
         match edit {
-            Edit::Factor(factor) if factor.value == 0.0 => ("coefficient-zero", "The {} coefficient is zero"),
-            Edit::Factor(factor) if factor.value == -1.0 => {
-                ("coefficient-sign", "The {} coefficient has the wrong sign")
-            }
-            Edit::Factor(_) => ("coefficient-factor", "The {} coefficient has a wrong factor"),
-            Edit::Unknown => (super::UNEXPLAINED, "No simple mistake explains the {} coefficient"),
+            Edit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
+            Edit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
+            Edit::Factor(_) => CoefficientGuess::Factor,
+            // What nothing explains is no guess of its own (see `candidate`).
+            Edit::Unknown => CoefficientGuess::Several,
             Edit::Terms(changes) => match changes[..] {
                 [change] => match self.weights(*power, change) {
-                    (0.0, _) => ("term-foreign", "The {} coefficient contains a term that does not belong there"),
-                    (_, 0.0) => ("term-missing", "A term of the {} coefficient is missing"),
-                    (expected, actual) if expected == -actual => {
-                        ("term-sign", "A term of the {} coefficient has the wrong sign")
-                    }
-                    _ => ("term-factor", "A term of the {} coefficient has a wrong factor"),
+                    (0.0, _) => CoefficientGuess::TermForeign,
+                    (_, 0.0) => CoefficientGuess::TermMissing,
+                    (expected, actual) if expected == -actual => CoefficientGuess::TermSign,
+                    _ => CoefficientGuess::TermFactor,
                 },
-                _ => ("terms", "Several terms of the {} coefficient are wrong"),
+                _ => CoefficientGuess::Terms,
             },
         }
     }
 
-    fn key(&self, guesses: &[Guess]) -> &'static str {
-        self.kind(guesses).0
-    }
-
-    fn sentence(&self, guesses: &[Guess]) -> String {
-        let powers: Vec<&str> = guesses.iter().map(|guess| power_name(guess.power)).collect();
-        self.kind(guesses).1.replace("{}", &powers.join(", "))
-    }
-
-    fn details(&self, guess: &Guess) -> Vec<String> {
+    fn details(&self, guess: &Guess) -> Vec<PolynomialDetail> {
         let power = guess.power;
         let changes = match &guess.edit {
-            Edit::Factor(factor) if factor.value == 0.0 => return vec![format!("t^{power}: the coefficient is 0")],
-            Edit::Factor(factor) => return vec![format!("t^{power}: multiplied by {}, expected 1", factor.value)],
-            Edit::Unknown => return vec![format!("t^{power}: no simple change explains it")],
+            Edit::Factor(factor) => return vec![PolynomialDetail::Factor { power, factor: factor.value }],
+            Edit::Unknown => return vec![PolynomialDetail::Unknown { power }],
             Edit::Terms(changes) => changes,
         };
-        let mut lines: Vec<String> = changes.iter().map(|&change| self.line(power, change)).collect();
-        for alternative in &guess.alternatives {
-            let words: Vec<String> = alternative.iter().map(|&change| self.line(power, change)).collect();
-            lines.push(format!("can't be told apart here from {}", words.join("; ")));
-        }
-        lines
+        let weight = |change: &(usize, f64)| self.weight(power, *change);
+        let own = changes.iter().map(|change| PolynomialDetail::Weight(weight(change)));
+        let others = guess
+            .alternatives
+            .iter()
+            .map(|alternative| PolynomialDetail::Alternative(alternative.iter().map(weight).collect()));
+        own.chain(others).collect()
     }
 
-    fn line(&self, power: usize, change: (usize, f64)) -> String {
+    fn weight(&self, power: usize, change: (usize, f64)) -> Weight {
         let (expected, actual) = self.weights(power, change);
-        let meanings = self.dictionary.meanings(change.0);
-        let meanings = if meanings.is_empty() { String::new() } else { format!(" ({})", meanings.join(", ")) };
-        format!("t^{power}: {} has weight {actual}, expected {expected}{meanings}", self.dictionary.name(change.0))
+        Weight { reading: self.reading, power, letters: self.dictionary.names(change.0), expected, actual }
     }
 }

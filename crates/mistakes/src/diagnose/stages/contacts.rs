@@ -1,12 +1,10 @@
 //! What the impulse lists of `continuous-time` say: contacts too many or too few, their vectors and times. And the order in
 //! which pairs are looked at.
 use super::{
-    ALIKE, Explanation, ROUND_OFF, common_value, observation, same_polynomial, sentence,
+    ALIKE, Explanation, ROUND_OFF, common_value, observation, ratios, same_polynomial,
     story::{Facts, Hit},
-    times,
 };
-use crate::diagnose::about::StepStage;
-use crate::diagnose::known::same_impulse;
+use crate::diagnose::{StageDetail, StageFault, WrongDecisions, WrongVectors, known::same_impulse};
 use fosssim_model::{
     sim::{PairKind, Stage},
     trace::LoggedImpulse,
@@ -17,15 +15,8 @@ use fosssim_num::vector::{Vec2, length};
 pub(super) fn order(facts: &[Facts]) -> Option<Explanation> {
     let wrong: Vec<&Facts> = facts.iter().filter(|facts| facts.has_wrong_formula).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
-    (permuted > 0 && 2 * permuted > wrong.len()).then(|| {
-        observation(
-            StepStage::Detection,
-            Explanation::ORDER,
-            "Detection: The polynomials are right, but the pairs are looked at in another order.".to_owned(),
-            vec!["per particle: the particles behind it, the edges that it is no end of, the half-planes".to_owned()],
-            permuted,
-        )
-    })
+    (permuted > 0 && 2 * permuted > wrong.len())
+        .then(|| observation(StageFault::Order, vec![StageDetail::Order], permuted))
 }
 
 /// Whether nearly all pairs of the first pass are found as wholes, some of them out of their order. What a contact before
@@ -159,19 +150,14 @@ impl Contacts {
     }
 
     fn decisions(&self) -> Option<Explanation> {
-        let (key, listed, word) = match (self.missed.len(), self.superfluous.len()) {
+        let (wrong, listed) = match (self.missed.len(), self.superfluous.len()) {
             (0, 0) => return None,
-            (_, 0) => ("stage-contacts-missed", &self.missed, "contacts that its polynomials show are not counted"),
-            (0, _) => (
-                "stage-contacts-superfluous",
-                &self.superfluous,
-                "contacts are counted that its polynomials do not show",
-            ),
+            (_, 0) => (WrongDecisions::Missed, &self.missed),
+            (0, _) => (WrongDecisions::Superfluous, &self.superfluous),
             _ => {
                 let all: Vec<(PairKind, f64)> = self.missed.iter().chain(&self.superfluous).copied().collect();
-                let what =
-                    "the polynomials are right, the decisions are not: contacts are missed, others are superfluous";
-                return Some(said((StepStage::Detection, "detection"), "stage-decisions", &all, what, Vec::new()));
+                let fault = StageFault::Decisions { kind: only_kind(&all), wrong: WrongDecisions::Both };
+                return Some(observation(fault, Vec::new(), all.len()));
             }
         };
         let mut details = Vec::new();
@@ -182,13 +168,15 @@ impl Contacts {
             .filter(|(other, _)| kind.is_none_or(|kind| kind == *other))
             .map(|(_, time)| *time)
             .collect();
-        let (low, high) = range(listed.iter().map(|(_, time)| *time));
-        details.push(format!("times of impact of these ({}): {low:.4} to {high:.4}", listed.len()));
+        let impacts = |right: bool, times: &[f64]| {
+            let (low, high) = range(times.iter().copied());
+            StageDetail::Impacts { right, count: times.len(), low, high }
+        };
+        details.push(impacts(false, &listed.iter().map(|(_, time)| *time).collect::<Vec<_>>()));
         if !rivals.is_empty() {
-            let (low, high) = range(rivals.iter().copied());
-            details.push(format!("of those that are right ({}): {low:.4} to {high:.4}", rivals.len()));
+            details.push(impacts(true, &rivals));
         }
-        Some(said((StepStage::Detection, "detection"), key, listed, word, details))
+        Some(observation(StageFault::Decisions { kind, wrong }, details, listed.len()))
     }
 
     fn vectors(&self) -> Option<Explanation> {
@@ -196,7 +184,7 @@ impl Contacts {
             return None;
         }
         let listed: Vec<(PairKind, f64)> = self.vectors.iter().map(|(kind, ..)| (*kind, 0.0)).collect();
-        let ratios: Vec<f64> = self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
+        let along: Vec<f64> = self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
         let off = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
             let along = theirs.dot(ours) / ours.dot(ours) * *ours;
             length(*theirs - along) > ALIKE * length(*theirs)
@@ -204,37 +192,33 @@ impl Contacts {
         let right_angle = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
             theirs.dot(ours).abs() <= ALIKE * length(*ours) * length(*theirs)
         };
-        let what = if self.vectors.iter().all(right_angle) {
-            "it is perpendicular to what it should be"
+        let wrong = if self.vectors.iter().all(right_angle) {
+            WrongVectors::Perpendicular
         } else if self.vectors.iter().any(off) {
-            "it has the wrong direction"
-        } else if ratios.iter().all(|&ratio| (ratio + 1.0).abs() <= ALIKE) {
-            "it points the other way round"
+            WrongVectors::Direction
+        } else if along.iter().all(|&ratio| (ratio + 1.0).abs() <= ALIKE) {
+            WrongVectors::Reversed
         } else {
-            "it has the right direction, but not the right length"
+            WrongVectors::Length
         };
-        let details = vec![format!("{} as long along the right one", times(&ratios))];
-        Some(said((StepStage::ContactVectors, "contact vector"), "stage-contact-vectors", &listed, what, details))
+        let fault = StageFault::ContactVectors { kind: only_kind(&listed), wrong };
+        Some(observation(fault, vec![StageDetail::Vectors(ratios(&along))], listed.len()))
     }
 
     fn times(&self) -> Option<Explanation> {
         if self.times.is_empty() {
             return None;
         }
-        let ratios: Vec<f64> =
+        let shares: Vec<f64> =
             self.times.iter().filter(|(ours, _)| *ours > 0.0).map(|(ours, theirs)| theirs / ours).collect();
         let offsets: Vec<f64> = self.times.iter().map(|(ours, theirs)| theirs - ours).collect();
         let mut details = Vec::new();
-        if !ratios.is_empty() {
-            details.push(format!("{} what they should be", times(&ratios)));
+        if !shares.is_empty() {
+            details.push(StageDetail::Times(ratios(&shares)));
         }
-        if let Some(offset) = common_value(&offsets) {
-            details.push(format!("off by {offset:.6}"));
-        }
-        details
-            .push("the time of impact goes into contact vector and response as the root finder returns it".to_owned());
-        let what = "Detection: The contacts are right, but not their times of impact.".to_owned();
-        Some(observation(StepStage::Detection, "stage-contact-times", what, details, self.times.len()))
+        details.extend(common_value(&offsets).map(StageDetail::TimesOff));
+        details.push(StageDetail::TimesUsed);
+        Some(observation(StageFault::ContactTimes, details, self.times.len()))
     }
 }
 
@@ -246,18 +230,4 @@ fn only_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
 
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
-}
-
-fn said(
-    (of, stage): (StepStage, &str),
-    key: &str,
-    listed: &[(PairKind, f64)],
-    what: &str,
-    details: Vec<String>,
-) -> Explanation {
-    let place = match only_kind(listed) {
-        Some(kind) => format!("{} {stage}", sentence(kind.name())),
-        None => sentence(stage),
-    };
-    observation(of, key, format!("{place}: {}.", sentence(what)), details, listed.len())
 }

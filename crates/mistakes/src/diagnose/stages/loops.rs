@@ -1,11 +1,6 @@
 //! The impulse rounds of `hybrid`: how many there are, and what they hand over.
-use super::{
-    ALIKE, Explanation, observation,
-    responses::{self, Responses},
-    story::Facts,
-};
-use crate::diagnose::about::StepStage;
-use crate::diagnose::known::ROUND_OFF;
+use super::{ALIKE, Explanation, observation, responses::Responses, story::Facts};
+use crate::diagnose::{LoopEnd, Quantity, StageDetail, StageFault, WrongNumber, known::ROUND_OFF};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::Stage,
@@ -46,25 +41,19 @@ fn rounds(wrong: &[&Facts], max_iterations: i32) -> Option<Explanation> {
     if seen.is_empty() || 2 * seen.len() < wrong.len() {
         return None;
     }
-    let word = match (sort(Ordering::Less), sort(Ordering::Greater)) {
-        (_, 0) => "fewer rounds than it should",
-        (0, _) => "more rounds than it should",
-        _ => "another number of rounds than it should",
+    let number = match (sort(Ordering::Less), sort(Ordering::Greater)) {
+        (_, 0) => WrongNumber::Fewer,
+        (0, _) => WrongNumber::More,
+        _ => WrongNumber::Other,
     };
-    let mut details: Vec<String> = Vec::new();
-    for (ours, theirs) in &seen {
-        let line = format!("{theirs} detection passes where {ours} belong, with maxiters {max_iterations}");
+    let mut details: Vec<StageDetail> = Vec::new();
+    for &(expected, actual) in &seen {
+        let line = StageDetail::Passes { expected, actual, most: max_iterations };
         if !details.contains(&line) && details.len() < 3 {
             details.push(line);
         }
     }
-    Some(observation(
-        StepStage::Responses,
-        "stage-rounds",
-        format!("Impulse loop: It makes {word}."),
-        details,
-        seen.len(),
-    ))
+    Some(observation(StageFault::Rounds(number), details, seen.len()))
 }
 
 /// Steps whose polynomials are all right, but not the state behind the loop.
@@ -89,18 +78,17 @@ fn handed_over(wrong: &[&Facts]) -> Option<Explanation> {
     if count == 0 || 2 * count < wrong.len() {
         return None;
     }
-    let what = match (positions, velocities) {
-        (true, false) => "positions",
-        (false, true) => "velocities",
-        _ => "positions and velocities",
+    let quantity = match (positions, velocities) {
+        (true, false) => Some(Quantity::Position),
+        (false, true) => Some(Quantity::Velocity),
+        _ => None,
     };
     let when = match (ran_out, ended) {
-        (_, 0) => " when its rounds run out",
-        (0, _) => " when nothing collides any more",
-        _ => "",
+        (_, 0) => Some(LoopEnd::RanOut),
+        (0, _) => Some(LoopEnd::Settled),
+        _ => None,
     };
-    let what = format!("Impulse loop: Its rounds are right, but not the {what} that it hands over{when}.");
-    Some(observation(StepStage::Responses, "stage-handed-over", what, Vec::new(), count))
+    Some(observation(StageFault::HandedOver { quantity, when }, Vec::new(), count))
 }
 
 /// Steps whose later rounds are wrong though their first one is right.
@@ -110,13 +98,6 @@ fn later(wrong: &[&Facts], responses: &Responses) -> Option<Explanation> {
         return None;
     }
     let is_right = |facts: &&Facts| facts.hits.iter().all(|hit| responses.is_right(hit.pair.kind));
-    Some(if wrong.iter().any(is_right) {
-        let what = "Impulse loop: Its first round detects what it should, and isolated contacts are resolved as they should \
-                    be, but not all contacts of a round.";
-        observation(StepStage::Responses, "stage-loop", what.to_owned(), Vec::new(), wrong.len())
-    } else {
-        let what = "Collision response or impulse loop: The first round detects what it should, but what its contacts change \
-                    is not right.";
-        observation(StepStage::Responses, responses::KEY, what.to_owned(), Vec::new(), wrong.len())
-    })
+    let fault = if wrong.iter().any(is_right) { StageFault::LaterRounds } else { StageFault::FirstRound };
+    Some(observation(fault, Vec::new(), wrong.len()))
 }

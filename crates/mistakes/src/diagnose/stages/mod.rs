@@ -12,8 +12,9 @@ mod rigid;
 mod story;
 
 use super::{
-    Explanation,
-    about::{About, StepStage},
+    Detail, Explanation, Ratios, StageDetail,
+    about::About,
+    fault::StageFault,
     known::{ROUND_OFF, Sample, first_difference, same_polynomial},
 };
 use fosssim_model::scene::{Collision, Scene};
@@ -62,12 +63,11 @@ pub(super) fn explain<'a>(scene: &Scene, samples: impl Iterator<Item = &'a Sampl
 }
 
 /// An observation, which reproduces nothing.
-fn observation(stage: StepStage, key: &str, what: String, details: Vec<String>, samples: usize) -> Explanation {
+fn observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> Explanation {
     Explanation {
-        key: key.to_owned(),
-        about: About::Stage(stage),
-        what,
-        details,
+        key: fault.key().to_owned(),
+        about: About::Stage(fault),
+        details: details.into_iter().map(Detail::Stage).collect(),
         reproduced: 0,
         samples: samples as u64,
         example: None,
@@ -84,23 +84,9 @@ fn common_value(values: &[f64]) -> Option<f64> {
     (middle.is_finite() && values.iter().all(is_alike)).then_some(middle)
 }
 
-/// Ratios in words: "1.5 times" where they agree, else their range.
-fn times(ratios: &[f64]) -> String {
-    let short = |value: f64| {
-        let text = format!("{value:.4}");
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    };
-    if let Some(ratio) = common_value(ratios) {
-        return format!("{} times", short(ratio));
-    }
+/// The one on which they agree, else their range.
+fn ratios(values: &[f64]) -> Ratios {
     let (low, high) =
-        ratios.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &r| (low.min(r), high.max(r)));
-    format!("{} to {} times", short(low), short(high))
-}
-
-/// The first letter in upper case.
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-    first + letters.as_str()
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &r| (low.min(r), high.max(r)));
+    common_value(values).map_or(Ratios::Between(low, high), Ratios::All)
 }

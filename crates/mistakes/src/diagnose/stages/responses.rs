@@ -1,11 +1,12 @@
 //! What isolated contacts change, body by body.
 use super::{
-    ALIKE, Explanation, common_value, observation, sentence,
+    ALIKE, Explanation, common_value, observation, ratios,
     story::{Facts, Hit},
-    times,
 };
-use crate::diagnose::about::StepStage;
-use crate::diagnose::known::{ROUND_OFF, same_impulse};
+use crate::diagnose::{
+    Amount, Changed, Quantity, StageDetail, StageFault, WrongResponses,
+    known::{ROUND_OFF, same_impulse},
+};
 use fosssim_model::{
     scene::Scene,
     sim::{PairKind, Stage, State},
@@ -13,14 +14,8 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, unit};
 use std::collections::BTreeMap;
 
-/// The key of what is said of responses.
-pub(super) const KEY: &str = "stage-response";
-
 /// Changes below this are round-off (relative to the size of the numbers, and 1).
 const SMALL: f64 = 1e-11;
-
-/// Whose what: kind of pair, body, and whether it is the velocity.
-type Place = (PairKind, usize, bool);
 
 /// What a contact changed.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +29,7 @@ struct Change {
 
 /// What isolated contacts changed, whose bodies have no other contact in the step.
 pub(super) struct Responses {
-    changes: BTreeMap<Place, Vec<Change>>,
+    changes: BTreeMap<Changed, Vec<Change>>,
     contacts: usize,
     /// Contacts of impulse rounds that changed nothing: nobody knows whether they were found.
     unresolved: usize,
@@ -45,12 +40,12 @@ impl Responses {
         let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0 };
         for facts in facts {
             for (hit, expected, actual) in isolated(scene, facts) {
-                let mut changes: Vec<(Place, Change)> = Vec::new();
-                for (role, particle) in bodies(scene, hit).into_iter().enumerate() {
-                    for is_velocity in [false, true] {
+                let mut changes: Vec<(Changed, Change)> = Vec::new();
+                for (body, particle) in bodies(scene, hit).into_iter().enumerate() {
+                    for quantity in [Quantity::Position, Quantity::Velocity] {
                         let states = [&facts.prediction, expected, actual];
-                        let change = change(particle, is_velocity, states, unit(hit.normal));
-                        changes.push(((hit.pair.kind, role, is_velocity), change));
+                        let change = change(particle, quantity, states, unit(hit.normal));
+                        changes.push((Changed { kind: hit.pair.kind, body, quantity }, change));
                     }
                 }
                 let is_nothing = |change: &Change| !change.across && change.ratio.is_none_or(|ratio| ratio == 0.0);
@@ -70,14 +65,14 @@ impl Responses {
 
     /// Whether an isolated contact of this kind was seen, all of which are right.
     pub(super) fn is_right(&self, kind: PairKind) -> bool {
-        let of_kind = || self.changes.iter().filter(|((other, ..), _)| *other == kind);
+        let of_kind = || self.changes.iter().filter(|(changed, _)| changed.kind == kind);
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
     }
 
     /// What is wrong with responses; nothing when those that can be seen are right.
     pub(super) fn explain(&self, facts: &[Facts]) -> Option<Explanation> {
         let changes = &self.changes;
-        let wrong: BTreeMap<Place, Vec<Change>> = changes
+        let wrong: BTreeMap<Changed, Vec<Change>> = changes
             .iter()
             .map(|(place, all)| (*place, all.iter().filter(|change| !change.is_right).copied().collect::<Vec<_>>()))
             .filter(|(_, wrong)| !wrong.is_empty())
@@ -85,35 +80,29 @@ impl Responses {
         if wrong.is_empty() {
             return of_many(facts).or_else(|| self.unresolved());
         }
-        let kinds: Vec<PairKind> = distinct(wrong.keys().map(|(kind, ..)| *kind));
-        let place = match kinds[..] {
-            [kind] if changes.keys().any(|(other, ..)| *other != kind) => format!("{} response", sentence(kind.name())),
-            _ => "Collision response".to_owned(),
+        let mut kinds: Vec<PairKind> = wrong.keys().map(|changed| changed.kind).collect();
+        kinds.dedup();
+        let kind = match kinds[..] {
+            [kind] if changes.keys().any(|other| other.kind != kind) => Some(kind),
+            _ => None,
         };
+        let whose = || wrong.keys().copied().collect();
         let what = if wrong.values().flatten().all(|change| !change.across && change.ratio == Some(0.0)) {
-            let all = wrong.len() == changes.keys().filter(|(kind, ..)| kinds.contains(kind)).count();
-            if all { "contacts change nothing".to_owned() } else { unchanged(&wrong) }
+            let all = wrong.len() == changes.keys().filter(|changed| kinds.contains(&changed.kind)).count();
+            if all { WrongResponses::Nothing } else { WrongResponses::Unchanged(whose()) }
         } else if wrong.values().flatten().any(|change| change.across) {
-            format!("{} also across the contact vector", subject(&wrong, "change"))
+            WrongResponses::Across(whose())
         } else {
-            format!("{} along the contact vector, but not by the right amount", subject(&wrong, "change"))
+            WrongResponses::Amount(whose())
         };
-        let details = wrong.iter().map(|(place, wrong)| detail(*place, wrong, changes[place].len())).collect();
-        Some(observation(StepStage::Responses, KEY, format!("{place}: {}.", sentence(&what)), details, self.contacts))
+        let details = wrong.iter().map(|(changed, wrong)| detail(*changed, wrong, changes[changed].len())).collect();
+        Some(observation(StageFault::Responses { kind, wrong: what }, details, self.contacts))
     }
-}
 
-impl Responses {
     /// Contacts of impulse rounds that are not resolved.
     fn unresolved(&self) -> Option<Explanation> {
-        let what = match (self.unresolved, self.contacts) {
-            (0, _) => return None,
-            (_, 0) => {
-                "Collision response or impulse loop: Contacts that the first round's polynomials show change nothing."
-            }
-            _ => "Impulse loop: Some contacts that the first round's polynomials show change nothing.",
-        };
-        Some(observation(StepStage::Responses, "stage-unresolved", what.to_owned(), Vec::new(), self.unresolved))
+        let fault = StageFault::Unresolved { all: self.contacts == 0 };
+        (self.unresolved > 0).then(|| observation(fault, Vec::new(), self.unresolved))
     }
 }
 
@@ -162,8 +151,7 @@ fn of_many(facts: &[Facts]) -> Option<Explanation> {
             && ours.iter().zip(theirs).all(|(ours, theirs)| same_impulse(ours, theirs, &ROUND_OFF))
     };
     let count = facts.iter().filter(is_right).count();
-    let what = "Collision response: The contacts are right, but not the state that they lead to.";
-    (count > 0).then(|| observation(StepStage::Responses, KEY, what.to_owned(), Vec::new(), count))
+    (count > 0).then(|| observation(StageFault::ManyContacts, Vec::new(), count))
 }
 
 /// The bodies of a pair, in the order of the assignment.
@@ -176,9 +164,11 @@ fn bodies(scene: &Scene, hit: &Hit) -> Vec<usize> {
     }
 }
 
-fn change(particle: usize, is_velocity: bool, states: [&State; 3], u: Vec2) -> Change {
-    let array = |state: &State| at(if is_velocity { &state.velocities } else { &state.positions }, particle);
-    let [before, expected, actual] = states.map(array);
+fn change(particle: usize, quantity: Quantity, states: [&State; 3], u: Vec2) -> Change {
+    let [before, expected, actual] = states.map(|state: &State| match quantity {
+        Quantity::Position => at(&state.positions, particle),
+        Quantity::Velocity => at(&state.velocities, particle),
+    });
     let (ours, theirs) = (expected - before, actual - before);
     let small = SMALL * (1.0 + length(before) + length(expected));
     let along = theirs.dot(&u);
@@ -192,62 +182,13 @@ fn change(particle: usize, is_velocity: bool, states: [&State; 3], u: Vec2) -> C
     }
 }
 
-/// The body in words.
-fn body((kind, role, _): Place) -> &'static str {
-    match (kind, role) {
-        (PairKind::ParticleParticle, 0) => "the first particle",
-        (PairKind::ParticleParticle, _) => "the second particle",
-        (PairKind::ParticleEdge, 1) => "the first endpoint",
-        (PairKind::ParticleEdge, 2) => "the second endpoint",
-        _ => "the particle",
-    }
-}
-
-fn quantity((.., is_velocity): Place) -> &'static str {
-    if is_velocity { "velocity" } else { "position" }
-}
-
-/// Who changes wrongly, in words.
-fn subject(wrong: &BTreeMap<Place, Vec<Change>>, verb: &str) -> String {
-    let quantities = distinct(wrong.keys().map(|place| quantity(*place)));
-    let bodies = distinct(wrong.keys().map(|place| body(*place)));
-    let what = match quantities[..] {
-        [one] => one.to_owned(),
-        _ => "position and velocity".to_owned(),
+fn detail(changed: Changed, wrong: &[Change], of: usize) -> StageDetail {
+    let along: Vec<f64> = wrong.iter().filter_map(|change| change.ratio).collect();
+    let amount = match common_value(&along) {
+        _ if along.is_empty() => Amount::Unwanted,
+        Some(ratio) if ratio == 1.0 || (ratio - 1.0).abs() <= ALIKE => Amount::Right,
+        _ => Amount::Ratio(ratios(&along)),
     };
-    match bodies[..] {
-        [one] if quantities.len() == 1 => format!("the {what} of {one} {verb}s"),
-        [one] => format!("{what} of {one} {verb}"),
-        _ if quantities.len() == 1 => format!("{} {verb}", if what == "velocity" { "velocities" } else { "positions" }),
-        _ => format!("positions and velocities {verb}"),
-    }
-}
-
-fn unchanged(wrong: &BTreeMap<Place, Vec<Change>>) -> String {
-    let list: Vec<String> = wrong.keys().map(|place| format!("the {} of {}", quantity(*place), body(*place))).collect();
-    format!("unchanged by contacts: {}", list.join(", "))
-}
-
-fn detail(place: Place, wrong: &[Change], all: usize) -> String {
-    let ratios: Vec<f64> = wrong.iter().filter_map(|change| change.ratio).collect();
-    let amount = match common_value(&ratios) {
-        _ if ratios.is_empty() => "though it should not".to_owned(),
-        Some(ratio) if ratio == 1.0 || (ratio - 1.0).abs() <= ALIKE => {
-            "as it should along the contact vector".to_owned()
-        }
-        _ => format!("by {} what it should", times(&ratios)),
-    };
-    let across = if wrong.iter().any(|change| change.across) { ", and across the contact vector, too" } else { "" };
-    let where_ = format!("{}: the {} of {}", sentence(place.0.name()), quantity(place), body(place));
-    format!("{where_} changes {amount}{across} (in {} of {all} isolated contacts)", wrong.len())
-}
-
-fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
-    let mut list = Vec::new();
-    for value in values {
-        if !list.contains(&value) {
-            list.push(value);
-        }
-    }
-    list
+    let across = wrong.iter().any(|change| change.across);
+    StageDetail::Change { changed, amount, across, wrong: wrong.len(), of }
 }

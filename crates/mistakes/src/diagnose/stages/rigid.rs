@@ -1,10 +1,9 @@
 //! Impact zones and the rigid failsafe: steps whose first part is right, zone by zone.
 use super::{
-    ALIKE, Explanation, common_value, observation, sentence,
+    ALIKE, Explanation, common_value, observation, ratios,
     story::{Facts, ZoneFacts},
-    times,
 };
-use crate::diagnose::about::StepStage;
+use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongZoneRounds, WrongZones};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::State,
@@ -54,22 +53,15 @@ fn rounds(wrong: &[&Facts], is_right_at_first: bool) -> Option<Explanation> {
         }
     }
     if !is_right_at_first && later > 0 {
-        let what = "Impact zones or rigid failsafe: The impulse rounds are right, what follows them is not.";
-        return Some(observation(StepStage::Zones, "stage-zones", what.to_owned(), Vec::new(), wrong.len()));
+        return Some(observation(StageFault::AfterRounds, Vec::new(), wrong.len()));
     }
-    let what = match (fewer, more, later) {
-        (0, 0, _) => "zones are right in the first round, but not as they grow",
-        (_, 0, 0) => "the zones make fewer rounds than they should",
-        (0, _, 0) => "the zones make more rounds than they should",
-        _ => "the zones are right at first, but not in later rounds, or there are not as many as there should be",
+    let rounds = match (fewer, more, later) {
+        (0, 0, _) => WrongZoneRounds::Growth,
+        (_, 0, 0) => WrongZoneRounds::Fewer,
+        (0, _, 0) => WrongZoneRounds::More,
+        _ => WrongZoneRounds::Later,
     };
-    Some(observation(
-        StepStage::Zones,
-        "stage-zone-rounds",
-        format!("Impact zones: {}.", sentence(what)),
-        Vec::new(),
-        wrong.len(),
-    ))
+    Some(observation(StageFault::ZoneRounds(rounds), Vec::new(), wrong.len()))
 }
 
 /// What became of zones that were moved once.
@@ -195,60 +187,59 @@ impl Moved {
         if self.zones == 0 {
             return None;
         }
-        let is_one = |ratios: &[f64]| ratios.iter().all(|ratio| (ratio - 1.0).abs() <= ALIKE);
-        let told = |key: &str, place: &str, what: &str, details: Vec<String>| {
-            Some(observation(StepStage::Zones, key, format!("{place}: {}.", sentence(what)), details, self.zones))
-        };
+        let told = |fault: StageFault, details: Vec<StageDetail>| Some(observation(fault, details, self.zones));
+        let of_zones = |wrong: WrongZones| told(StageFault::Zones(wrong), Vec::new());
         if self.partly > 0 {
-            return told("stage-zones", "Impact zones", "some of a zone's particles are not moved with it", Vec::new());
+            return of_zones(WrongZones::Partly);
         }
         if self.unmoved > 0 {
-            return told("stage-zones", "Impact zones", "zones are not moved that should be", Vec::new());
+            return of_zones(WrongZones::Unmoved);
         }
         if self.stops > 0 {
-            return told("stage-stop", "Impact zones", "zones stop in which nothing is fixed", Vec::new());
+            return of_zones(WrongZones::Stop);
         }
         if self.kept_positions > 0 {
-            let what = "zones that have to stop do not go back to their start";
-            return told("stage-stop", "Rigid failsafe", what, Vec::new());
+            return of_zones(WrongZones::KeepPositions);
         }
         if !self.stopped.is_empty() {
-            let details = if self.has_stopped_otherwise {
-                Vec::new()
-            } else {
-                vec![format!("{} their velocity before", times(&self.stopped))]
-            };
-            return told("stage-stop", "Rigid failsafe", "zones that have to stop do not lose their velocity", details);
+            let stopped = (!self.has_stopped_otherwise).then(|| StageDetail::Stopped(ratios(&self.stopped)));
+            return told(StageFault::Zones(WrongZones::KeepVelocities), stopped.into_iter().collect());
         }
-        let mut details = Vec::new();
-        let mut wrong = Vec::new();
+        let (wrong, details) = self.motion();
+        // A zone of other particles moves otherwise in every respect.
+        let is_simple =
+            self.bent > 0 || is_one(&self.turns) || (!self.has_side_shift && common_value(&self.shifts).is_some());
+        told(StageFault::Motion { wrong, or_zones: !is_simple }, details)
+    }
+
+    /// What is wrong with the motion of zones that need not stop.
+    fn motion(&self) -> (Vec<WrongMotion>, Vec<StageDetail>) {
+        let (mut wrong, mut details) = (Vec::new(), Vec::new());
         if self.has_side_shift || !is_one(&self.shifts) {
-            wrong.push("their centre of mass does not move as it should");
+            wrong.push(WrongMotion::Centre);
             details.push(match common_value(&self.shifts) {
-                Some(_) if !self.has_side_shift => format!("it moves {} as far", times(&self.shifts)),
-                _ => "its direction is wrong, too".to_owned(),
+                Some(_) if !self.has_side_shift => StageDetail::CentreMoves(ratios(&self.shifts)),
+                _ => StageDetail::CentreDirection,
             });
         }
         if self.bent > 0 {
-            wrong.push("the particles of a zone do not keep their distances");
+            wrong.push(WrongMotion::Distances);
         } else if !is_one(&self.turns) {
-            wrong.push("they do not turn as far as they should");
-            details.push(format!("they turn {} as far", times(&self.turns)));
+            wrong.push(WrongMotion::Turn);
+            details.push(StageDetail::Turns(ratios(&self.turns)));
         }
         if self.has_other_velocity {
-            wrong.push("their velocities are not those of the motion from start to end");
+            wrong.push(WrongMotion::Velocities);
         } else if !is_one(&self.velocities) {
-            wrong.push("their velocities are not those of the motion from start to end, though along it");
-            details.push(format!("{} the motion over the step size", times(&self.velocities)));
+            wrong.push(WrongMotion::Speeds);
+            details.push(StageDetail::Velocities(ratios(&self.velocities)));
         }
-        // A zone of other particles moves otherwise in every respect.
-        let is_simple = self.bent > 0
-            || self.turns.iter().all(|turn| (turn - 1.0).abs() <= ALIKE)
-            || (!self.has_side_shift && common_value(&self.shifts).is_some());
-        let place = if is_simple { "Rigid failsafe" } else { "Impact zones or rigid failsafe" };
-        let what = if wrong.is_empty() { "zones do not move as they should".to_owned() } else { wrong.join("; ") };
-        told("stage-failsafe", place, &what, details)
+        (wrong, details)
     }
+}
+
+fn is_one(ratios: &[f64]) -> bool {
+    ratios.iter().all(|ratio| (ratio - 1.0).abs() <= ALIKE)
 }
 
 fn near(one: Vec2, two: Vec2) -> bool {

@@ -29,7 +29,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
             let _ = writeln!(text, "{}", style.paint(Look::Strong, heading));
         }
         let share = format!("(explains {explained} of {})", counted(wrong, "wrong scene"));
-        let _ = writeln!(text, "  - {} {share}", plain(&mistake.what));
+        let _ = writeln!(text, "  - {} {share}", plain(&words::explanation::what(mistake)));
     }
     if grade.unfit().is_some() {
         return text;

@@ -2,7 +2,8 @@
 mod catalogue;
 
 use super::*;
-use crate::assignments::t2m2::{Inputs, formulas};
+use crate::assignments::t2m2::{Input, Inputs, Reading, formulas};
+use crate::diagnose::{CoefficientGuess, ExamplePlace, Stand, Weight};
 use fosssim_model::sim::Pair;
 use fosssim_num::{polynomial::trim, vector::Vec2};
 
@@ -160,15 +161,45 @@ fn right_lists(motion: &Motion) -> Lists {
     }
 }
 
-/// The only explanation of what this student does; it has to reproduce everything and say `key` and `detail`.
-fn only(kind: PairKind, key: &str, detail: &str, student: impl Fn(&Motion) -> Lists) -> Explanation {
+/// The only explanation of what this student does; it has to reproduce everything and to have this key and such a detail.
+fn only(
+    kind: PairKind,
+    key: &str,
+    is_told: impl Fn(&PolynomialDetail) -> bool,
+    student: impl Fn(&Motion) -> Lists,
+) -> Explanation {
     let found = explain(&samples(kind, 300, student));
-    let [one] = &found[..] else { panic!("{key}, {detail}: {found:#?}") };
-    assert_eq!(one.key, key, "{detail}: {one:#?}");
+    let [one] = &found[..] else { panic!("{key}: {found:#?}") };
+    assert_eq!(one.key, key, "{one:#?}");
     assert_eq!(one.reproduced, one.samples, "{one:#?}");
-    assert!(one.details.iter().any(|line| line.contains(detail)), "{detail}: {one:#?}");
+    assert!(has(one, is_told), "{key}: {one:#?}");
     assert!(one.example.is_some());
     one.clone()
+}
+
+/// Whether a line of its exact form is such a one.
+fn has(one: &Explanation, is_told: impl Fn(&PolynomialDetail) -> bool) -> bool {
+    one.details.iter().any(|detail| matches!(detail, Detail::Polynomial(detail) if is_told(detail)))
+}
+
+/// That the product of these letters has another weight in the coefficient of this power.
+fn weight(power: usize, letters: &str, actual: f64, expected: f64) -> impl Fn(&PolynomialDetail) -> bool {
+    move |detail| {
+        let PolynomialDetail::Weight(weight) = detail else { return false };
+        let told = Weight { power, actual, expected, ..weight.clone() };
+        *weight == told && weight.letters.join(" ") == letters
+    }
+}
+
+/// That something stands for this letter of the assignment's formula.
+fn stands(subject: Subject, letter: &'static str, stand: Stand) -> impl Fn(&PolynomialDetail) -> bool {
+    let reading = Reading { subject, number: 0 };
+    move |detail| *detail == PolynomialDetail::StandsFor { reading, letter, stand: stand.clone() }
+}
+
+/// Exactly this.
+fn is(told: PolynomialDetail) -> impl Fn(&PolynomialDetail) -> bool {
+    move |detail| *detail == told
 }
 
 #[test]
@@ -226,24 +257,24 @@ fn the_tables_are_the_formulas_of_the_fair_rules() {
 #[test]
 fn one_wrong_term_of_the_quartic_is_named() {
     type Change = fn(&Letters) -> f64;
-    let changes: [(usize, &str, &str, Change); 14] = [
-        (4, "term-missing", "t^4: f i has weight 0, expected -1", |l| l.f * l.i),
-        (4, "term-sign", "t^4: f i has weight 1, expected -1", |l| 2.0 * l.f * l.i),
-        (3, "term-factor", "t^3: b c has weight 1, expected 2", |l| -l.b * l.c),
-        (3, "term-factor", "t^3: e i has weight -1, expected -2", |l| l.e * l.i),
-        (3, "term-sign", "t^3: f h has weight 2, expected -2", |l| 4.0 * l.f * l.h),
-        (2, "term-missing", "t^2: e h has weight 0, expected -4", |l| 4.0 * l.e * l.h),
-        (2, "term-factor", "t^2: e h has weight -2, expected -4", |l| 2.0 * l.e * l.h),
-        (2, "term-missing", "t^2: b b has weight 0, expected 1", |l| -l.b * l.b),
-        (2, "term-factor", "t^2: a c has weight 1, expected 2", |l| -l.c * l.a),
-        (2, "term-factor", "t^2: i R^2 has weight 2, expected 1", |l| l.s * l.i),
-        (1, "term-missing", "t^1: d h has weight 0, expected -2", |l| 2.0 * l.d * l.h),
-        (1, "term-factor", "t^1: h R^2 has weight 1, expected 2", |l| -l.s * l.h),
-        (0, "term-sign", "t^0: a a has weight -1, expected 1", |l| -2.0 * l.a * l.a),
-        (0, "term-foreign", "t^0: a g has weight 1, expected 0", |l| l.a * l.g),
+    let changes: [(usize, &str, &str, f64, f64, Change); 14] = [
+        (4, "term-missing", "f i", 0.0, -1.0, |l| l.f * l.i),
+        (4, "term-sign", "f i", 1.0, -1.0, |l| 2.0 * l.f * l.i),
+        (3, "term-factor", "b c", 1.0, 2.0, |l| -l.b * l.c),
+        (3, "term-factor", "e i", -1.0, -2.0, |l| l.e * l.i),
+        (3, "term-sign", "f h", 2.0, -2.0, |l| 4.0 * l.f * l.h),
+        (2, "term-missing", "e h", 0.0, -4.0, |l| 4.0 * l.e * l.h),
+        (2, "term-factor", "e h", -2.0, -4.0, |l| 2.0 * l.e * l.h),
+        (2, "term-missing", "b b", 0.0, 1.0, |l| -l.b * l.b),
+        (2, "term-factor", "a c", 1.0, 2.0, |l| -l.c * l.a),
+        (2, "term-factor", "i R^2", 2.0, 1.0, |l| l.s * l.i),
+        (1, "term-missing", "d h", 0.0, -2.0, |l| 2.0 * l.d * l.h),
+        (1, "term-factor", "h R^2", 1.0, 2.0, |l| -l.s * l.h),
+        (0, "term-sign", "a a", -1.0, 1.0, |l| -2.0 * l.a * l.a),
+        (0, "term-foreign", "a g", 1.0, 0.0, |l| l.a * l.g),
     ];
-    for (power, key, detail, change) in changes {
-        only(PairKind::ParticleEdge, key, detail, |motion| {
+    for (power, key, product, actual, expected, change) in changes {
+        only(PairKind::ParticleEdge, key, weight(power, product, actual, expected), |motion| {
             let mut lists = edge_lists(motion);
             lists[0][4 - power] += change(&letters(motion));
             lists
@@ -262,15 +293,16 @@ fn mistakes_in_two_coefficients_are_both_named_whatever_the_scale() {
             lists[0].iter_mut().for_each(|value| *value *= scale);
             lists
         };
-        let one = only(PairKind::ParticleEdge, "coefficients", "t^3: f h has weight 2, expected -2", student);
-        assert!(one.details.iter().any(|line| line.contains("t^2: i R^2 has weight 2, expected 1")), "{one:#?}");
-        assert!(one.what.starts_with("Particle-edge overlap: ") && one.what.contains("(cubic, quadratic)"), "{one:#?}");
+        let one = only(PairKind::ParticleEdge, "coefficients", weight(3, "f h", 2.0, -2.0), student);
+        assert!(has(&one, weight(2, "i R^2", 2.0, 1.0)), "{one:#?}");
+        let found = OfPolynomials::Guess(Guess::Coefficients { powers: vec![3, 2], wrong: CoefficientGuess::Several });
+        assert_eq!(one.about, About::Polynomials { subjects: vec![Subject::EdgeOverlap], found });
     }
 }
 
 #[test]
 fn a_scale_of_its_own_for_every_polynomial_hides_no_term() {
-    only(PairKind::ParticleEdge, "term-missing", "t^2: e h has weight 0, expected -4", |motion| {
+    only(PairKind::ParticleEdge, "term-missing", weight(2, "e h", 0.0, -4.0), |motion| {
         let l = letters(motion);
         let mut lists = edge_lists(motion);
         lists[0][2] += 4.0 * l.e * l.h;
@@ -281,13 +313,14 @@ fn a_scale_of_its_own_for_every_polynomial_hides_no_term() {
 
 #[test]
 fn one_wrong_letter_is_named() {
-    only(PairKind::ParticleEdge, "letter", "d: x21.x21 stands for d21.d21", |motion| {
+    let square = Stand::Dot { vectors: ["x21", "x21"], negated: false };
+    only(PairKind::ParticleEdge, "letter", stands(Subject::EdgeApproach, "d", square), |motion| {
         let l = letters(motion);
         let mut lists = edge_lists(motion);
         lists[3] = quintic(&l, l.d, true);
         lists
     });
-    only(PairKind::ParticleEdge, "letter-factor", "0.5 h stands for d32.x32", |motion| {
+    only(PairKind::ParticleEdge, "letter-factor", stands(Subject::EdgeOverlap, "h", Stand::Scaled(0.5)), |motion| {
         let mut l = letters(motion);
         let mut lists = edge_lists(motion);
         l.h *= 0.5;
@@ -308,13 +341,13 @@ fn wrong_radii_are_named() {
         ("diameters", |r1, r2| 4.0 * (r1 + r2) * (r1 + r2)),
     ];
     for (key, square) in squares {
-        only(PairKind::ParticleEdge, key, "R", |motion| {
+        only(PairKind::ParticleEdge, key, is(PolynomialDetail::Exchange { key, of_edges: true }), |motion| {
             let Motion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
             let mut lists = edge_lists(motion);
             lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
             lists
         });
-        only(PairKind::ParticleParticle, key, "R", |motion| {
+        only(PairKind::ParticleParticle, key, is(PolynomialDetail::Exchange { key, of_edges: false }), |motion| {
             let Motion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
             let mut lists = particle_lists(motion);
             lists[0][2] += square(*r1, *r2) - (r1 + r2) * (r1 + r2);
@@ -335,15 +368,21 @@ fn wrong_inputs_are_one_explanation_for_all_polynomials() {
         ("end-for-displacement", |bodies| bodies.iter_mut().for_each(|body| body.displacement += body.start)),
     ];
     for (key, change) in changes {
-        let one = only(PairKind::ParticleEdge, key, "", |motion| {
-            let mut motion = *motion;
-            if let Motion::Edge { bodies, .. } = &mut motion {
-                change(bodies);
-            }
-            edge_lists(&motion)
-        });
+        let one = only(
+            PairKind::ParticleEdge,
+            key,
+            |_| true,
+            |motion| {
+                let mut motion = *motion;
+                if let Motion::Edge { bodies, .. } = &mut motion {
+                    change(bodies);
+                }
+                edge_lists(&motion)
+            },
+        );
         assert_eq!(one.samples, 1200, "{one:#?}");
-        assert!(one.what.contains("alpha > 0") && one.what.contains("approach"), "{one:#?}");
+        let About::Polynomials { subjects, .. } = &one.about else { panic!("{one:#?}") };
+        assert_eq!(subjects[..], *Subject::of(PairKind::ParticleEdge), "{one:#?}");
     }
 }
 
@@ -379,28 +418,30 @@ fn lists_handed_over_wrongly_are_named() {
 
 #[test]
 fn exchanged_cut_and_constant_polynomials_are_named() {
-    let swapped = only(PairKind::ParticleEdge, "other-polynomial", "alpha < 1", |motion| {
+    let high = PolynomialDetail::InPlaceOf { stands: Subject::AlphaHigh, belongs: Subject::AlphaLow };
+    let swapped = only(PairKind::ParticleEdge, "other-polynomial", is(high), |motion| {
         let mut lists = edge_lists(motion);
         lists.swap(1, 2);
         lists
     });
     assert_eq!(swapped.samples, 600);
-    only(PairKind::ParticleEdge, "cut", "only the last 3", |motion| {
+    only(PairKind::ParticleEdge, "cut", is(PolynomialDetail::LastOnly(3)), |motion| {
         let mut lists = edge_lists(motion);
         lists[0].drain(..2);
         lists
     });
-    only(PairKind::ParticleEdge, "constant", "holds 1", |motion| {
+    only(PairKind::ParticleEdge, "constant", is(PolynomialDetail::Holds(1.0)), |motion| {
         let mut lists = edge_lists(motion);
         lists[3] = vec![1.0];
         lists
     });
-    only(PairKind::ParticleParticle, "cut", "constant coefficient", |motion| {
+    only(PairKind::ParticleParticle, "cut", is(PolynomialDetail::LastOnly(1)), |motion| {
         let mut lists = particle_lists(motion);
         lists[1].remove(0);
         lists
     });
-    only(PairKind::ParticleEdge, "displacement-scale", "multiplied by", |motion| {
+    let is_scale = |detail: &PolynomialDetail| matches!(detail, PolynomialDetail::Displacements(_));
+    only(PairKind::ParticleEdge, "displacement-scale", is_scale, |motion| {
         let mut lists = edge_lists(motion);
         let mut power = 1.0;
         for value in lists[0].iter_mut().rev() {
@@ -413,22 +454,25 @@ fn exchanged_cut_and_constant_polynomials_are_named() {
 
 #[test]
 fn small_slips_in_quadratics_are_named() {
-    let overlap = |key: &str, detail: &str, change: &dyn Fn(&mut Lists)| {
-        only(PairKind::ParticleParticle, key, detail, |motion| {
+    type Told<'a> = &'a dyn Fn(&PolynomialDetail) -> bool;
+    let overlap = |key: &str, told: Told, change: &dyn Fn(&mut Lists)| {
+        only(PairKind::ParticleParticle, key, told, |motion| {
             let mut lists = particle_lists(motion);
             change(&mut lists);
             lists
         })
     };
-    overlap("term-factor", "t^1: x21.d21 has weight -1, expected -2", &|lists| lists[0][1] *= 0.5);
-    overlap("term-sign", "t^2: d21.d21 has weight 1, expected -1", &|lists| lists[0][0] *= -1.0);
-    overlap("cut", "only the last 2", &|lists| lists[0][0] = 0.0);
-    overlap("coefficient-factor", "t^0: multiplied by 1.000000001", &|lists| lists[0][2] *= 1.0 + 1e-9);
-    overlap("coefficient-sign", "t^0: multiplied by -1", &|lists| lists[0][2] *= -1.0);
-    overlap("term-sign", "t^0: x21.d21 has weight 1, expected -1", &|lists| lists[1][1] *= -1.0);
-    overlap("term-factor", "t^1: d21.d21 has weight -2, expected -1", &|lists| lists[1][0] *= 2.0);
-    let half_plane = |key: &str, detail: &str, change: &dyn Fn(&Motion, &mut Lists)| {
-        only(PairKind::ParticleHalfPlane, key, detail, |motion| {
+    overlap("term-factor", &weight(1, "x21.d21", -1.0, -2.0), &|lists| lists[0][1] *= 0.5);
+    overlap("term-sign", &weight(2, "d21.d21", 1.0, -1.0), &|lists| lists[0][0] *= -1.0);
+    overlap("cut", &is(PolynomialDetail::LastOnly(2)), &|lists| lists[0][0] = 0.0);
+    let is_little = |detail: &PolynomialDetail| matches!(detail, PolynomialDetail::Factor { power: 0, factor } if (factor - 1.0 - 1e-9).abs() < 1e-14);
+    overlap("coefficient-factor", &is_little, &|lists| lists[0][2] *= 1.0 + 1e-9);
+    let sign = PolynomialDetail::Factor { power: 0, factor: -1.0 };
+    overlap("coefficient-sign", &is(sign), &|lists| lists[0][2] *= -1.0);
+    overlap("term-sign", &weight(0, "x21.d21", 1.0, -1.0), &|lists| lists[1][1] *= -1.0);
+    overlap("term-factor", &weight(1, "d21.d21", -2.0, -1.0), &|lists| lists[1][0] *= 2.0);
+    let half_plane = |key: &str, told: Told, change: &dyn Fn(&Motion, &mut Lists)| {
+        only(PairKind::ParticleHalfPlane, key, told, |motion| {
             let mut lists = half_plane_lists(motion);
             change(motion, &mut lists);
             lists
@@ -438,25 +482,26 @@ fn small_slips_in_quadratics_are_named() {
         Motion::HalfPlane { normal, radius, .. } => (normal.dot(normal), radius * radius),
         _ => panic!("no half-plane"),
     };
-    half_plane("no-normal-square", "r^2 stands for r^2 (n.n)", &|motion, lists| {
+    let exchange = |key| is(PolynomialDetail::Exchange { key, of_edges: false });
+    half_plane("no-normal-square", &exchange("no-normal-square"), &|motion, lists| {
         let (n, r) = n_square(motion);
         lists[0][2] += r - r * n;
     });
-    half_plane("normal-length", "r^2 |n|", &|motion, lists| {
+    half_plane("normal-length", &exchange("normal-length"), &|motion, lists| {
         let (n, r) = n_square(motion);
         lists[0][2] += r * n.sqrt() - r * n;
     });
-    half_plane("letter", "1 stands for (dx.n)", &|motion, lists| {
+    half_plane("letter", &stands(Subject::HalfPlaneApproach, "(dx.n)", Stand::One), &|motion, lists| {
         let Motion::HalfPlane { body, point, normal, .. } = motion else { panic!("no half-plane") };
         lists[1] = vec![-1.0, (*point - body.start).dot(normal)];
     });
-    only(PairKind::ParticleEdge, "term-missing", "d13.x23 has weight 0, expected 1", |motion| {
+    only(PairKind::ParticleEdge, "term-missing", weight(1, "d13.x23", 0.0, 1.0), |motion| {
         let Motion::Edge { bodies: [one, two, three], .. } = motion else { panic!("no edge") };
         let mut lists = edge_lists(motion);
         lists[2][1] = (one.start - three.start).dot(&(two.displacement - three.displacement));
         lists
     });
-    only(PairKind::ParticleEdge, "one-unscaled", "1 stands for", |motion| {
+    only(PairKind::ParticleEdge, "one-unscaled", is(PolynomialDetail::Special("one-unscaled")), |motion| {
         let mut lists = edge_lists(motion);
         lists[2] = lists[1].iter().map(|value| -value).collect();
         lists[2][2] += 1.0;
@@ -524,7 +569,8 @@ fn the_example_is_the_roundest_one() {
     list[20].polynomials = vec![vec![-12.0, 16.0, -4.0], vec![-4.0, 8.0]];
     let found = explain(&list);
     let example = found[0].example.as_ref().expect("there is a wrong sample");
-    assert_eq!(example.place, "particles 0 and 1, pass 0, particle-particle overlap polynomial");
+    let place = ExamplePlace::Given { pair: list[20].pair, pass: 0, subject: Subject::ParticleOverlap };
+    assert_eq!(example.place, place);
     assert_eq!((&example.expected[..], &example.actual[..]), (&[-4.0, 16.0, -12.0][..], &[-12.0, 16.0, -4.0][..]));
-    assert_eq!((example.given[0].name.as_str(), &example.given[0].value[..]), ("x1", &[0.0, 0.0][..]));
+    assert_eq!((example.given[0].input, &example.given[0].value[..]), (Input::X1, &[0.0, 0.0][..]));
 }

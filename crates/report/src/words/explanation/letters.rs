@@ -41,10 +41,9 @@ pub(super) fn of(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("Here {}.", parts.join("; ")))
 }
 
-/// A line that speaks of two radii, with the names that the pairs of these kinds have for them: an edge's is `re`.
-pub(super) fn radii(line: String, kinds: &[PairKind]) -> String {
-    let is_edge = !kinds.is_empty() && kinds.iter().all(|kind| *kind == PairKind::ParticleEdge);
-    if is_edge { line.replace("r2", "re") } else { line }
+/// A line that speaks of two radii, with the names that such pairs have for them: an edge's is `re`.
+pub(super) fn radii(line: &str, of_edges: bool) -> String {
+    if of_edges { line.replace("r2", "re") } else { line.to_owned() }
 }
 
 /// The words of a line: what is no letter and no digit parts them.
@@ -76,7 +75,7 @@ mod tests {
     fn radii_have_the_names_of_their_pair() {
         let line = "r1^2 + r2^2 stands for R^2 = (r1 + r2)^2";
         let of_kinds = |kinds: &[PairKind]| {
-            let line = radii(line.to_owned(), kinds);
+            let line = radii(line, kinds == [PairKind::ParticleEdge]);
             let told = of(std::slice::from_ref(&line), kinds).expect("it has short names");
             (line, told)
         };

@@ -1,0 +1,147 @@
+//! Explanations with every sort of value, and the strangest numbers.
+use super::{Role, pair};
+use fosssim_mistakes::{
+    assignments::t2m2::{Input, Reading, Subject},
+    diagnose::{
+        About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
+        ListGuess, LoopEnd, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
+        Stand, StepRecord, Weight, WrongDecisions, WrongMotion, WrongNumber, WrongResponses, WrongVectors,
+        WrongZoneRounds, WrongZones,
+    },
+    student::Area,
+};
+use fosssim_model::sim::PairKind;
+
+/// At least one of every sort.
+pub(super) fn all() -> Vec<Explanation> {
+    let guesses = [
+        Guess::List(ListGuess::ReversedNegated),
+        Guess::Exchange("end-positions"),
+        Guess::Special("constant-alpha"),
+        Guess::Quantity(QuantityGuess::Other),
+        Guess::Coefficients { powers: vec![3, 0], wrong: CoefficientGuess::Several },
+    ];
+    let found = guesses.map(OfPolynomials::Guess).into_iter();
+    let found = found.chain([OfPolynomials::Missing, OfPolynomials::NearlyRight, OfPolynomials::Nothing]);
+    let subjects = vec![Subject::EdgeOverlap, Subject::HalfPlaneApproach];
+    let of_polynomials = found.map(|found| About::Polynomials { subjects: subjects.clone(), found });
+    let others = [About::Mistake, About::Unfinished, About::Scene { has_length: false }];
+    let abouts = of_polynomials.chain(others).chain(faults().into_iter().map(About::Stage));
+    let mut all: Vec<Explanation> = abouts.map(|about| explanation(about, Vec::new(), None)).collect();
+    all.extend(examples().into_iter().map(|example| explanation(About::Mistake, Vec::new(), Some(example))));
+    all.push(explanation(About::Mistake, details(), None));
+    all
+}
+
+fn explanation(about: About, details: Vec<Detail>, example: Option<Example>) -> Explanation {
+    let (key, same_as) = ("pp-no-two".to_owned(), vec!["other".to_owned()]);
+    Explanation { key, about, details, reproduced: 4, samples: u64::MAX, example, same_as }
+}
+
+fn faults() -> Vec<StageFault> {
+    let kind = Some(PairKind::ParticleHalfPlane);
+    let changed = || vec![Changed { kind: PairKind::ParticleEdge, body: 2, quantity: Quantity::Velocity }];
+    vec![
+        StageFault::Order,
+        StageFault::Decisions { kind, wrong: WrongDecisions::Superfluous },
+        StageFault::ContactTimes,
+        StageFault::ContactVectors { kind: None, wrong: WrongVectors::Perpendicular },
+        StageFault::Responses { kind, wrong: WrongResponses::Nothing },
+        StageFault::Responses { kind: None, wrong: WrongResponses::Unchanged(changed()) },
+        StageFault::Responses { kind: None, wrong: WrongResponses::Across(changed()) },
+        StageFault::Responses { kind: None, wrong: WrongResponses::Amount(changed()) },
+        StageFault::ManyContacts,
+        StageFault::Unresolved { all: true },
+        StageFault::Rounds(WrongNumber::More),
+        StageFault::HandedOver { quantity: Some(Quantity::Position), when: Some(LoopEnd::Settled) },
+        StageFault::HandedOver { quantity: None, when: None },
+        StageFault::FirstRound,
+        StageFault::LaterRounds,
+        StageFault::AfterRounds,
+        StageFault::ZoneRounds(WrongZoneRounds::Later),
+        StageFault::Zones(WrongZones::KeepVelocities),
+        StageFault::Motion { wrong: vec![WrongMotion::Centre, WrongMotion::Speeds], or_zones: true },
+    ]
+}
+
+fn details() -> Vec<Detail> {
+    let reading = Reading { subject: Subject::EdgeOverlap, number: 0 };
+    let weight =
+        |actual| Weight { reading, power: 2, letters: vec!["(x12.d32)", "R^2"], expected: f64::INFINITY, actual };
+    let stands = |stand| PolynomialDetail::StandsFor { reading, letter: "R^2", stand };
+    let polynomials = [
+        PolynomialDetail::Logged { logged: 0, of: 4 },
+        PolynomialDetail::RightUpTo(5e-324),
+        PolynomialDetail::Differs { subject: Some(Subject::AlphaLow), power: 2, count: 1, of: usize::MAX },
+        PolynomialDetail::Differs { subject: None, power: 2, count: 1, of: 3 },
+        PolynomialDetail::Holds(f64::NEG_INFINITY),
+        PolynomialDetail::Every(-0.0),
+        PolynomialDetail::SinglePrecision,
+        PolynomialDetail::InPlaceOf { stands: Subject::AlphaHigh, belongs: Subject::EdgeApproach },
+        PolynomialDetail::LastOnly(1),
+        PolynomialDetail::FirstOnly(2),
+        PolynomialDetail::Displacements(1.0 / 3.0),
+        PolynomialDetail::Exchange { key: "end-positions", of_edges: true },
+        PolynomialDetail::Special("one-unscaled"),
+        stands(Stand::Scaled(-0.0)),
+        stands(Stand::Letter("a")),
+        stands(Stand::Dot { vectors: ["x21", "(p-x-dx)"], negated: true }),
+        stands(Stand::One),
+        PolynomialDetail::Factor { power: 3, factor: 0.1 },
+        PolynomialDetail::Unknown { power: 0 },
+        PolynomialDetail::Weight(weight(1e308)),
+        PolynomialDetail::Alternative(vec![weight(0.1), weight(-0.0)]),
+    ];
+    let changed = Changed { kind: PairKind::ParticleParticle, body: 0, quantity: Quantity::Position };
+    let change = |amount| StageDetail::Change { changed, amount, across: true, wrong: 1, of: 2 };
+    let stages = [
+        StageDetail::Order,
+        StageDetail::Impacts { right: true, count: 3, low: f64::INFINITY, high: f64::NEG_INFINITY },
+        StageDetail::Vectors(Ratios::All(-0.0)),
+        StageDetail::Times(Ratios::Between(f64::NEG_INFINITY, 0.3)),
+        StageDetail::TimesOff(-1e-300),
+        StageDetail::TimesUsed,
+        StageDetail::Passes { expected: 1, actual: 2, most: i32::MIN },
+        change(Amount::Unwanted),
+        change(Amount::Right),
+        change(Amount::Ratio(Ratios::All(1.5))),
+        StageDetail::Stopped(Ratios::All(0.5)),
+        StageDetail::CentreMoves(Ratios::All(0.5)),
+        StageDetail::CentreDirection,
+        StageDetail::Turns(Ratios::All(0.5)),
+        StageDetail::Velocities(Ratios::All(0.5)),
+    ];
+    let known = [
+        Detail::Term("pp-no-two"),
+        Detail::Look(Area::Failsafe),
+        Detail::Letters(vec![PairKind::ParticleEdge, PairKind::ParticleParticle]),
+    ];
+    let polynomials = polynomials.map(Detail::Polynomial);
+    known.into_iter().chain(polynomials).chain(stages.map(Detail::Stage)).collect()
+}
+
+fn examples() -> Vec<Example> {
+    let pair = pair(PairKind::ParticleHalfPlane);
+    let places = [
+        ExamplePlace::Given { pair, pass: 2, subject: Subject::HalfPlaneOverlap },
+        ExamplePlace::Polynomial { pair, pass: u32::MAX, role: Role::AlphaBelowOne },
+        ExamplePlace::NumberedPolynomial(7),
+        ExamplePlace::PolynomialCount,
+        ExamplePlace::Contact { kind: None, first: i32::MIN, second: -1 },
+        ExamplePlace::Contact { kind: Some(PairKind::ParticleEdge), first: 0, second: 1 },
+        ExamplePlace::ContactCount,
+        ExamplePlace::Particle { particle: 3, record: StepRecord::Mid },
+        ExamplePlace::Particle { particle: 3, record: StepRecord::End },
+        ExamplePlace::MidParticle(4),
+        ExamplePlace::MidLists,
+    ];
+    let given = Input::ALL.map(|input| ExampleValue { input, value: vec![0.1, -1e-300] });
+    let example = |place| Example {
+        step: 7,
+        place,
+        given: given.to_vec(),
+        expected: vec![f64::INFINITY, 1.0 / 3.0],
+        actual: vec![f64::NEG_INFINITY, -0.0],
+    };
+    places.map(example).into()
+}

@@ -1,0 +1,75 @@
+//! The inputs of a detection, as the assignment's notation calls them.
+
+/// An input of a detection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Input {
+    /// Where the first body is at the start of the step; of an edge and a particle, the particle.
+    X1,
+    /// Where the second body is; of an edge and a particle, the edge's first endpoint.
+    X2,
+    /// Where the edge's second endpoint is.
+    X3,
+    /// How far the first body goes within the step.
+    Dx1,
+    /// How far the second body goes.
+    Dx2,
+    /// How far the edge's second endpoint goes.
+    Dx3,
+    /// The first particle's radius.
+    R1,
+    /// The second particle's radius.
+    R2,
+    /// The edge's radius.
+    Re,
+    /// Where the particle beside a half-plane is at the start of the step.
+    X,
+    /// How far it goes within the step.
+    Dx,
+    /// A point on the half-plane's boundary.
+    P,
+    /// The half-plane's normal.
+    N,
+    /// The radius of the particle beside it.
+    R,
+}
+
+impl Input {
+    /// All of them.
+    pub const ALL: [Self; 14] = [
+        Self::X1,
+        Self::X2,
+        Self::X3,
+        Self::Dx1,
+        Self::Dx2,
+        Self::Dx3,
+        Self::R1,
+        Self::R2,
+        Self::Re,
+        Self::X,
+        Self::Dx,
+        Self::P,
+        Self::N,
+        Self::R,
+    ];
+
+    /// Its letter.
+    #[must_use]
+    pub const fn letter(self) -> &'static str {
+        match self {
+            Self::X1 => "x1",
+            Self::X2 => "x2",
+            Self::X3 => "x3",
+            Self::Dx1 => "dx1",
+            Self::Dx2 => "dx2",
+            Self::Dx3 => "dx3",
+            Self::R1 => "r1",
+            Self::R2 => "r2",
+            Self::Re => "re",
+            Self::X => "x",
+            Self::Dx => "dx",
+            Self::P => "p",
+            Self::N => "n",
+            Self::R => "r",
+        }
+    }
+}

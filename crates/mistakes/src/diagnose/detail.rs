@@ -1,0 +1,209 @@
+//! The exact form of what is wrong, as values. May give a right formula away.
+use super::fault::Changed;
+use crate::assignments::t2m2::{Reading, Subject};
+use crate::student::Area;
+use fosssim_model::sim::PairKind;
+
+/// One line of the exact form.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Detail {
+    /// The exact form of the catalogue's mistake with this key.
+    Term(&'static str),
+    /// Where to look for mistakes of this part of the assignment.
+    Look(Area),
+    /// What the letters mean that stand in the lines before, which speak of pairs of these kinds. None where none needs it.
+    Letters(Vec<PairKind>),
+    /// What is wrong with polynomials.
+    Polynomial(PolynomialDetail),
+    /// What is wrong with a stage.
+    Stage(StageDetail),
+}
+
+/// The exact form of what is wrong with polynomials.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PolynomialDetail {
+    /// Each detection logs so many of so many.
+    Logged {
+        /// What it logs.
+        logged: usize,
+        /// What it should.
+        of: usize,
+    },
+    /// They are right up to this error, relative to the size of their terms.
+    RightUpTo(f64),
+    /// A coefficient differs in some samples.
+    Differs {
+        /// Of which polynomial, where several are told about.
+        subject: Option<Subject>,
+        /// Its power of t.
+        power: usize,
+        /// In how many samples.
+        count: usize,
+        /// Of how many.
+        of: usize,
+    },
+    /// The list holds this number alone.
+    Holds(f64),
+    /// Every coefficient is this number.
+    Every(f64),
+    /// Every coefficient is a number of single precision.
+    SinglePrecision,
+    /// A polynomial stands in another one's place.
+    InPlaceOf {
+        /// The one that stands there.
+        stands: Subject,
+        /// The one that belongs there.
+        belongs: Subject,
+    },
+    /// Of the coefficients only so many are there, the last ones.
+    LastOnly(usize),
+    /// Of the coefficients only so many are there, the first ones.
+    FirstOnly(usize),
+    /// Every displacement carries this factor.
+    Displacements(f64),
+    /// The exact form of the exchange with this key.
+    Exchange {
+        /// The key.
+        key: &'static str,
+        /// Whether all these pairs are a particle's and an edge's, whose radii have names of their own.
+        of_edges: bool,
+    },
+    /// The exact form of the misunderstanding with this key.
+    Special(&'static str),
+    /// Something else stands for a letter of a formula.
+    StandsFor {
+        /// The formula.
+        reading: Reading,
+        /// The letter.
+        letter: &'static str,
+        /// What stands there.
+        stand: Stand,
+    },
+    /// A coefficient carries a factor.
+    Factor {
+        /// Its power of t.
+        power: usize,
+        /// The factor.
+        factor: f64,
+    },
+    /// No simple change explains a coefficient.
+    Unknown {
+        /// Its power of t.
+        power: usize,
+    },
+    /// A product has the wrong weight.
+    Weight(Weight),
+    /// These weights together would do the same.
+    Alternative(Vec<Weight>),
+}
+
+/// What stands for a letter of a formula.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stand {
+    /// The letter itself with this factor.
+    Scaled(f64),
+    /// Another letter of the formula.
+    Letter(&'static str),
+    /// A dot product of vectors that a detection has at hand.
+    Dot {
+        /// The vectors' names.
+        vectors: [&'static str; 2],
+        /// Whether its sign is the other one.
+        negated: bool,
+    },
+    /// The number 1.
+    One,
+}
+
+/// A product of letters in a coefficient, with a wrong weight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weight {
+    /// The formula whose letters it takes, besides some that do not belong there.
+    pub reading: Reading,
+    /// The coefficient's power of t.
+    pub power: usize,
+    /// The names of its letters.
+    pub letters: Vec<&'static str>,
+    /// The weight that it should have.
+    pub expected: f64,
+    /// The weight that it has.
+    pub actual: f64,
+}
+
+/// The exact form of what is wrong with a stage.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StageDetail {
+    /// The order of the pairs.
+    Order,
+    /// Between which fractions of the step contacts have their times of impact.
+    Impacts {
+        /// Whether these are the contacts that are right.
+        right: bool,
+        /// How many contacts.
+        count: usize,
+        /// The first time.
+        low: f64,
+        /// The last one.
+        high: f64,
+    },
+    /// Contact vectors along the right ones, over what they should be.
+    Vectors(Ratios),
+    /// Times of impact over what they should be.
+    Times(Ratios),
+    /// By how much times of impact are off, in steps.
+    TimesOff(f64),
+    /// What times of impact are for.
+    TimesUsed,
+    /// Detection passes of impulse rounds.
+    Passes {
+        /// How many there should be.
+        expected: usize,
+        /// How many there are.
+        actual: usize,
+        /// How many rounds the scene allows.
+        most: i32,
+    },
+    /// What isolated contacts change.
+    Change {
+        /// Whose what.
+        changed: Changed,
+        /// By how much.
+        amount: Amount,
+        /// Whether across the contact vector, too.
+        across: bool,
+        /// In how many of them it is wrong.
+        wrong: usize,
+        /// Of how many.
+        of: usize,
+    },
+    /// Velocities of zones that have to stop, over those before.
+    Stopped(Ratios),
+    /// How far the centre of mass moves, over how far it should.
+    CentreMoves(Ratios),
+    /// The direction of the centre's motion.
+    CentreDirection,
+    /// How far zones turn, over how far they should.
+    Turns(Ratios),
+    /// Velocities of zones over their motion per step size.
+    Velocities(Ratios),
+}
+
+/// By how much a contact changes something.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Amount {
+    /// It should not change.
+    Unwanted,
+    /// As it should along the contact vector.
+    Right,
+    /// Over what it should be along the contact vector.
+    Ratio(Ratios),
+}
+
+/// Ratios of what is to what should be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ratios {
+    /// All are this.
+    All(f64),
+    /// They lie between the first and the second.
+    Between(f64, f64),
+}

@@ -1,0 +1,86 @@
+//! A small example of a mistake.
+use crate::assignments::t2m2::{Input, Subject};
+use fosssim_judge::Role;
+use fosssim_model::sim::{Pair, PairKind};
+
+/// A small instance of the mistake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Example {
+    /// Step, from 1.
+    pub step: u32,
+    /// Where in the step.
+    pub place: ExamplePlace,
+    /// What went in, in the assignment's notation.
+    pub given: Vec<ExampleValue>,
+    /// What should have come out.
+    pub expected: Vec<f64>,
+    /// What did.
+    pub actual: Vec<f64>,
+}
+
+/// Where in its step an example lies, and so what its numbers are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExamplePlace {
+    /// A polynomial whose inputs are given: its coefficients.
+    Given {
+        /// The pair.
+        pair: Pair,
+        /// The detection pass within the step, from 0.
+        pass: u32,
+        /// Which of its polynomials.
+        subject: Subject,
+    },
+    /// A polynomial: its coefficients.
+    Polynomial {
+        /// The pair.
+        pair: Pair,
+        /// The detection pass within the step, from 0.
+        pass: u32,
+        /// Which of its polynomials.
+        role: Role,
+    },
+    /// The polynomial with this number in the step's list, of which the reference has none.
+    NumberedPolynomial(usize),
+    /// How many polynomials there are.
+    PolynomialCount,
+    /// A contact, as the trace names it: normal and time.
+    Contact {
+        /// The kind of its pair, if there is such a kind.
+        kind: Option<PairKind>,
+        /// The particle.
+        first: i32,
+        /// The other object.
+        second: i32,
+    },
+    /// How many contacts there are.
+    ContactCount,
+    /// A particle in a record: position and velocity.
+    Particle {
+        /// Which.
+        particle: usize,
+        /// In which record of the step.
+        record: StepRecord,
+    },
+    /// A particle in the mid record, of which nothing is known.
+    MidParticle(usize),
+    /// The lists of the mid record.
+    MidLists,
+}
+
+/// A record of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepRecord {
+    /// The one in the middle.
+    Mid,
+    /// The one at the end.
+    End,
+}
+
+/// An input of an example.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExampleValue {
+    /// Which.
+    pub input: Input,
+    /// Its components.
+    pub value: Vec<f64>,
+}

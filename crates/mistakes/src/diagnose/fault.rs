@@ -1,0 +1,272 @@
+//! What is wrong with a stage of a step, where no mistake that is known explains it; without what is measured of it
+//! ([`StageDetail`](super::StageDetail)).
+use crate::student::Area;
+use fosssim_model::sim::PairKind;
+
+/// The key of pairs that are looked at in another order.
+pub(super) const ORDER: &str = "stage-order";
+
+/// The stages of a step that can be told apart, in their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StepStage {
+    /// Which pairs collide, and when.
+    Detection,
+    /// The vectors between colliding objects.
+    ContactVectors,
+    /// Responses and impulse rounds.
+    Responses,
+    /// Impact zones and the rigid failsafe.
+    Zones,
+}
+
+/// What is wrong with a stage whose inputs are right.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StageFault {
+    /// The pairs are looked at in another order.
+    Order,
+    /// Polynomials are right, decisions are not.
+    Decisions {
+        /// The kind of all these pairs, if they have one.
+        kind: Option<PairKind>,
+        /// Which decisions.
+        wrong: WrongDecisions,
+    },
+    /// Times of impact.
+    ContactTimes,
+    /// Contact vectors.
+    ContactVectors {
+        /// The kind of all these pairs, if they have one.
+        kind: Option<PairKind>,
+        /// What is wrong with them.
+        wrong: WrongVectors,
+    },
+    /// What isolated contacts change.
+    Responses {
+        /// The kind of all these pairs, if they have one and others are right.
+        kind: Option<PairKind>,
+        /// What is wrong with it.
+        wrong: WrongResponses,
+    },
+    /// The state behind several contacts that are right.
+    ManyContacts,
+    /// Contacts of the first impulse round change nothing.
+    Unresolved {
+        /// None of them does.
+        all: bool,
+    },
+    /// The number of impulse rounds.
+    Rounds(WrongNumber),
+    /// What the impulse rounds hand over, which are right themselves.
+    HandedOver {
+        /// Positions or velocities; none where it is both.
+        quantity: Option<Quantity>,
+        /// When it is wrong; none where it is always.
+        when: Option<LoopEnd>,
+    },
+    /// What the contacts of the first impulse round change.
+    FirstRound,
+    /// What several contacts of an impulse round change, though single ones are right.
+    LaterRounds,
+    /// What follows the impulse rounds.
+    AfterRounds,
+    /// Zones in later rounds.
+    ZoneRounds(WrongZoneRounds),
+    /// Which zones are moved, and which are stopped.
+    Zones(WrongZones),
+    /// How zones are moved.
+    Motion {
+        /// What is wrong with it.
+        wrong: Vec<WrongMotion>,
+        /// Whether zones of other particles could move so, too.
+        or_zones: bool,
+    },
+}
+
+/// Which decisions about contacts are wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongDecisions {
+    /// Contacts are missed.
+    Missed,
+    /// There are contacts that there should not be.
+    Superfluous,
+    /// Both.
+    Both,
+}
+
+/// What is wrong with contact vectors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongVectors {
+    /// They are perpendicular to the right ones.
+    Perpendicular,
+    /// Their direction is another one.
+    Direction,
+    /// They point the other way round.
+    Reversed,
+    /// Their length.
+    Length,
+}
+
+/// What is wrong with what isolated contacts change.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum WrongResponses {
+    /// They change nothing.
+    Nothing,
+    /// They leave these as they are.
+    Unchanged(Vec<Changed>),
+    /// They change these also across the contact vector.
+    Across(Vec<Changed>),
+    /// They change these along the contact vector by another amount.
+    Amount(Vec<Changed>),
+}
+
+/// Whose what a contact changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Changed {
+    /// The kind of the contact's pair.
+    pub kind: PairKind,
+    /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint, and 2 its second one.
+    pub body: usize,
+    /// What of it.
+    pub quantity: Quantity,
+}
+
+/// What a state holds of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Where it is.
+    Position,
+    /// How fast it moves.
+    Velocity,
+}
+
+/// How a number of rounds is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongNumber {
+    /// Too few.
+    Fewer,
+    /// Too many.
+    More,
+    /// Sometimes this, sometimes that.
+    Other,
+}
+
+/// Why impulse rounds end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LoopEnd {
+    /// All that there may be were made.
+    RanOut,
+    /// Nothing collides any more.
+    Settled,
+}
+
+/// What is wrong with the rounds in which zones grow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongZoneRounds {
+    /// The zones themselves.
+    Growth,
+    /// There are too few rounds.
+    Fewer,
+    /// There are too many.
+    More,
+    /// The zones, or the number of rounds.
+    Later,
+}
+
+/// What is wrong with which zones are moved, and which are stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongZones {
+    /// Some particles of a zone are not moved with it.
+    Partly,
+    /// Zones are not moved.
+    Unmoved,
+    /// Zones stop that should move.
+    Stop,
+    /// Zones that have to stop do not go back.
+    KeepPositions,
+    /// Zones that have to stop keep some velocity.
+    KeepVelocities,
+}
+
+/// What is wrong with the motion of zones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongMotion {
+    /// Where their centre of mass goes.
+    Centre,
+    /// The distances of their particles.
+    Distances,
+    /// How far they turn.
+    Turn,
+    /// Their velocities.
+    Velocities,
+    /// The size of their velocities.
+    Speeds,
+}
+
+impl StageFault {
+    /// The stage in which it is.
+    #[must_use]
+    pub const fn stage(&self) -> StepStage {
+        match self {
+            Self::Order | Self::Decisions { .. } | Self::ContactTimes => StepStage::Detection,
+            Self::ContactVectors { .. } => StepStage::ContactVectors,
+            Self::Responses { .. }
+            | Self::ManyContacts
+            | Self::Unresolved { .. }
+            | Self::Rounds(_)
+            | Self::HandedOver { .. }
+            | Self::FirstRound
+            | Self::LaterRounds => StepStage::Responses,
+            Self::AfterRounds | Self::ZoneRounds(_) | Self::Zones(_) | Self::Motion { .. } => StepStage::Zones,
+        }
+    }
+
+    /// The parts of the assignment in which it may lie.
+    #[must_use]
+    pub const fn areas(&self) -> &'static [Area] {
+        match self {
+            Self::Order | Self::Decisions { .. } | Self::ContactTimes => &[Area::Decision],
+            Self::ContactVectors { .. } => &[Area::ContactVector],
+            Self::Responses { .. } | Self::ManyContacts => &[Area::Response],
+            Self::Unresolved { all: true } | Self::FirstRound => &[Area::Response, Area::ImpulseLoop],
+            Self::Unresolved { all: false } | Self::Rounds(_) | Self::HandedOver { .. } | Self::LaterRounds => {
+                &[Area::ImpulseLoop]
+            }
+            Self::ZoneRounds(_) | Self::Zones(WrongZones::Partly | WrongZones::Unmoved | WrongZones::Stop) => {
+                &[Area::ImpactZones]
+            }
+            Self::AfterRounds | Self::Motion { or_zones: true, .. } => &[Area::ImpactZones, Area::Failsafe],
+            Self::Zones(WrongZones::KeepPositions | WrongZones::KeepVelocities)
+            | Self::Motion { or_zones: false, .. } => &[Area::Failsafe],
+        }
+    }
+
+    /// The kind of pair that alone it concerns.
+    #[must_use]
+    pub const fn kind(&self) -> Option<PairKind> {
+        match self {
+            Self::Decisions { kind, .. } | Self::ContactVectors { kind, .. } | Self::Responses { kind, .. } => *kind,
+            _ => None,
+        }
+    }
+
+    /// The explanation's key.
+    pub(super) const fn key(&self) -> &'static str {
+        match self {
+            Self::Order => ORDER,
+            Self::Decisions { wrong: WrongDecisions::Missed, .. } => "stage-contacts-missed",
+            Self::Decisions { wrong: WrongDecisions::Superfluous, .. } => "stage-contacts-superfluous",
+            Self::Decisions { wrong: WrongDecisions::Both, .. } => "stage-decisions",
+            Self::ContactTimes => "stage-contact-times",
+            Self::ContactVectors { .. } => "stage-contact-vectors",
+            Self::Responses { .. } | Self::ManyContacts | Self::FirstRound => "stage-response",
+            Self::Unresolved { .. } => "stage-unresolved",
+            Self::Rounds(_) => "stage-rounds",
+            Self::HandedOver { .. } => "stage-handed-over",
+            Self::LaterRounds => "stage-loop",
+            Self::AfterRounds | Self::Zones(WrongZones::Partly | WrongZones::Unmoved) => "stage-zones",
+            Self::ZoneRounds(_) => "stage-zone-rounds",
+            Self::Zones(_) => "stage-stop",
+            Self::Motion { .. } => "stage-failsafe",
+        }
+    }
+}

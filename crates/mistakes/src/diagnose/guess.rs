@@ -1,0 +1,148 @@
+//! Guesses about wrong polynomials, without what would give a formula away ([`PolynomialDetail`](super::PolynomialDetail)).
+
+/// What is likely wrong with polynomials.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Guess {
+    /// Something about the whole list of coefficients.
+    List(ListGuess),
+    /// Another input stands where one belongs: the exchange of this key, which the assignment has words for.
+    Exchange(&'static str),
+    /// A misunderstanding with a formula of its own: the one of this key, which the assignment has words for.
+    Special(&'static str),
+    /// Something about one quantity of the formula.
+    Quantity(QuantityGuess),
+    /// Something about the coefficients of some powers of t.
+    Coefficients {
+        /// Those powers, the highest first.
+        powers: Vec<usize>,
+        /// What is wrong with them.
+        wrong: CoefficientGuess,
+    },
+}
+
+impl Guess {
+    /// The explanation's key.
+    pub(super) const fn key(&self) -> &'static str {
+        match self {
+            Self::List(guess) => guess.key(),
+            Self::Exchange(key) | Self::Special(key) => key,
+            Self::Quantity(QuantityGuess::Other) => "letter",
+            Self::Quantity(_) => "letter-factor",
+            Self::Coefficients { wrong, .. } => wrong.key(),
+        }
+    }
+}
+
+/// What is likely wrong with a whole list of coefficients.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ListGuess {
+    /// Some are no finite numbers.
+    NotFinite,
+    /// All are zero, or none is there.
+    AllZero,
+    /// The list holds the same single number everywhere.
+    Constant,
+    /// All are the same number everywhere.
+    AllEqual,
+    /// They are rounded to single precision.
+    SinglePrecision,
+    /// They are divided by the leading one, whatever its sign.
+    Monic,
+    /// There are more of them than there should be.
+    TooLong,
+    /// The lowest power comes first.
+    Reversed,
+    /// All have the wrong sign.
+    Negated,
+    /// The lowest power comes first, and all have the wrong sign.
+    ReversedNegated,
+    /// A zero follows them.
+    TrailingZero,
+    /// They are those of another polynomial of the pair.
+    OtherPolynomial,
+    /// They are those of another polynomial of the pair, with the wrong sign.
+    OtherPolynomialNegated,
+    /// Only the constant one is there.
+    ConstantOnly,
+    /// Leading ones are missing.
+    Cut,
+    /// The last ones are missing.
+    CutEnd,
+    /// Every displacement in them carries the same factor.
+    DisplacementScale,
+}
+
+impl ListGuess {
+    const fn key(self) -> &'static str {
+        match self {
+            Self::NotFinite => "not-finite",
+            Self::AllZero => "all-zero",
+            Self::Constant => "constant",
+            Self::AllEqual => "all-equal",
+            Self::SinglePrecision => "single-precision",
+            Self::Monic => "monic",
+            Self::TooLong => "too-long",
+            Self::Reversed => "reversed",
+            Self::Negated => "negated",
+            Self::ReversedNegated => "reversed-negated",
+            Self::TrailingZero => "trailing-zero",
+            Self::OtherPolynomial => "other-polynomial",
+            Self::OtherPolynomialNegated => "other-polynomial-negated",
+            Self::ConstantOnly | Self::Cut => "cut",
+            Self::CutEnd => "cut-end",
+            Self::DisplacementScale => "displacement-scale",
+        }
+    }
+}
+
+/// What is likely wrong with one quantity of a formula, wherever it stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum QuantityGuess {
+    /// Its sign.
+    Sign,
+    /// It is zero.
+    Zero,
+    /// It carries a factor.
+    Factor,
+    /// Another one stands there.
+    Other,
+}
+
+/// What is likely wrong with coefficients.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CoefficientGuess {
+    /// Several are wrong, each for itself.
+    Several,
+    /// It is zero.
+    Zero,
+    /// Its sign.
+    Sign,
+    /// It carries a factor.
+    Factor,
+    /// It has a term that does not belong there.
+    TermForeign,
+    /// A term is missing.
+    TermMissing,
+    /// A term's sign.
+    TermSign,
+    /// A term's factor.
+    TermFactor,
+    /// Several terms are wrong.
+    Terms,
+}
+
+impl CoefficientGuess {
+    const fn key(self) -> &'static str {
+        match self {
+            Self::Several => "coefficients",
+            Self::Zero => "coefficient-zero",
+            Self::Sign => "coefficient-sign",
+            Self::Factor => "coefficient-factor",
+            Self::TermForeign => "term-foreign",
+            Self::TermMissing => "term-missing",
+            Self::TermSign => "term-sign",
+            Self::TermFactor => "term-factor",
+            Self::Terms => "terms",
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What explanations say, in sentences. They travel as values up to here.
+//!
+//! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) stand with its data, found by
+//! their keys; all others are made here.
+mod letters;
+mod places;
+mod polynomials;
+mod stages;
+
+use fosssim_mistakes::{
+    diagnose::{About, Detail, Explanation, formula_in},
+    student::{Area, Mistake, Row, find},
+};
+
+pub(crate) use places::place;
+
+/// What is wrong, in one sentence to the student that gives no formula away.
+#[must_use]
+pub fn what(explanation: &Explanation) -> String {
+    let sentence = match &explanation.about {
+        About::Mistake => known(&explanation.key),
+        About::Unfinished => format!("Not written yet: {}.", unfinished(&explanation.same_as)),
+        About::Scene { has_length } => {
+            let length = if *has_length { "" } else { ", and neither is its length" };
+            format!("Is this trace of this scene? Its first record is not the scene's{length}.")
+        }
+        About::Polynomials { subjects, found } => polynomials::what(subjects, found),
+        About::Stage(fault) => stages::what(fault),
+    };
+    debug_assert!(formula_in(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
+    sentence
+}
+
+/// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away.
+#[must_use]
+pub fn details(explanation: &Explanation) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for detail in &explanation.details {
+        let line = match detail {
+            Detail::Term(key) => find(key).map(|row| row.term.to_owned()),
+            Detail::Look(area) => Some(look(*area).to_owned()),
+            Detail::Letters(kinds) => letters::of(&lines, kinds),
+            Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
+            Detail::Stage(detail) => Some(stages::detail(detail)),
+        };
+        lines.extend(line);
+    }
+    lines
+}
+
+/// The sentence about a known mistake; its key, if it is no known one.
+pub(crate) fn known(key: &str) -> String {
+    find(key).map_or_else(|| format!("{key}."), Row::sentence)
+}
+
+/// The stages that are not written yet, in a few words each.
+fn unfinished(keys: &[String]) -> String {
+    let stages: Vec<&str> = keys.iter().filter_map(|key| find(key)).map(empty_stage).collect();
+    stages.join(", ")
+}
+
+/// A stage of which nothing is there.
+fn empty_stage(row: &Row) -> &'static str {
+    match row.mistake {
+        Mistake::ParticleParticleEmpty => "the particle-particle detection, which logs nothing",
+        Mistake::ParticleEdgeEmpty => "the particle-edge detection, which logs nothing",
+        Mistake::HalfPlaneEmpty => "the particle-half-plane detection, which logs nothing",
+        Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => "the impulse loop",
+        Mistake::GeometricEmpty => "the geometric part",
+        _ => "the rigid failsafe",
+    }
+}
+
+/// One sentence that says where in the program the mistake is made, without the right formula.
+const fn look(area: Area) -> &'static str {
+    match area {
+        Area::ParticleParticle => "Look at the coefficients that the particle-particle detection computes.",
+        Area::ParticleEdge => "Look at the coefficients that the particle-edge detection computes.",
+        Area::ParticleHalfPlane => "Look at the coefficients that the particle-half-plane detection computes.",
+        Area::Handover => {
+            "Look at how the coefficients are put into the polynomials for the root finder: order, sign, type."
+        }
+        Area::ContactVector => "Look at what the detection returns once the time of impact is known.",
+        Area::Decision => {
+            "Look at which pairs are tested, and at what is done with the time that the root finder returns."
+        }
+        Area::Response => "Look at how one contact changes velocities and positions.",
+        Area::ContinuousTime => "Look at the loop over the pairs in the single pass of continuous-time.",
+        Area::ImpulseLoop => "Look at the loop over the impulse rounds: its start, its end, and what it carries over.",
+        Area::ImpactZones => "Look at how impact zones are made, merged and compared, and when their loop ends.",
+        Area::Failsafe => "Look at how one zone is moved as a rigid body, and when it stops instead.",
+        Area::Trace => "Look at what is written to the trace, and when; the simulation itself may be right.",
+        Area::Process => "Look at how the program starts and ends.",
+    }
+}
+
+/// The first letter in upper case.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    first + letters.as_str()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,32 @@
+//! Where examples lie.
+use fosssim_judge::PairWords;
+use fosssim_mistakes::diagnose::{ExamplePlace, StepRecord};
+use fosssim_model::sim::{Pair, PairKind};
+
+/// Where in its step an example lies, and what its numbers are.
+pub(crate) fn place(place: &ExamplePlace) -> String {
+    match place {
+        ExamplePlace::Given { pair, pass, subject } => {
+            format!("{}, pass {pass}, {} polynomial", PairWords(*pair), subject.name())
+        }
+        ExamplePlace::Polynomial { pair: Pair { kind, first, second }, pass, role } => {
+            format!("particle {first} and {} {second}, pass {pass}, {role} polynomial", kind.second())
+        }
+        ExamplePlace::NumberedPolynomial(number) => format!("polynomial {number}"),
+        ExamplePlace::PolynomialCount => "number of polynomials".to_owned(),
+        ExamplePlace::Contact { kind, first, second } => {
+            let other = kind.map_or("object of unknown kind", PairKind::second);
+            format!("contact of particle {first} and {other} {second}, normal and time")
+        }
+        ExamplePlace::ContactCount => "number of impulses".to_owned(),
+        ExamplePlace::Particle { particle, record } => {
+            let record = match record {
+                StepRecord::Mid => "mid record",
+                StepRecord::End => "end record",
+            };
+            format!("position and velocity of particle {particle}, {record}")
+        }
+        ExamplePlace::MidParticle(particle) => format!("particle {particle}, mid record"),
+        ExamplePlace::MidLists => "lists of the mid record".to_owned(),
+    }
+}

@@ -1,0 +1,168 @@
+//! What is said of wrong polynomials.
+use super::{capitalised, letters};
+use fosssim_mistakes::{
+    assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special},
+    diagnose::{CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Stand, Weight},
+};
+
+/// What is wrong with these polynomials.
+pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {
+    let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
+    let names = names.join(", ");
+    let place = capitalised(&names);
+    match found {
+        OfPolynomials::Guess(guess) => format!("{place}: {}.", of_guess(guess)),
+        OfPolynomials::Missing => format!("Polynomials are not handed over: {names}."),
+        OfPolynomials::NearlyRight => {
+            format!("{place}: The formula is right, but for more round-off than the rules allow.")
+        }
+        OfPolynomials::Nothing => {
+            let plural = if subjects.len() > 1 { "s" } else { "" };
+            format!("No simple mistake explains the polynomial{plural}: {names}.")
+        }
+    }
+}
+
+fn of_guess(guess: &Guess) -> String {
+    match guess {
+        Guess::List(guess) => of_list(*guess).to_owned(),
+        Guess::Exchange(key) => find_exchange(key).map_or(*key, |exchange| exchange.sentence).to_owned(),
+        Guess::Special(key) => find_special(key).map_or(*key, |special| special.sentence).to_owned(),
+        Guess::Quantity(guess) => of_quantity(*guess).to_owned(),
+        Guess::Coefficients { powers, wrong } => {
+            let names: Vec<&str> = powers.iter().map(|power| power_name(*power)).collect();
+            of_coefficients(*wrong).replace("{}", &names.join(", "))
+        }
+    }
+}
+
+const fn of_list(guess: ListGuess) -> &'static str {
+    match guess {
+        ListGuess::NotFinite => "Coefficients are not finite numbers",
+        ListGuess::AllZero => "All coefficients are zero, or none is logged",
+        ListGuess::Constant => "A constant stands in the place of the polynomial",
+        ListGuess::AllEqual => "All coefficients are the same constant",
+        ListGuess::SinglePrecision => "The coefficients have single precision only",
+        ListGuess::Monic => "The polynomial is divided by its leading coefficient, whose sign gets lost",
+        ListGuess::TooLong => "The polynomial has too high a degree",
+        ListGuess::Reversed => "The coefficients are in the wrong order, lowest power first",
+        ListGuess::Negated => "The whole polynomial has the wrong sign",
+        ListGuess::ReversedNegated => "The coefficients are in the wrong order and have the wrong sign",
+        ListGuess::TrailingZero => "A zero is appended, which raises the degree by one",
+        ListGuess::OtherPolynomial => "Polynomials of a pair stand in each other's places",
+        ListGuess::OtherPolynomialNegated => {
+            "A polynomial of the pair stands in another one's place, with the wrong sign"
+        }
+        ListGuess::ConstantOnly => {
+            "The polynomial is cut to its constant coefficient: it is looked at when the step begins only"
+        }
+        ListGuess::Cut => "The polynomial is cut: leading coefficients are missing",
+        ListGuess::CutEnd => "The polynomial is cut: its last coefficients are missing",
+        ListGuess::DisplacementScale => {
+            "All displacements carry the same factor, as velocities or those of another time step do"
+        }
+    }
+}
+
+const fn of_quantity(guess: QuantityGuess) -> &'static str {
+    match guess {
+        QuantityGuess::Sign => "A dot product of the formula has the wrong sign",
+        QuantityGuess::Zero => "A quantity of the formula is zero",
+        QuantityGuess::Factor => "A quantity of the formula has a wrong factor",
+        QuantityGuess::Other => "Another quantity stands where a dot product of the formula belongs",
+    }
+}
+
+/// What is wrong with coefficients, whose names are to be put in.
+const fn of_coefficients(guess: CoefficientGuess) -> &'static str {
+    match guess {
+        CoefficientGuess::Several => "Several coefficients are wrong ({})",
+        CoefficientGuess::Zero => "The {} coefficient is zero",
+        CoefficientGuess::Sign => "The {} coefficient has the wrong sign",
+        CoefficientGuess::Factor => "The {} coefficient has a wrong factor",
+        CoefficientGuess::TermForeign => "The {} coefficient contains a term that does not belong there",
+        CoefficientGuess::TermMissing => "A term of the {} coefficient is missing",
+        CoefficientGuess::TermSign => "A term of the {} coefficient has the wrong sign",
+        CoefficientGuess::TermFactor => "A term of the {} coefficient has a wrong factor",
+        CoefficientGuess::Terms => "Several terms of the {} coefficient are wrong",
+    }
+}
+
+/// The coefficient of a power, in a word.
+const fn power_name(power: usize) -> &'static str {
+    match power {
+        0 => "constant",
+        1 => "linear",
+        2 => "quadratic",
+        3 => "cubic",
+        4 => "quartic",
+        _ => "quintic",
+    }
+}
+
+/// A line of the exact form.
+pub(super) fn detail(detail: &PolynomialDetail) -> String {
+    match detail {
+        PolynomialDetail::Logged { logged, of } => format!("{logged} of {of} polynomials per detection"),
+        PolynomialDetail::RightUpTo(error) => format!("right up to {error:.0e} of the size of its terms"),
+        PolynomialDetail::Differs { subject, power, count, of } => {
+            let place = subject.map(|subject| format!("{}: ", subject.name())).unwrap_or_default();
+            format!("{place}t^{power} differs in {count} of {of} samples")
+        }
+        PolynomialDetail::Holds(value) => format!("the list holds {value} and nothing else, whatever moves"),
+        PolynomialDetail::Every(value) => format!("every coefficient is {value}"),
+        PolynomialDetail::SinglePrecision => "every value is a float".to_owned(),
+        PolynomialDetail::InPlaceOf { stands, belongs } => {
+            format!("the {} polynomial stands where {} belongs", stands.name(), belongs.name())
+        }
+        PolynomialDetail::LastOnly(1) => "only the constant coefficient is there".to_owned(),
+        PolynomialDetail::LastOnly(length) => format!("only the last {length} coefficients are there"),
+        PolynomialDetail::FirstOnly(length) => format!("only the first {length} coefficients are there"),
+        PolynomialDetail::Displacements(factor) => format!("every displacement is multiplied by {factor}"),
+        PolynomialDetail::Exchange { key, of_edges } => {
+            letters::radii(find_exchange(key).map_or(*key, |exchange| exchange.detail), *of_edges)
+        }
+        PolynomialDetail::Special(key) => find_special(key).map_or(*key, |special| special.detail).to_owned(),
+        PolynomialDetail::StandsFor { reading, letter, stand } => stands_for(*reading, letter, stand),
+        PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("t^{power}: the coefficient is 0"),
+        PolynomialDetail::Factor { power, factor } => format!("t^{power}: multiplied by {factor}, expected 1"),
+        PolynomialDetail::Unknown { power } => format!("t^{power}: no simple change explains it"),
+        PolynomialDetail::Weight(weight) => of_weight(weight),
+        PolynomialDetail::Alternative(weights) => {
+            let weights: Vec<String> = weights.iter().map(of_weight).collect();
+            format!("can't be told apart here from {}", weights.join("; "))
+        }
+    }
+}
+
+/// What a letter means; nothing where its name says it.
+fn meaning(reading: Reading, name: &str) -> Option<&'static str> {
+    reading.letter(name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
+}
+
+/// A letter with what it means.
+fn described(reading: Reading, name: &str) -> String {
+    meaning(reading, name).map_or_else(|| name.to_owned(), |meaning| format!("{name} = {meaning}"))
+}
+
+fn stands_for(reading: Reading, letter: &str, stand: &Stand) -> String {
+    let stand = match stand {
+        Stand::Scaled(factor) => format!("{factor} {letter}"),
+        Stand::Letter(other) => described(reading, other),
+        Stand::Dot { vectors: [one, two], negated } => format!("{}{one}.{two}", if *negated { "-" } else { "" }),
+        Stand::One => "1".to_owned(),
+    };
+    match meaning(reading, letter) {
+        None => format!("{stand} stands for {letter}"),
+        Some(meaning) => format!("{letter}: {stand} stands for {meaning}"),
+    }
+}
+
+fn of_weight(weight: &Weight) -> String {
+    let Weight { reading, power, letters, expected, actual } = weight;
+    let mut meanings: Vec<String> =
+        letters.iter().filter(|name| meaning(*reading, name).is_some()).map(|name| described(*reading, name)).collect();
+    meanings.dedup();
+    let meanings = if meanings.is_empty() { String::new() } else { format!(" ({})", meanings.join(", ")) };
+    format!("t^{power}: {} has weight {actual}, expected {expected}{meanings}", letters.join(" "))
+}

@@ -1,0 +1,231 @@
+//! What is said of stages of a step that no known mistake explains.
+use super::capitalised;
+use fosssim_mistakes::{
+    diagnose::{
+        Amount, Changed, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongDecisions, WrongMotion, WrongNumber,
+        WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    },
+    student::Area,
+};
+use fosssim_model::sim::PairKind;
+
+/// What is wrong with a stage, with its place in front.
+pub(super) fn what(fault: &StageFault) -> String {
+    format!("{}: {}.", place(fault), capitalised(&of_fault(fault)))
+}
+
+/// The parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
+fn place(fault: &StageFault) -> String {
+    if let (Some(kind), StageFault::Responses { .. }) = (fault.kind(), fault) {
+        return format!("{} response", capitalised(kind.name()));
+    }
+    let areas: Vec<&str> = fault.areas().iter().map(|area| area_name(*area)).collect();
+    let areas = areas.join(" or ");
+    match fault.kind() {
+        Some(kind) => format!("{} {areas}", capitalised(kind.name())),
+        None => capitalised(&areas),
+    }
+}
+
+const fn area_name(area: Area) -> &'static str {
+    match area {
+        Area::Decision => "detection",
+        Area::ContactVector => "contact vector",
+        Area::Response => "collision response",
+        Area::ImpulseLoop => "impulse loop",
+        Area::ImpactZones => "impact zones",
+        Area::Failsafe => "rigid failsafe",
+        // No stage lies in the others; their names are good enough.
+        _ => area.name(),
+    }
+}
+
+fn of_fault(fault: &StageFault) -> String {
+    let fixed = match fault {
+        StageFault::Order => "the polynomials are right, but the pairs are looked at in another order",
+        StageFault::Decisions { wrong, .. } => match wrong {
+            WrongDecisions::Missed => "contacts that its polynomials show are not counted",
+            WrongDecisions::Superfluous => "contacts are counted that its polynomials do not show",
+            WrongDecisions::Both => {
+                "the polynomials are right, the decisions are not: contacts are missed, others are superfluous"
+            }
+        },
+        StageFault::ContactTimes => "the contacts are right, but not their times of impact",
+        StageFault::ContactVectors { wrong, .. } => match wrong {
+            WrongVectors::Perpendicular => "it is perpendicular to what it should be",
+            WrongVectors::Direction => "it has the wrong direction",
+            WrongVectors::Reversed => "it points the other way round",
+            WrongVectors::Length => "it has the right direction, but not the right length",
+        },
+        StageFault::Responses { wrong, .. } => return of_responses(wrong),
+        StageFault::ManyContacts => "the contacts are right, but not the state that they lead to",
+        StageFault::Unresolved { all: true } => "contacts that the first round's polynomials show change nothing",
+        StageFault::Unresolved { all: false } => "some contacts that the first round's polynomials show change nothing",
+        StageFault::Rounds(number) => match number {
+            WrongNumber::Fewer => "it makes fewer rounds than it should",
+            WrongNumber::More => "it makes more rounds than it should",
+            WrongNumber::Other => "it makes another number of rounds than it should",
+        },
+        StageFault::HandedOver { quantity, when } => {
+            let what = quantity.map_or("positions and velocities", plural);
+            let when = match when {
+                Some(LoopEnd::RanOut) => " when its rounds run out",
+                Some(LoopEnd::Settled) => " when nothing collides any more",
+                None => "",
+            };
+            return format!("its rounds are right, but not the {what} that it hands over{when}");
+        }
+        StageFault::FirstRound => "the first round detects what it should, but what its contacts change is not right",
+        StageFault::LaterRounds => {
+            "its first round detects what it should, and isolated contacts are resolved as they should be, but not all \
+             contacts of a round"
+        }
+        StageFault::AfterRounds => "the impulse rounds are right, what follows them is not",
+        StageFault::ZoneRounds(rounds) => match rounds {
+            WrongZoneRounds::Growth => "zones are right in the first round, but not as they grow",
+            WrongZoneRounds::Fewer => "the zones make fewer rounds than they should",
+            WrongZoneRounds::More => "the zones make more rounds than they should",
+            WrongZoneRounds::Later => {
+                "the zones are right at first, but not in later rounds, or there are not as many as there should be"
+            }
+        },
+        StageFault::Zones(wrong) => match wrong {
+            WrongZones::Partly => "some of a zone's particles are not moved with it",
+            WrongZones::Unmoved => "zones are not moved that should be",
+            WrongZones::Stop => "zones stop in which nothing is fixed",
+            WrongZones::KeepPositions => "zones that have to stop do not go back to their start",
+            WrongZones::KeepVelocities => "zones that have to stop do not lose their velocity",
+        },
+        StageFault::Motion { wrong, .. } if wrong.is_empty() => "zones do not move as they should",
+        StageFault::Motion { wrong, .. } => {
+            let wrong: Vec<&str> = wrong.iter().map(|wrong| of_motion(*wrong)).collect();
+            return wrong.join("; ");
+        }
+    };
+    fixed.to_owned()
+}
+
+const fn of_motion(wrong: WrongMotion) -> &'static str {
+    match wrong {
+        WrongMotion::Centre => "their centre of mass does not move as it should",
+        WrongMotion::Distances => "the particles of a zone do not keep their distances",
+        WrongMotion::Turn => "they do not turn as far as they should",
+        WrongMotion::Velocities => "their velocities are not those of the motion from start to end",
+        WrongMotion::Speeds => "their velocities are not those of the motion from start to end, though along it",
+    }
+}
+
+fn of_responses(wrong: &WrongResponses) -> String {
+    match wrong {
+        WrongResponses::Nothing => "contacts change nothing".to_owned(),
+        WrongResponses::Unchanged(all) => {
+            let list: Vec<String> = all.iter().map(|one| format!("the {} of {}", quantity(one), body(one))).collect();
+            format!("unchanged by contacts: {}", list.join(", "))
+        }
+        WrongResponses::Across(all) => format!("{} also across the contact vector", who_changes(all)),
+        WrongResponses::Amount(all) => {
+            format!("{} along the contact vector, but not by the right amount", who_changes(all))
+        }
+    }
+}
+
+/// Who changes wrongly.
+fn who_changes(all: &[Changed]) -> String {
+    let quantities = distinct(all.iter().map(|one| one.quantity));
+    let bodies = distinct(all.iter().map(body));
+    match (&quantities[..], &bodies[..]) {
+        ([one], [body]) => format!("the {} of {body} changes", singular(*one)),
+        (_, [body]) => format!("position and velocity of {body} change"),
+        ([one], _) => format!("{} change", plural(*one)),
+        _ => "positions and velocities change".to_owned(),
+    }
+}
+
+const fn body(changed: &Changed) -> &'static str {
+    match (changed.kind, changed.body) {
+        (PairKind::ParticleParticle, 0) => "the first particle",
+        (PairKind::ParticleParticle, _) => "the second particle",
+        (PairKind::ParticleEdge, 1) => "the first endpoint",
+        (PairKind::ParticleEdge, 2) => "the second endpoint",
+        _ => "the particle",
+    }
+}
+
+const fn quantity(changed: &Changed) -> &'static str {
+    singular(changed.quantity)
+}
+
+const fn singular(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Position => "position",
+        Quantity::Velocity => "velocity",
+    }
+}
+
+const fn plural(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Position => "positions",
+        Quantity::Velocity => "velocities",
+    }
+}
+
+/// A line of the exact form.
+pub(super) fn detail(detail: &StageDetail) -> String {
+    match detail {
+        StageDetail::Order => {
+            "per particle: the particles behind it, the edges that it is no end of, the half-planes".to_owned()
+        }
+        StageDetail::Impacts { right: false, count, low, high } => {
+            format!("times of impact of these ({count}): {low:.4} to {high:.4}")
+        }
+        StageDetail::Impacts { right: true, count, low, high } => {
+            format!("of those that are right ({count}): {low:.4} to {high:.4}")
+        }
+        StageDetail::Vectors(ratios) => format!("{} as long along the right one", times(*ratios)),
+        StageDetail::Times(ratios) => format!("{} what they should be", times(*ratios)),
+        StageDetail::TimesOff(offset) => format!("off by {offset:.6}"),
+        StageDetail::TimesUsed => {
+            "the time of impact goes into contact vector and response as the root finder returns it".to_owned()
+        }
+        StageDetail::Passes { expected, actual, most } => {
+            format!("{actual} detection passes where {expected} belong, with maxiters {most}")
+        }
+        StageDetail::Change { changed, amount, across, wrong, of } => {
+            let amount = match amount {
+                Amount::Unwanted => "though it should not".to_owned(),
+                Amount::Right => "as it should along the contact vector".to_owned(),
+                Amount::Ratio(ratios) => format!("by {} what it should", times(*ratios)),
+            };
+            let across = if *across { ", and across the contact vector, too" } else { "" };
+            let (place, quantity, body) = (capitalised(changed.kind.name()), quantity(changed), body(changed));
+            format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
+        }
+        StageDetail::Stopped(ratios) => format!("{} their velocity before", times(*ratios)),
+        StageDetail::CentreMoves(ratios) => format!("it moves {} as far", times(*ratios)),
+        StageDetail::CentreDirection => "its direction is wrong, too".to_owned(),
+        StageDetail::Turns(ratios) => format!("they turn {} as far", times(*ratios)),
+        StageDetail::Velocities(ratios) => format!("{} the motion over the step size", times(*ratios)),
+    }
+}
+
+/// Ratios in words: "1.5 times" where they agree, else their range.
+fn times(ratios: Ratios) -> String {
+    let short = |value: f64| {
+        let text = format!("{value:.4}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    };
+    match ratios {
+        Ratios::All(ratio) => format!("{} times", short(ratio)),
+        Ratios::Between(low, high) => format!("{} to {} times", short(low), short(high)),
+    }
+}
+
+fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+    let mut list = Vec::new();
+    for value in values {
+        if !list.contains(&value) {
+            list.push(value);
+        }
+    }
+    list
+}

@@ -1,0 +1,309 @@
+//! Everything that explanations can say, and what they say of mistakes that the catalogue does not have.
+use super::*;
+use fosssim_mistakes::{
+    assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
+    diagnose::{
+        Amount, Changed, CoefficientGuess, Guess, ListGuess, LoopEnd, OfPolynomials, PolynomialDetail, Quantity,
+        QuantityGuess, Ratios, StageDetail, StageFault, Stand, Weight, WrongDecisions, WrongMotion, WrongNumber,
+        WrongResponses, WrongVectors, WrongZoneRounds, WrongZones, explain,
+        outside::{Rated, Rating, rated},
+        probe_scenes,
+    },
+    student::{self, CATALOGUE, Student, mutants::mutants},
+};
+use fosssim_model::{assignments::Assignment, sim::PairKind};
+
+const EDGE: Option<PairKind> = Some(PairKind::ParticleEdge);
+const TWO: Ratios = Ratios::All(2.0);
+const OVERLAP: Reading = Reading { subject: Subject::EdgeOverlap, number: 0 };
+
+fn explanation(key: &str, about: About, details: Vec<Detail>) -> Explanation {
+    let (key, same_as) = (key.to_owned(), Vec::new());
+    Explanation { key, about, details, reproduced: 0, samples: 0, example: None, same_as }
+}
+
+/// All guesses about the coefficients of a polynomial.
+fn guesses() -> Vec<Guess> {
+    let lists = [
+        ListGuess::NotFinite,
+        ListGuess::AllZero,
+        ListGuess::Constant,
+        ListGuess::AllEqual,
+        ListGuess::SinglePrecision,
+        ListGuess::Monic,
+        ListGuess::TooLong,
+        ListGuess::Reversed,
+        ListGuess::Negated,
+        ListGuess::ReversedNegated,
+        ListGuess::TrailingZero,
+        ListGuess::OtherPolynomial,
+        ListGuess::OtherPolynomialNegated,
+        ListGuess::ConstantOnly,
+        ListGuess::Cut,
+        ListGuess::CutEnd,
+        ListGuess::DisplacementScale,
+    ];
+    let quantities = [QuantityGuess::Sign, QuantityGuess::Zero, QuantityGuess::Factor, QuantityGuess::Other];
+    let coefficients = [
+        CoefficientGuess::Several,
+        CoefficientGuess::Zero,
+        CoefficientGuess::Sign,
+        CoefficientGuess::Factor,
+        CoefficientGuess::TermForeign,
+        CoefficientGuess::TermMissing,
+        CoefficientGuess::TermSign,
+        CoefficientGuess::TermFactor,
+        CoefficientGuess::Terms,
+    ];
+    let of_power = |power: usize| Guess::Coefficients { powers: vec![power], wrong: CoefficientGuess::Zero };
+    lists
+        .map(Guess::List)
+        .into_iter()
+        .chain(quantities.map(Guess::Quantity))
+        .chain(coefficients.map(|wrong| Guess::Coefficients { powers: vec![3, 2], wrong }))
+        .chain((0..=5).map(of_power))
+        .chain(EXCHANGES.iter().map(|exchange| Guess::Exchange(exchange.key)))
+        .chain(SPECIALS.iter().map(|special| Guess::Special(special.key)))
+        .collect()
+}
+
+/// All that can be wrong with a stage.
+fn faults() -> Vec<StageFault> {
+    let changed = |body, quantity| Changed { kind: PairKind::ParticleEdge, body, quantity };
+    let position = vec![changed(0, Quantity::Position)];
+    let both = vec![changed(1, Quantity::Position), changed(1, Quantity::Velocity)];
+    let velocities = vec![changed(1, Quantity::Velocity), changed(2, Quantity::Velocity)];
+    let all = [position.clone(), both.clone(), velocities.clone()].concat();
+    let mut faults = vec![
+        StageFault::Order,
+        StageFault::ContactTimes,
+        StageFault::ManyContacts,
+        StageFault::Unresolved { all: true },
+        StageFault::Unresolved { all: false },
+        StageFault::FirstRound,
+        StageFault::LaterRounds,
+        StageFault::AfterRounds,
+    ];
+    for kind in [None, EDGE] {
+        let decisions = [WrongDecisions::Missed, WrongDecisions::Superfluous, WrongDecisions::Both];
+        faults.extend(decisions.map(|wrong| StageFault::Decisions { kind, wrong }));
+        let vectors =
+            [WrongVectors::Perpendicular, WrongVectors::Direction, WrongVectors::Reversed, WrongVectors::Length];
+        faults.extend(vectors.map(|wrong| StageFault::ContactVectors { kind, wrong }));
+        let responses = [
+            WrongResponses::Nothing,
+            WrongResponses::Unchanged(all.clone()),
+            WrongResponses::Across(position.clone()),
+            WrongResponses::Across(both.clone()),
+            WrongResponses::Amount(velocities.clone()),
+            WrongResponses::Amount(all.clone()),
+        ];
+        faults.extend(responses.map(|wrong| StageFault::Responses { kind, wrong }));
+    }
+    faults.extend([WrongNumber::Fewer, WrongNumber::More, WrongNumber::Other].map(StageFault::Rounds));
+    for when in [None, Some(LoopEnd::RanOut), Some(LoopEnd::Settled)] {
+        let quantities = [None, Some(Quantity::Position), Some(Quantity::Velocity)];
+        faults.extend(quantities.map(|quantity| StageFault::HandedOver { quantity, when }));
+    }
+    let rounds = [WrongZoneRounds::Growth, WrongZoneRounds::Fewer, WrongZoneRounds::More, WrongZoneRounds::Later];
+    faults.extend(rounds.map(StageFault::ZoneRounds));
+    let zones = [
+        WrongZones::Partly,
+        WrongZones::Unmoved,
+        WrongZones::Stop,
+        WrongZones::KeepPositions,
+        WrongZones::KeepVelocities,
+    ];
+    faults.extend(zones.map(StageFault::Zones));
+    let motions = [
+        vec![],
+        vec![WrongMotion::Centre, WrongMotion::Distances, WrongMotion::Velocities],
+        vec![WrongMotion::Turn, WrongMotion::Speeds],
+    ];
+    faults.extend(motions.map(|wrong| StageFault::Motion { or_zones: wrong.len() > 2, wrong }));
+    faults
+}
+
+/// All that can be said of polynomials and stages, one explanation each.
+fn all() -> Vec<Explanation> {
+    let edge = Subject::of(PairKind::ParticleEdge).to_vec();
+    let of = |subjects: Vec<Subject>, found| explanation("k", About::Polynomials { subjects, found }, Vec::new());
+    let mut all = vec![
+        explanation("k", About::Scene { has_length: true }, Vec::new()),
+        explanation("k", About::Scene { has_length: false }, Vec::new()),
+        of(edge.clone(), OfPolynomials::Missing),
+        of(edge.clone(), OfPolynomials::Nothing),
+        of(vec![Subject::AlphaLow], OfPolynomials::Nothing),
+        of(vec![Subject::HalfPlaneOverlap], OfPolynomials::NearlyRight),
+    ];
+    let empty = ["pp-empty", "pe-empty", "ph-empty", "loop-empty", "geometric-empty", "failsafe-empty"];
+    let same_as = empty.map(str::to_owned).into();
+    all.push(Explanation { same_as, ..explanation("k", About::Unfinished, Vec::new()) });
+    all.extend(guesses().into_iter().map(|guess| of(edge[..2].to_vec(), OfPolynomials::Guess(guess))));
+    all.extend(faults().into_iter().map(|fault| explanation("k", About::Stage(fault), Vec::new())));
+    all
+}
+
+/// One line of the exact form of every sort.
+fn lines_of_all_sorts() -> Vec<Detail> {
+    let subject = Subject::EdgeOverlap;
+    let weight = |letters: &[&'static str], power| Weight {
+        reading: OVERLAP,
+        power,
+        letters: letters.to_vec(),
+        expected: 1.0,
+        actual: -0.25,
+    };
+    let stands = |letter, stand| PolynomialDetail::StandsFor { reading: OVERLAP, letter, stand };
+    let polynomials = [
+        PolynomialDetail::Logged { logged: 3, of: 4 },
+        PolynomialDetail::RightUpTo(3.4e-12),
+        PolynomialDetail::Differs { subject: Some(subject), power: 2, count: 3, of: 7 },
+        PolynomialDetail::Differs { subject: None, power: 0, count: 7, of: 7 },
+        PolynomialDetail::Holds(1.5),
+        PolynomialDetail::Every(1e-11),
+        PolynomialDetail::SinglePrecision,
+        PolynomialDetail::InPlaceOf { stands: Subject::AlphaHigh, belongs: Subject::AlphaLow },
+        PolynomialDetail::LastOnly(1),
+        PolynomialDetail::LastOnly(2),
+        PolynomialDetail::FirstOnly(2),
+        PolynomialDetail::Displacements(100.0),
+        PolynomialDetail::Exchange { key: "first-radius-only", of_edges: true },
+        PolynomialDetail::Exchange { key: "first-radius-only", of_edges: false },
+        PolynomialDetail::Special("radius-unscaled"),
+        stands("h", Stand::Scaled(0.5)),
+        stands("R^2", Stand::Letter("a")),
+        stands("d", Stand::Dot { vectors: ["x21", "d21"], negated: true }),
+        stands("R^2", Stand::One),
+        PolynomialDetail::Factor { power: 3, factor: 0.0 },
+        PolynomialDetail::Factor { power: 3, factor: 1.5 },
+        PolynomialDetail::Unknown { power: 4 },
+        PolynomialDetail::Weight(weight(&["i", "R^2"], 2)),
+        PolynomialDetail::Weight(weight(&["b", "b"], 2)),
+        PolynomialDetail::Alternative(vec![weight(&["e", "h"], 2), weight(&["R"], 1)]),
+    ];
+    let changed = Changed { kind: PairKind::ParticleEdge, body: 2, quantity: Quantity::Velocity };
+    let change = |amount, across| StageDetail::Change { changed, amount, across, wrong: 3, of: 4 };
+    let stages = [
+        StageDetail::Order,
+        StageDetail::Impacts { right: false, count: 3, low: 0.25, high: 0.75 },
+        StageDetail::Impacts { right: true, count: 5, low: 0.125, high: 1.0 },
+        StageDetail::Vectors(Ratios::Between(-1.0, 0.33333)),
+        StageDetail::Times(TWO),
+        StageDetail::TimesOff(0.1),
+        StageDetail::TimesUsed,
+        StageDetail::Passes { expected: 4, actual: 2, most: 10 },
+        change(Amount::Unwanted, false),
+        change(Amount::Right, true),
+        change(Amount::Ratio(TWO), false),
+        StageDetail::Stopped(TWO),
+        StageDetail::CentreMoves(TWO),
+        StageDetail::CentreDirection,
+        StageDetail::Turns(Ratios::Between(0.5, 0.75)),
+        StageDetail::Velocities(TWO),
+    ];
+    let polynomials = polynomials.map(Detail::Polynomial).into_iter();
+    polynomials.chain([Detail::Letters(vec![PairKind::ParticleEdge])]).chain(stages.map(Detail::Stage)).collect()
+}
+
+/// What hints below `full` let through: no sentence gives a formula away, whatever is explained.
+#[test]
+fn no_sentence_gives_a_formula_away() {
+    let known = CATALOGUE.iter().map(|row| explanation(row.id, About::Mistake, Vec::new()));
+    for one in all().into_iter().chain(known) {
+        let sentence = what(&one);
+        assert_eq!(formula_in(&sentence), None, "{sentence}");
+        assert!(sentence.ends_with(['.', '?']) && sentence.starts_with(char::is_uppercase), "{sentence}");
+    }
+}
+
+#[test]
+fn every_finding_has_its_sentence() {
+    let sentences: Vec<String> = all().iter().map(what).collect();
+    insta::assert_snapshot!("sentences", sentences.join("\n"));
+    let lines = details(&explanation("k", About::Mistake, lines_of_all_sorts()));
+    insta::assert_snapshot!("lines", lines.join("\n"));
+}
+
+/// A known mistake is told by its row: the sentence, its exact form, and where to look, with the letters' meaning between.
+#[test]
+fn a_known_mistake_is_told_by_its_row() {
+    let row = find("pe-square-no-eh").expect("a row");
+    let details_of_row =
+        vec![Detail::Term(row.id), Detail::Letters(vec![PairKind::ParticleEdge]), Detail::Look(row.area)];
+    let one = explanation(row.id, About::Mistake, details_of_row);
+    assert_eq!(what(&one), row.sentence());
+    let lines = details(&one);
+    assert_eq!(lines[0], row.term);
+    assert!(lines[1].starts_with("Here d21 is dx2 - dx1"), "{lines:?}");
+    assert_eq!(lines[2], "Look at the coefficients that the particle-edge detection computes.");
+}
+
+/// What an explanation says.
+fn words(one: &Explanation) -> String {
+    format!("{} {}", what(one), details(one).join(" "))
+}
+
+/// Mistakes that the catalogue does not have, one of four: nothing misleads, and in eight of ten something is said that
+/// helps. `crates/lab` has the table of all.
+#[test]
+fn of_unknown_mistakes_the_place_is_told_and_none_is_taken_for_another() {
+    let rated: Vec<Rated> = rated(|number| number % 4 == 1, words).collect();
+    let misleading: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Misleading).collect();
+    assert!(misleading.is_empty(), "{misleading:#?}");
+    let open: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Unknown).collect();
+    assert!(5 * open.len() <= rated.len() && rated.len() >= 15, "{open:#?}");
+}
+
+/// What is said of a mutant's trace of one probe scene.
+fn said_on(id: &str, probe: &str) -> Explanation {
+    let mutant = mutants().find(|mutant| mutant.id == id).expect("a mutant");
+    let (_, scene) = probe_scenes(Assignment::T2M2).into_iter().find(|(name, _)| name == probe).expect("a probe scene");
+    let trace = student::trace(&scene, Student::default().with_mutant(mutant)).expect("it comes to an end");
+    explain(&scene, &trace).into_iter().next().expect("an explanation")
+}
+
+#[test]
+fn the_first_wrong_stage_is_told_with_what_its_results_have_in_common() {
+    let cases = [
+        (
+            "order-kinds-apart",
+            "zones-of-all-kinds",
+            "Detection: The polynomials are right, but the pairs",
+            "per particle",
+        ),
+        ("root-time-late", "edges-struck", "Detection: The contacts are right, but not their times", "1.1 times"),
+        (
+            "vector-doubled",
+            "edges-struck",
+            "Particle-edge contact vector: It has the right direction",
+            "2 times as long",
+        ),
+        ("response-stronger", "edges-struck", "Collision response: ", "1.5 times what it should"),
+        (
+            "response-friction",
+            "edges-struck",
+            "Collision response: Velocities change also across",
+            "across the contact",
+        ),
+        ("loop-at-most-two", "rounds-enough", "Impulse loop: It makes fewer rounds", "2 detection passes where"),
+        ("rigid-half-turn", "zones-turn-little-and-far", "Rigid failsafe: They do not turn as far", "they turn 0."),
+        ("rigid-shrinks", "zones-turn-little-and-far", "Rigid failsafe: ", ""),
+        (
+            "rigid-velocity-halved",
+            "zones-turn-little-and-far",
+            "Rigid failsafe: Their velocities",
+            "0.5 times the motion",
+        ),
+    ];
+    let mut others = Vec::new();
+    for (id, probe, what, detail) in cases {
+        let said = said_on(id, probe);
+        let lines = details(&said);
+        let has_detail = detail.is_empty() || lines.iter().any(|line| line.contains(detail));
+        if !super::what(&said).contains(what) || !has_detail {
+            others.push(format!("{id} on {probe}: {} {lines:?}", super::what(&said)));
+        }
+    }
+    assert!(others.is_empty(), "{others:#?}");
+}
