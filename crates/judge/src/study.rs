@@ -184,15 +184,21 @@ fn right_approach(polynomials: &[Polynomial], expected: &formulas::Expected) -> 
     Some(Polynomial::untrimmed(&coefficients))
 }
 
+/// The same motion with bounds. The displacement's value is kept, its bound is that of a difference of positions, of which the one
+/// at the end may be off by a rounding.
+impl From<PointMotion> for formulas::BoundedPointMotion {
+    fn from(point: PointMotion) -> Self {
+        let start = Bounded2::exact(point.start);
+        let mut shift = Bounded2::rounded(point.start + point.shift) - start;
+        (shift.x.value, shift.y.value) = (point.shift.x, point.shift.y);
+        Self { start, shift }
+    }
+}
+
 /// The same motion with bounds: end positions may be off by a rounding.
 impl From<&PairMotion> for formulas::BoundedPairMotion {
     fn from(motion: &PairMotion) -> Self {
-        let way = |point: PointMotion| {
-            let start = Bounded2::exact(point.start);
-            let mut shift = Bounded2::rounded(point.start + point.shift) - start;
-            (shift.x.value, shift.y.value) = (point.shift.x, point.shift.y);
-            formulas::BoundedPointMotion { start, shift }
-        };
+        let way = formulas::BoundedPointMotion::from;
         let sum = |radii: [f64; 2]| Bounded::exact(radii[0]) + Bounded::exact(radii[1]);
         match *motion {
             PairMotion::Particles { centres, radii } => Self::Particles(centres.map(way), sum(radii)),

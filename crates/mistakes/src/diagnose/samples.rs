@@ -4,17 +4,20 @@
 //! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end is
 //! what the integrator makes of it, before any response. So the first pass of each step is looked at, and in hybrid scenes the
 //! first pass of the geometric part, which starts from the mid record.
-use super::polynomial::{Body, Motion, Sample};
+use super::polynomial::Sample;
 use fosssim_judge::{
     budget::Budget,
     fair::{compare::compare, formulas},
 };
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{ByKind, Decision, Observer, Pair, PairKind, Pass, Resume, RootSearch, Simulation, Stage, State, pairs},
+    sim::{
+        ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, RootSearch, Simulation, Stage, State,
+        pairs,
+    },
     trace::{Layout, Lenient, LenientFrame, LoggedImpulse, PolynomialLog, record_memory},
 };
-use fosssim_num::{polynomial::Polynomial, vector::at};
+use fosssim_num::polynomial::Polynomial;
 use std::io::Read;
 
 /// What follows this many bytes of the trace is not looked at.
@@ -112,30 +115,6 @@ impl<'a> Gatherer<'a> {
         };
         matches!(self.scene.collision, Collision::ContinuousTime { .. }) && self.mid.impulses.iter().any(is_pair)
     }
-
-    fn motion(&self, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Motion {
-        let (first, second) = (pair.first as usize, pair.second as usize);
-        let body = |particle| {
-            let start = at(q_start, particle);
-            Body { start, displacement: at(q_end, particle) - start }
-        };
-        let radius = |particle: usize| self.scene.particles[particle].radius;
-        match pair.kind {
-            PairKind::ParticleParticle => {
-                Motion::Particles { bodies: [body(first), body(second)], radii: [radius(first), radius(second)] }
-            }
-            PairKind::ParticleEdge => {
-                let edge = &self.scene.edges[second];
-                let bodies = [body(first), body(edge.first), body(edge.second)];
-                Motion::Edge { bodies, radii: [radius(first), edge.radius] }
-            }
-            PairKind::ParticleHalfPlane => {
-                let half_plane = &self.scene.half_planes[second];
-                let (point, normal) = (half_plane.point, half_plane.normal);
-                Motion::HalfPlane { body: body(first), radius: radius(first), point, normal }
-            }
-        }
-    }
 }
 
 /// How many polynomials each detection logs so that the lists consist of whole passes: all of them if that fits, else as
@@ -201,7 +180,7 @@ impl Observer for Gatherer<'_> {
         if if is_right { kind.right >= MOST_RIGHT } else { kind.wrong >= MOST_WRONG } {
             return;
         }
-        let motion = self.motion(pair, q_start, q_end);
+        let motion = PairMotion::between(self.scene, pair, q_start, q_end);
         let kind = &mut self.gathered.kinds[pair.kind];
         *(if is_right { &mut kind.right } else { &mut kind.wrong }) += 1;
         kind.samples.push(Sample { step: self.step, pass, pair, motion, polynomials });

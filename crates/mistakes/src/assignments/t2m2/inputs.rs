@@ -1,7 +1,6 @@
 //! What goes into the formulas of a detection.
-use super::motion::{Motion, way};
 use fosssim_judge::fair::formulas::BoundedPointMotion;
-use fosssim_model::sim::PairKind;
+use fosssim_model::sim::{PairKind, PairMotion};
 use fosssim_num::{
     bounded::{Bounded, Bounded2},
     vector::Vec2,
@@ -24,13 +23,14 @@ pub(crate) struct Inputs {
 
 impl Inputs {
     /// The inputs as they are.
-    pub fn new(motion: &Motion) -> Self {
+    pub fn new(motion: &PairMotion) -> Self {
+        let way = BoundedPointMotion::from;
         let still = |point: Vec2| BoundedPointMotion { start: Bounded2::exact(point), shift: Bounded2::default() };
         let (ways, radii) = match *motion {
-            Motion::Particles { bodies: [one, two], radii } => ([way(&one), way(&two), still(Vec2::zeros())], radii),
-            Motion::Edge { bodies, radii } => (bodies.each_ref().map(way), radii),
-            Motion::HalfPlane { body, radius, point, normal } => {
-                ([way(&body), still(point), still(normal)], [radius, 0.0])
+            PairMotion::Particles { centres: [one, two], radii } => ([way(one), way(two), still(Vec2::zeros())], radii),
+            PairMotion::Edge { centre, ends: [first, second], radii } => ([centre, first, second].map(way), radii),
+            PairMotion::HalfPlane { centre, radius, point, normal } => {
+                ([way(centre), still(point), still(normal)], [radius, 0.0])
             }
         };
         let radii = radii.map(Bounded::exact);

@@ -1,7 +1,8 @@
 //! The sample that shows a mistake best: wrong, with inputs that are quickly written down, early.
 use super::study::{Case, Study};
-use crate::assignments::t2m2::{Body, Input, Motion};
+use crate::assignments::t2m2::Input;
 use crate::diagnose::{Example, ExamplePlace, ExampleValue};
+use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
 fosssim_model::drops_leading!();
@@ -31,21 +32,21 @@ fn digits(case: &Case) -> usize {
     given(&case.sample.motion).iter().flat_map(|input| &input.value).map(|value| value.to_string().len()).sum()
 }
 
-fn given(motion: &Motion) -> Vec<ExampleValue> {
+fn given(motion: &PairMotion) -> Vec<ExampleValue> {
     match motion {
-        Motion::Particles { bodies, radii } => {
-            let mut list = moving(bodies);
+        PairMotion::Particles { centres, radii } => {
+            let mut list = moving(centres);
             list.extend([number(Input::R1, radii[0]), number(Input::R2, radii[1])]);
             list
         }
-        Motion::Edge { bodies, radii } => {
-            let mut list = moving(bodies);
+        PairMotion::Edge { centre, ends, radii } => {
+            let mut list = moving(&[*centre, ends[0], ends[1]]);
             list.extend([number(Input::R1, radii[0]), number(Input::Re, radii[1])]);
             list
         }
-        Motion::HalfPlane { body, radius, point, normal } => vec![
-            vector(Input::X, body.start),
-            vector(Input::Dx, body.displacement),
+        PairMotion::HalfPlane { centre, radius, point, normal } => vec![
+            vector(Input::X, centre.start),
+            vector(Input::Dx, centre.shift),
             vector(Input::P, *point),
             vector(Input::N, *normal),
             number(Input::R, *radius),
@@ -53,13 +54,11 @@ fn given(motion: &Motion) -> Vec<ExampleValue> {
     }
 }
 
-fn moving(bodies: &[Body]) -> Vec<ExampleValue> {
+fn moving(points: &[PointMotion]) -> Vec<ExampleValue> {
     let starts =
-        [Input::X1, Input::X2, Input::X3].into_iter().zip(bodies).map(|(input, body)| vector(input, body.start));
-    let moves = [Input::Dx1, Input::Dx2, Input::Dx3]
-        .into_iter()
-        .zip(bodies)
-        .map(|(input, body)| vector(input, body.displacement));
+        [Input::X1, Input::X2, Input::X3].into_iter().zip(points).map(|(input, point)| vector(input, point.start));
+    let moves =
+        [Input::Dx1, Input::Dx2, Input::Dx3].into_iter().zip(points).map(|(input, point)| vector(input, point.shift));
     starts.chain(moves).collect()
 }
 

@@ -21,7 +21,6 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-pub use crate::assignments::t2m2::{Body, Motion};
 pub use sample::Sample;
 
 use super::{

@@ -1,6 +1,5 @@
 //! What explanations of polynomials are made of: the inputs of one detection and what the submission logged for it.
-use crate::assignments::t2m2::Motion;
-use fosssim_model::sim::Pair;
+use fosssim_model::sim::{Pair, PairMotion};
 
 /// One detection of a submission: what went in, and the polynomials that it handed to the root finder.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,7 +11,7 @@ pub struct Sample {
     /// Who was looked at. Its kind is that of `motion`.
     pub pair: Pair,
     /// The inputs, from the submission's own states.
-    pub motion: Motion,
+    pub motion: PairMotion,
     /// What was logged, one list per polynomial of the kind in the trace's order
     /// (2 or 4); each highest power first and without the small
     /// leading coefficients that the course's library drops. Fewer lists: the last polynomials are missing.

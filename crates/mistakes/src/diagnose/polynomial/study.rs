@@ -8,6 +8,7 @@ use crate::assignments::t2m2::{
     formulas::{Formula, readings},
 };
 use crate::diagnose::{Guess, PolynomialDetail};
+use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_num::{bounded::Bounded, tolerances::LEADING_COEFFICIENT};
 
 fosssim_model::drops_leading!();
@@ -78,7 +79,7 @@ impl<'a> Study<'a> {
             .filter_map(|sample| {
                 let logged = sample.polynomials.get(number)?.as_slice();
                 let inputs = Inputs::new(&sample.motion);
-                let judged = sample.motion.judged().polynomials();
+                let judged = BoundedPairMotion::from(&sample.motion).polynomials();
                 let expected = judged.polynomial(number).to_vec();
                 let right = is_right(&expected, logged)
                     || judged.other_form(number).is_some_and(|other| is_right(other, logged));

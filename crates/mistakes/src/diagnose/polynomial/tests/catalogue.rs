@@ -1,10 +1,10 @@
 //! The students of the catalogue on small random scenes: a mistake is explained by what it is, a correct variant not at
 //! all.
-use super::{Body, Motion, Numbers, PairKind, Sample, explain};
+use super::{Numbers, PairKind, Sample, explain};
 use crate::student::{Area, CATALOGUE, KNOWN_ACCUSED, Object, Row, RowKind, StepLog, Student, World, find, step};
 use fosssim_model::{
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
-    sim::Pair,
+    sim::{Pair, PairMotion, PointMotion},
 };
 use fosssim_num::vector::{Vec2, at};
 
@@ -79,23 +79,23 @@ fn first_passes(row: &Row, style: Style) -> Vec<Sample> {
         let body = |index: usize| {
             let place = at(&start.x, index);
             let end = place + world.scene.time_step * at(&start.v, index);
-            Body { start: place, displacement: end - place }
+            PointMotion { start: place, shift: end - place }
         };
         let radius = |index: usize| world.scene.particles[index].radius;
         for pair in &world.pairs {
             let one = pair.particle;
             let (motion, second) = match pair.object {
                 Object::Particle(two) => {
-                    (Motion::Particles { bodies: [body(one), body(two)], radii: [radius(one), radius(two)] }, two)
+                    (PairMotion::Particles { centres: [body(one), body(two)], radii: [radius(one), radius(two)] }, two)
                 }
                 Object::Edge(index) => {
                     let edge = world.scene.edges[index];
-                    let bodies = [body(one), body(edge.first), body(edge.second)];
-                    (Motion::Edge { bodies, radii: [radius(one), edge.radius] }, index)
+                    let (centre, ends) = (body(one), [body(edge.first), body(edge.second)]);
+                    (PairMotion::Edge { centre, ends, radii: [radius(one), edge.radius] }, index)
                 }
                 Object::HalfPlane(index) => {
                     let HalfPlane { point, normal } = world.scene.half_planes[index];
-                    (Motion::HalfPlane { body: body(one), radius: radius(one), point, normal }, index)
+                    (PairMotion::HalfPlane { centre: body(one), radius: radius(one), point, normal }, index)
                 }
             };
             let kind = motion.kind();

@@ -4,7 +4,8 @@ mod catalogue;
 use super::*;
 use crate::assignments::t2m2::{Input, Inputs, Reading, formulas};
 use crate::diagnose::{CoefficientGuess, ExamplePlace, Stand, Weight};
-use fosssim_model::sim::Pair;
+use fosssim_judge::fair::formulas::BoundedPairMotion;
+use fosssim_model::sim::{Pair, PairMotion, PointMotion};
 use fosssim_num::{polynomial::trim, vector::Vec2};
 
 /// Numbers without a pattern, the same in every run.
@@ -20,24 +21,26 @@ impl Numbers {
         Vec2::new(self.next(size), self.next(size))
     }
 
-    fn body(&mut self) -> Body {
-        Body { start: self.vector(3.0), displacement: self.vector(0.7) }
+    fn body(&mut self) -> PointMotion {
+        PointMotion { start: self.vector(3.0), shift: self.vector(0.7) }
     }
 
     fn radius(&mut self) -> f64 {
         0.3 + self.next(0.2)
     }
 
-    fn motion(&mut self, kind: PairKind) -> Motion {
+    fn motion(&mut self, kind: PairKind) -> PairMotion {
         match kind {
             PairKind::ParticleParticle => {
-                Motion::Particles { bodies: [self.body(), self.body()], radii: [self.radius(), self.radius()] }
+                PairMotion::Particles { centres: [self.body(), self.body()], radii: [self.radius(), self.radius()] }
             }
-            PairKind::ParticleEdge => {
-                Motion::Edge { bodies: [self.body(), self.body(), self.body()], radii: [self.radius(), self.radius()] }
-            }
-            PairKind::ParticleHalfPlane => Motion::HalfPlane {
-                body: self.body(),
+            PairKind::ParticleEdge => PairMotion::Edge {
+                centre: self.body(),
+                ends: [self.body(), self.body()],
+                radii: [self.radius(), self.radius()],
+            },
+            PairKind::ParticleHalfPlane => PairMotion::HalfPlane {
+                centre: self.body(),
                 radius: self.radius(),
                 point: self.vector(3.0),
                 normal: self.vector(2.0),
@@ -49,7 +52,7 @@ impl Numbers {
 type Lists = Vec<Vec<f64>>;
 
 /// Samples of one kind with what a student makes of them, trimmed as the course's library does.
-fn samples(kind: PairKind, count: u32, student: impl Fn(&Motion) -> Lists) -> Vec<Sample> {
+fn samples(kind: PairKind, count: u32, student: impl Fn(&PairMotion) -> Lists) -> Vec<Sample> {
     let mut numbers = Numbers(11);
     (0..count)
         .map(|index| {
@@ -76,10 +79,10 @@ struct Letters {
     s: f64,
 }
 
-fn letters(motion: &Motion) -> Letters {
-    let Motion::Edge { bodies: [one, two, three], radii: [r1, re] } = motion else { panic!("no edge") };
-    let (w0, w1) = (one.start - two.start, one.displacement - two.displacement);
-    let (e0, e1) = (three.start - two.start, three.displacement - two.displacement);
+fn letters(motion: &PairMotion) -> Letters {
+    let PairMotion::Edge { centre: one, ends: [two, three], radii: [r1, re] } = motion else { panic!("no edge") };
+    let (w0, w1) = (one.start - two.start, one.shift - two.shift);
+    let (e0, e1) = (three.start - two.start, three.shift - two.shift);
     Letters {
         a: w0.dot(&e0),
         b: w0.dot(&e1) + w1.dot(&e0),
@@ -135,25 +138,25 @@ fn quintic(l: &Letters, d: f64, slip: bool) -> Vec<f64> {
     ]
 }
 
-fn edge_lists(motion: &Motion) -> Lists {
+fn edge_lists(motion: &PairMotion) -> Lists {
     let l = letters(motion);
     let high = vec![l.i - l.c, 2.0 * l.h - l.b, l.g - l.a];
     vec![quartic(&l), vec![l.c, l.b, l.a], high, quintic(&l, l.f, true)]
 }
 
-fn particle_lists(motion: &Motion) -> Lists {
-    let Motion::Particles { bodies: [one, two], radii: [r1, r2] } = motion else { panic!("no particles") };
-    let (x, d, r) = (two.start - one.start, two.displacement - one.displacement, r1 + r2);
+fn particle_lists(motion: &PairMotion) -> Lists {
+    let PairMotion::Particles { centres: [one, two], radii: [r1, r2] } = motion else { panic!("no particles") };
+    let (x, d, r) = (two.start - one.start, two.shift - one.shift, r1 + r2);
     vec![vec![-d.dot(&d), -2.0 * x.dot(&d), r * r - x.dot(&x)], vec![-d.dot(&d), -d.dot(&x)]]
 }
 
-fn half_plane_lists(motion: &Motion) -> Lists {
-    let Motion::HalfPlane { body, radius, point, normal } = motion else { panic!("no half-plane") };
-    let (s, w) = (body.displacement.dot(normal), (*point - body.start).dot(normal));
+fn half_plane_lists(motion: &PairMotion) -> Lists {
+    let PairMotion::HalfPlane { centre: body, radius, point, normal } = motion else { panic!("no half-plane") };
+    let (s, w) = (body.shift.dot(normal), (*point - body.start).dot(normal));
     vec![vec![-s * s, 2.0 * w * s, radius * radius * normal.dot(normal) - w * w], vec![-s * s, w * s]]
 }
 
-fn right_lists(motion: &Motion) -> Lists {
+fn right_lists(motion: &PairMotion) -> Lists {
     match motion.kind() {
         PairKind::ParticleParticle => particle_lists(motion),
         PairKind::ParticleEdge => edge_lists(motion),
@@ -166,7 +169,7 @@ fn only(
     kind: PairKind,
     key: &str,
     is_told: impl Fn(&PolynomialDetail) -> bool,
-    student: impl Fn(&Motion) -> Lists,
+    student: impl Fn(&PairMotion) -> Lists,
 ) -> Explanation {
     let found = explain(&samples(kind, 300, student));
     let [one] = &found[..] else { panic!("{key}: {found:#?}") };
@@ -222,7 +225,7 @@ fn right_polynomials_need_no_explanation() {
 
 #[test]
 fn the_right_quintic_is_as_good_as_the_supplied_one() {
-    let student = |motion: &Motion| {
+    let student = |motion: &PairMotion| {
         let l = letters(motion);
         let mut lists = edge_lists(motion);
         lists[3] = quintic(&l, l.f, false);
@@ -238,7 +241,7 @@ fn the_tables_are_the_formulas_of_the_fair_rules() {
     for kind in PairKind::ALL {
         for _ in 0..200 {
             let motion = numbers.motion(kind);
-            let (judged, inputs) = (motion.judged().polynomials(), Inputs::new(&motion));
+            let (judged, inputs) = (BoundedPairMotion::from(&motion).polynomials(), Inputs::new(&motion));
             for (number, &subject) in Subject::of(kind).iter().enumerate() {
                 for (form, formula) in formulas::readings(subject).iter().enumerate() {
                     let is_other = subject == Subject::EdgeApproach && form == 1;
@@ -285,7 +288,7 @@ fn one_wrong_term_of_the_quartic_is_named() {
 #[test]
 fn mistakes_in_two_coefficients_are_both_named_whatever_the_scale() {
     for scale in [1.0, 7.0] {
-        let student = |motion: &Motion| {
+        let student = |motion: &PairMotion| {
             let l = letters(motion);
             let mut lists = edge_lists(motion);
             lists[0][1] = 2.0 * l.b * l.c - 2.0 * l.e * l.i + 2.0 * l.f * l.h;
@@ -342,13 +345,13 @@ fn wrong_radii_are_named() {
     ];
     for (key, square) in squares {
         only(PairKind::ParticleEdge, key, is(PolynomialDetail::Exchange { key, of_edges: true }), |motion| {
-            let Motion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
+            let PairMotion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
             let mut lists = edge_lists(motion);
             lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
             lists
         });
         only(PairKind::ParticleParticle, key, is(PolynomialDetail::Exchange { key, of_edges: false }), |motion| {
-            let Motion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
+            let PairMotion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
             let mut lists = particle_lists(motion);
             lists[0][2] += square(*r1, *r2) - (r1 + r2) * (r1 + r2);
             lists
@@ -359,13 +362,13 @@ fn wrong_radii_are_named() {
 /// A mistake in the inputs shows in several polynomials and is told once.
 #[test]
 fn wrong_inputs_are_one_explanation_for_all_polynomials() {
-    type Change = fn(&mut [Body; 3]);
+    type Change = fn(&mut [PointMotion; 3]);
     let changes: [(&str, Change); 5] = [
-        ("end-positions", |bodies| bodies.iter_mut().for_each(|body| body.start += body.displacement)),
-        ("edge-still", |bodies| bodies[1..].iter_mut().for_each(|body| body.displacement = Vec2::zeros())),
-        ("first-displacement-twice", |bodies| bodies[2].displacement = bodies[1].displacement),
-        ("displacements-swapped", |[_, two, three]| std::mem::swap(&mut two.displacement, &mut three.displacement)),
-        ("end-for-displacement", |bodies| bodies.iter_mut().for_each(|body| body.displacement += body.start)),
+        ("end-positions", |bodies| bodies.iter_mut().for_each(|body| body.start += body.shift)),
+        ("edge-still", |bodies| bodies[1..].iter_mut().for_each(|body| body.shift = Vec2::zeros())),
+        ("first-displacement-twice", |bodies| bodies[2].shift = bodies[1].shift),
+        ("displacements-swapped", |[_, two, three]| std::mem::swap(&mut two.shift, &mut three.shift)),
+        ("end-for-displacement", |bodies| bodies.iter_mut().for_each(|body| body.shift += body.start)),
     ];
     for (key, change) in changes {
         let one = only(
@@ -374,8 +377,10 @@ fn wrong_inputs_are_one_explanation_for_all_polynomials() {
             |_| true,
             |motion| {
                 let mut motion = *motion;
-                if let Motion::Edge { bodies, .. } = &mut motion {
-                    change(bodies);
+                if let PairMotion::Edge { centre, ends: [first, second], .. } = &mut motion {
+                    let mut points = [*centre, *first, *second];
+                    change(&mut points);
+                    [*centre, *first, *second] = points;
                 }
                 edge_lists(&motion)
             },
@@ -471,15 +476,15 @@ fn small_slips_in_quadratics_are_named() {
     overlap("coefficient-sign", &is(sign), &|lists| lists[0][2] *= -1.0);
     overlap("term-sign", &weight(0, "x21.d21", 1.0, -1.0), &|lists| lists[1][1] *= -1.0);
     overlap("term-factor", &weight(1, "d21.d21", -2.0, -1.0), &|lists| lists[1][0] *= 2.0);
-    let half_plane = |key: &str, told: Told, change: &dyn Fn(&Motion, &mut Lists)| {
+    let half_plane = |key: &str, told: Told, change: &dyn Fn(&PairMotion, &mut Lists)| {
         only(PairKind::ParticleHalfPlane, key, told, |motion| {
             let mut lists = half_plane_lists(motion);
             change(motion, &mut lists);
             lists
         })
     };
-    let n_square = |motion: &Motion| match motion {
-        Motion::HalfPlane { normal, radius, .. } => (normal.dot(normal), radius * radius),
+    let n_square = |motion: &PairMotion| match motion {
+        PairMotion::HalfPlane { normal, radius, .. } => (normal.dot(normal), radius * radius),
         _ => panic!("no half-plane"),
     };
     let exchange = |key| is(PolynomialDetail::Exchange { key, of_edges: false });
@@ -492,13 +497,13 @@ fn small_slips_in_quadratics_are_named() {
         lists[0][2] += r * n.sqrt() - r * n;
     });
     half_plane("letter", &stands(Subject::HalfPlaneApproach, "(dx.n)", Stand::One), &|motion, lists| {
-        let Motion::HalfPlane { body, point, normal, .. } = motion else { panic!("no half-plane") };
+        let PairMotion::HalfPlane { centre: body, point, normal, .. } = motion else { panic!("no half-plane") };
         lists[1] = vec![-1.0, (*point - body.start).dot(normal)];
     });
     only(PairKind::ParticleEdge, "term-missing", weight(1, "d13.x23", 0.0, 1.0), |motion| {
-        let Motion::Edge { bodies: [one, two, three], .. } = motion else { panic!("no edge") };
+        let PairMotion::Edge { centre: one, ends: [two, three], .. } = motion else { panic!("no edge") };
         let mut lists = edge_lists(motion);
-        lists[2][1] = (one.start - three.start).dot(&(two.displacement - three.displacement));
+        lists[2][1] = (one.start - three.start).dot(&(two.shift - three.shift));
         lists
     });
     only(PairKind::ParticleEdge, "one-unscaled", is(PolynomialDetail::Special("one-unscaled")), |motion| {
@@ -542,9 +547,9 @@ fn hostile_samples_do_no_harm() {
                 1 => sample.polynomials[0] = vec![value; index],
                 2 => sample.polynomials[1].clear(),
                 _ => {
-                    let (Motion::HalfPlane { body, .. }
-                    | Motion::Particles { bodies: [body, _], .. }
-                    | Motion::Edge { bodies: [body, ..], .. }) = &mut sample.motion;
+                    let (PairMotion::HalfPlane { centre: body, .. }
+                    | PairMotion::Particles { centres: [body, _], .. }
+                    | PairMotion::Edge { centre: body, .. }) = &mut sample.motion;
                     body.start.x = value;
                 }
             }
@@ -564,8 +569,8 @@ fn the_example_is_the_roundest_one() {
         lists[0].reverse();
         lists
     });
-    let still = |x: f64, dx: f64| Body { start: Vec2::new(x, 0.0), displacement: Vec2::new(dx, 0.0) };
-    list[20].motion = Motion::Particles { bodies: [still(0.0, 1.0), still(4.0, -1.0)], radii: [1.0, 1.0] };
+    let still = |x: f64, dx: f64| PointMotion { start: Vec2::new(x, 0.0), shift: Vec2::new(dx, 0.0) };
+    list[20].motion = PairMotion::Particles { centres: [still(0.0, 1.0), still(4.0, -1.0)], radii: [1.0, 1.0] };
     list[20].polynomials = vec![vec![-12.0, 16.0, -4.0], vec![-4.0, 8.0]];
     let found = explain(&list);
     let example = found[0].example.as_ref().expect("there is a wrong sample");
