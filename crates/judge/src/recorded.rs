@@ -86,7 +86,7 @@ fn compare(
             }
         }
         for index in 0..expected.polynomials.len() {
-            tally.expect_polynomial(expected.polynomials.get(index), || places.at(index));
+            tally.compare_polynomial(expected.polynomials.get(index), || places.at(index));
         }
         tally.finish(&expected.state, layout.impulses, layout.polynomials);
         tally::accumulate(&mut outcome.residuals, &result.residuals);

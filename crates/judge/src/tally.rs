@@ -170,22 +170,6 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// The next polynomial of the reference; `place` says where it belongs, should that be needed.
-    #[inline]
-    pub(super) fn expect_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
-        let index = self.polynomials;
-        self.polynomials += 1;
-        if index < self.frame.polynomials.len() {
-            let actual = self.frame.polynomials.get(index);
-            if !equal_and_safe(expected, actual) {
-                self.identical = self.identical && equal(expected, actual);
-                if !passes(expected, actual) {
-                    self.compare_closely(&place, &Polynomial::untrimmed(expected), actual);
-                }
-            }
-        }
-    }
-
     /// How the trace's next polynomial compares with the one of these bytes.
     #[inline]
     fn likeness(&self, own: &[u8]) -> Likeness {
@@ -305,12 +289,25 @@ impl<'a> Tally<'a> {
         debug_assert_eq!(self.result.counts.get(Kind::Velocity), velocities);
     }
 
-    /// Oracle-behaviour.md 6.2 for one polynomial that the original rejects: what it finds.
-    #[cold]
-    fn compare_closely(&mut self, place: &dyn Fn() -> PolynomialPlace, expected: &Polynomial, actual: &[f64]) {
+    /// Compares the next polynomial of the reference, as oracle-behaviour.md 6.2 does; `place` says where it belongs, should that be
+    /// needed.
+    pub(super) fn compare_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
+        let index = self.polynomials;
+        self.polynomials += 1;
+        if index >= self.frame.polynomials.len() {
+            return;
+        }
+        let actual = self.frame.polynomials.get(index);
+        if equal_and_safe(expected, actual) {
+            return;
+        }
+        self.identical = self.identical && equal(expected, actual);
+        if passes(expected, actual) {
+            return;
+        }
+        let (own, expected) = (expected, &Polynomial::untrimmed(expected));
         let (step, frame) = (self.step, self.frame_number);
         let finding = |detail| Finding { step, frame, detail };
-        let own = expected.coefficients();
         let shown = Polynomial::untrimmed(&actual[..actual.len().min(MAX_COEFFICIENTS)]);
         if own.len() != actual.len() {
             self.buffers.pending.record(Kind::PolynomialDegree, || {
@@ -398,7 +395,7 @@ impl Observer for Tally<'_> {
             }
             let places = coefficients.iter_mut().zip(bytes.as_chunks::<8>().0);
             places.for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes));
-            self.expect_polynomial(&coefficients[..bytes.len() / 8], || {
+            self.compare_polynomial(&coefficients[..bytes.len() / 8], || {
                 let (_, pair, which) = order.polynomial(number).expect("a pass logs the polynomials of these pairs");
                 PolynomialPlace { pass, pair, role: Role::of(pair.kind, which), index }
             });
