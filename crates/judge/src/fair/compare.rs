@@ -49,6 +49,41 @@ pub fn compare(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Ma
     }
 }
 
+/// Whether a logged polynomial is certainly wrong with every factor, found without looking for the best one. `false` leaves it
+/// open.
+///
+/// Whatever [`compare`] takes for right differs from the expected one times its factor by less than `WIDEST` units of all bounds
+/// together, at any time within the step: the tolerances of six coefficients are at most 2 `FAIR_UNITS` of the sum of bounds and
+/// six times `FAIR_NORM_UNITS` of it, and where values are compared instead they have less. So each time allows an interval of
+/// factors, and where two of these have nothing in common there is none.
+pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
+    /// Tolerances, and the rounding of values here.
+    const WIDEST: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
+    let Some(missing) = expected.len().checked_sub(actual.len()).filter(|_| expected.len() <= MAX_COEFFICIENTS) else {
+        return false;
+    };
+    let size: f64 = expected.iter().map(|r| r.bound.max(r.value.abs())).sum();
+    let room = WIDEST * UNIT_ROUNDOFF * size;
+    let rounding = 32.0 * UNIT_ROUNDOFF * actual.iter().map(|s| s.abs()).sum::<f64>();
+    // What was dropped may be missing, whatever the factor.
+    let logged_room = rounding + missing as f64 * LEADING_COEFFICIENT;
+    if !(room.is_finite() && logged_room.is_finite()) {
+        return false;
+    }
+    let (mut least, mut most) = (0.0_f64, f64::INFINITY);
+    for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
+        let right = expected.iter().fold(0.0, |sum, r| sum * t + r.value);
+        let logged = actual.iter().fold(0.0, |sum, s| sum * t + s);
+        let (right, logged) = if right < 0.0 { (-right, -logged) } else { (right, logged) };
+        if right > 2.0 * room {
+            least = least.max((logged - logged_room) / (right + room));
+            most = most.min((logged + logged_room) / (right - room));
+        }
+    }
+    // What the intervals' ends round is far less than this.
+    least > most + 1e-9 * most.abs()
+}
+
 /// [`compare`], where the logged polynomial is complete and right with the factor that fits best, as nearly all are; `None`
 /// leaves it open. The factor is found once, and all coefficients are compared with it at once, by the same operations.
 fn fits(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
@@ -338,6 +373,45 @@ mod tests {
         };
         assert_eq!((power, actual), (1, logged[1]));
         assert!((expected - 6.6).abs() < 1e-12);
+    }
+
+    /// What is wrong with every factor is wrong in a close look, too, whatever the hints; and most of what is wrong in one
+    /// coefficient is found to be so.
+    #[test]
+    fn what_fits_with_no_factor_is_wrong() {
+        let mut seed = 1_u64;
+        let mut next = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut wrong, mut certain) = (0, 0);
+        for round in 0..40_000 {
+            let length = 2 + round % 5;
+            let mut expected: Vec<Bounded> = (0..length)
+                .map(|_| {
+                    let value = (next() - 0.5) * [1.0, 1e-9, 1e3, 0.0][(next() * 4.0) as usize];
+                    Bounded { value, bound: value.abs() * 40.0 * next() + [0.0, 1.0][round / 5 % 2] }
+                })
+                .collect();
+            let factor = [1.0, 0.25, 1.0 / 3.0, 1e-7, -1.0][round / 10 % 5];
+            let noise = [0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-6][round / 50 % 7];
+            let mut logged: Vec<f64> = expected.iter().map(|r| factor * r.value * (1.0 + noise * next())).collect();
+            if round % 3 == 0 {
+                logged[(next() * length as f64) as usize] += noise * factor.abs() * next();
+            }
+            if round % 4 == 0 {
+                // The course's library drops what is small.
+                let dropped = 1.2e-12 * (next() - 0.5);
+                expected[0].value = dropped / factor.abs();
+                logged.remove(0);
+            }
+            let is_wrong = compare(&expected, &logged, &[factor.abs(), 1.0]).is_err();
+            let is_certain = fits_with_no_factor(&expected, &logged);
+            assert!(is_wrong || !is_certain, "{expected:?} {logged:?}");
+            wrong += u32::from(is_wrong);
+            certain += u32::from(is_certain);
+        }
+        assert!(certain > wrong / 2 && certain > 2000, "{certain} of {wrong}");
     }
 
     #[test]

@@ -118,7 +118,12 @@ pub enum Block {
 /// Compares two traces record by record until one of them ends.
 ///
 /// Both readers must have the same layout and stand at the beginning.
-pub fn compare<A: Read, B: Read>(mut left: Reader<A>, mut right: Reader<B>) -> Comparison {
+pub fn compare<'a, A: Read + 'a, B: Read + 'a>(left: Reader<A>, right: Reader<B>) -> Comparison {
+    compare_boxed(left.boxed(), right.boxed())
+}
+
+/// The same, compiled here and not where it is called: traces are large, and callers may be compiled with less care.
+fn compare_boxed<'a>(mut left: Reader<Box<dyn Read + 'a>>, mut right: Reader<Box<dyn Read + 'a>>) -> Comparison {
     let (mut a, mut b) = (Frame::default(), Frame::default());
     let (mut frames, mut differing, mut first) = (0, 0, None);
     let layout = left.layout();

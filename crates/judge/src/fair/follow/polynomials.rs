@@ -2,7 +2,7 @@
 use super::{Deferred, Follower, Seen};
 use crate::{
     fair::{
-        compare::{Match, Mismatch, compare, possible_factors},
+        compare::{Match, Mismatch, compare, fits_with_no_factor, possible_factors},
         formulas::{BoundedPairMotion, Expected},
         step_judgement::Pending,
     },
@@ -30,7 +30,12 @@ impl Follower<'_> {
                 if number >= count {
                     return Ok(Match { scale: None, share: 0.0 });
                 }
-                compare(expected.polynomial(number), log.get(index + number), &hints[number])
+                let (own, logged) = (expected.polynomial(number), log.get(index + number));
+                // Where there is another form, nobody asks what is wrong with this one.
+                if expected.other_form(number).is_some() && fits_with_no_factor(own, logged) {
+                    return Err(Mismatch::TooLong);
+                }
+                compare(own, logged, &hints[number])
             })
         };
         let mut results = matches(&expected);
