@@ -96,7 +96,7 @@ impl Default for Instructions {
 }
 
 /// Fewer pairs than this are not worth looking for wide instructions.
-const FEW_PAIRS: usize = 24;
+const FEW_PAIRS: usize = 8;
 
 impl Instructions {
     /// The widest instructions, where so many pairs are looked at together that it pays to look for them: a virtual machine may
