@@ -26,7 +26,7 @@ use fosssim_model::{
 use std::{io::Read, sync::Mutex};
 
 /// A batch is full when its frames hold this many bytes ...
-const BATCH_BYTES: usize = 1 << 20;
+const BATCH_BYTES: usize = 1 << 18;
 /// ... but beside one that holds more than this, no other is read: one record is enough to have in memory then.
 const LARGE_BATCH_BYTES: usize = 1 << 24;
 /// ... or this many steps ...
