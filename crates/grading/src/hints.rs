@@ -32,9 +32,9 @@ impl Hints {
         }
     }
 
-    /// What of explanations may be told: nothing below [`Hints::What`]; at that level what is wrong, whose sentence holds no formula, and
-    /// the known mistakes that can't be told apart from it, which have such sentences, too; exact forms and examples in
-    /// [`Hints::Full`] only.
+    /// Cuts explanations down to this level: below [`Hints::What`] there are none. At that level each says what is wrong, in a
+    /// sentence without formulas, and which known mistakes can't be told apart from it; exact forms and examples need
+    /// [`Hints::Full`].
     #[must_use]
     pub fn cut(self, explanations: Vec<Explanation>) -> Vec<Explanation> {
         match self {
@@ -50,8 +50,8 @@ impl Hints {
         }
     }
 
-    /// What of a judged trace may be told: nothing at [`Hints::None`]; where findings are and of what kind below
-    /// [`Hints::Full`]; there everything.
+    /// Cuts what judging found down to this level: nothing at [`Hints::None`]; below [`Hints::Full`] where findings are, and of
+    /// what kind; there everything.
     #[must_use]
     pub fn tell(self, judged: &Outcome, rules: Rules) -> Option<Told> {
         (self > Self::None).then(|| Told {
