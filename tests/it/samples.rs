@@ -154,6 +154,23 @@ fn the_catalogue_is_large_and_every_id_is_accepted() {
     assert!(refused.is_empty(), "{refused:?}");
 }
 
+/// Who adds a mistake has to say so where people read how many there are.
+#[test]
+fn documents_say_how_many_mistakes_and_variants_there_are() {
+    let rows = catalogue();
+    let count = |kind: &str| rows.iter().filter(|row| row.kind == kind).count();
+    let (wrong, variants) = (count("wrong"), count("variant"));
+    for (document, sentences) in [
+        ("README.md", [format!("Of {wrong} documented mistakes"), format!("of {variants} correct variants")]),
+        ("docs/fair.md", [format!("all {wrong} mistakes and"), format!("and {variants} correct variants")]),
+    ] {
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(document)).expect(document);
+        for sentence in sentences {
+            assert!(text.contains(&sentence), "{document} does not say \"{sentence}\"");
+        }
+    }
+}
+
 /// A mistake that no built-in scene brings to light would pass unnoticed whatever the rules are.
 #[test]
 fn every_wrong_sample_leaves_another_trace_of_some_built_in_scene() {

@@ -1,7 +1,7 @@
 //! Grades in every format that courses use: pure functions from [`Grade`] to text.
 //!
-//! Names and program output are somebody else's words. [`plain`] takes control characters out of them before any
-//! format sees them; each format then escapes what its own syntax gives a meaning.
+//! Names and program output are somebody else's words. Each format has [`plain`] or [`one_line`] take control characters out
+//! of them, and escapes what its own syntax gives a meaning; a test sends hostile words through every format.
 
 mod class;
 mod csv_table;
