@@ -22,7 +22,12 @@ use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 /// Runs the command that the program's arguments ask for.
 #[must_use]
 pub fn main() -> ExitCode {
-    let words: Vec<OsString> = std::env::args_os().collect();
+    // First of all, since this is called most often and is over soonest.
+    crate::original::run_if_meant(&original::Program).unwrap_or_else(run)
+}
+
+/// Every other command.
+fn run(words: Vec<OsString>) -> ExitCode {
     // Before anything else and before any thread: this process may be a sandbox's supervisor.
     if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
         return code;
@@ -30,13 +35,6 @@ pub fn main() -> ExitCode {
     // A half-written output is then removed like after any other failure.
     crate::sandbox::let_large_writes_fail();
     let program = words.first().cloned().unwrap_or_default();
-    if original::is_called(&program) {
-        return original::main(program.as_bytes(), words.get(1..).unwrap_or_default());
-    }
-    if words.get(1).is_some_and(|word| word == "original") {
-        let name = [program.as_bytes(), b" original"].concat();
-        return original::main(&name, &words[2..]);
-    }
     let arguments = match arguments::Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -48,7 +46,8 @@ pub fn main() -> ExitCode {
     console::choose_colour(arguments.color);
     // Options before the command kept it from being recognised above.
     if let arguments::Command::Original(original) = &arguments.command {
-        return original::main(&[program.as_bytes(), b" original"].concat(), &original.words);
+        let name = [program.as_bytes(), b" original"].concat();
+        return crate::original::main(&name, &original.words, &original::Program);
     }
     let code = commands::run(&arguments.command).unwrap_or_else(|error| {
         // Names of files are a stranger's words, too.

@@ -4,15 +4,15 @@
 //! are written directly. Pipes, sockets and block devices are refused: a pipe without a reader would block for ever.
 use super::{
     console,
-    input::Identity,
     interrupt::{clean_up_when_interrupted, pending},
 };
+use crate::files::{Identity, open_for_writing};
 use anyhow::{Context, Result, bail};
 use std::{
     ffi::OsStr,
     fs::{self, File, OpenOptions, Permissions},
     io::{self, Write},
-    os::unix::fs::{FileTypeExt, OpenOptionsExt, PermissionsExt},
+    os::unix::fs::{FileTypeExt, PermissionsExt},
     path::{Path, PathBuf},
 };
 use tempfile::{NamedTempFile, TempPath};
@@ -160,21 +160,6 @@ impl Write for Output {
 /// When it can't be written; the old file, if there is one, is unharmed.
 pub(super) fn write(name: &Path, inputs: &[Identity], bytes: &[u8]) -> Result<()> {
     Output::create(name, inputs)?.finish_with(bytes)
-}
-
-/// Opens for writing without waiting for a pipe's reader, whose absence is an error. What is opened waits, when it is
-/// written to, until there is room.
-///
-/// # Errors
-/// When it can't be opened.
-pub(super) fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> {
-    let first = options.clone().custom_flags(libc::O_NONBLOCK).open(name)?;
-    let kind = first.metadata()?.file_type();
-    if kind.is_fifo() || kind.is_char_device() {
-        // There is a reader. Through `first` a full pipe would be an error; through a second opening it is waited for.
-        return options.open(name);
-    }
-    Ok(first)
 }
 
 /// A temporary file in a folder, which an interrupt removes.

@@ -3,13 +3,15 @@
 use std::path::{Path, PathBuf};
 
 /// The crates of the house and those that each may use, lowest first.
-const CRATES: [(&str, &[&str]); 14] = [
+const CRATES: [(&str, &[&str]); 16] = [
     ("num", &[]),
     ("textdiff", &[]),
+    ("files", &[]),
     ("sandbox", &[]),
     ("testing", &[]),
     ("model", &["num"]),
     ("judge", &["num", "model"]),
+    ("original", &["num", "files", "model", "judge"]),
     ("mistakes", &["num", "model", "judge"]),
     ("render", &["num", "model", "judge"]),
     ("evidence", &["model", "judge", "mistakes"]),
@@ -18,8 +20,8 @@ const CRATES: [(&str, &[&str]); 14] = [
     (
         "oracle",
         &[
-            "num", "textdiff", "testing", "sandbox", "model", "judge", "mistakes", "render", "evidence", "grading",
-            "report",
+            "num", "textdiff", "files", "testing", "sandbox", "model", "original", "judge", "mistakes", "render",
+            "evidence", "grading", "report",
         ],
     ),
     ("lab", &["oracle"]),

@@ -1,6 +1,6 @@
 //! Arithmetic whose bits matter: polynomials, the Jenkins-Traub root finder, first satisfaction times, certificates
 //! that make a root search unnecessary, decisions that hold whatever rounding did, the linear solver of the implicit
-//! integrators, elementary functions.
+//! integrators, elementary functions, and numbers as C++ prints them.
 //!
 //! Knows nothing of the rest of the crate, never prints, never touches files or processes, and never allocates in
 //! the functions that run per pair (but for the integers of [`decision::exact`], the last resort). The mathematics is
@@ -18,6 +18,7 @@ pub mod interval;
 pub mod lanes;
 pub mod linear;
 pub mod polynomial;
+pub mod printed;
 pub mod rpoly;
 pub mod tolerances;
 pub mod vector;

@@ -1,4 +1,4 @@
-//! Results to bytes: text and JSON reports, and the original program's own output.
+//! Results to bytes: text, JSON and the formats of learning platforms.
 //!
 //! Every renderer is a pure function from results to text; nothing here opens a file, reads a clock or computes a
 //! verdict. Core types are not `Serialize`: `view` owns the serialised shapes and their schema version.
@@ -12,7 +12,6 @@ pub mod explain;
 pub mod grade;
 pub mod headroom;
 pub mod number;
-pub mod original;
 pub mod page;
 pub mod problems;
 pub mod scene;

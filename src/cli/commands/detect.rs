@@ -1,4 +1,5 @@
 //! `detect`: one detection call, looked at closely.
+use crate::files::Identity;
 use crate::{
     cli::{
         console, exit,
@@ -38,7 +39,7 @@ fn study(motion: &PairMotion) -> Result<Study> {
     Study::of(motion).context(NO_ANSWER)
 }
 
-fn show(arguments: &Detect, study: &Study, place: Option<Place<'_>>, inputs: &[input::Identity]) -> Result<()> {
+fn show(arguments: &Detect, study: &Study, place: Option<Place<'_>>, inputs: &[Identity]) -> Result<()> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, inputs)).transpose()?;
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let report = Report { study, place };
@@ -148,7 +149,7 @@ struct Traced {
     mid: State,
     end: Frame,
     name: String,
-    identity: Option<input::Identity>,
+    identity: Option<Identity>,
 }
 
 fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<Traced> {

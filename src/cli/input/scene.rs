@@ -1,9 +1,10 @@
 //! Scenes as inputs: strict reading, all problems at once.
-use super::{Identity, asset, no_asset, open, read_limited, shown, trace::ZSTD_MAGIC};
+use super::{asset, no_asset, open, shown, trace::ZSTD_MAGIC};
+use crate::files::{Identity, read_limited};
 use crate::{
     cli::console,
     report::problems,
-    scene::{self, Loaded},
+    scene::{self, LARGEST_SCENE, Loaded},
     suite::library,
 };
 use anyhow::{Context, Result, bail};
@@ -61,6 +62,6 @@ fn is_binary(bytes: &[u8]) -> bool {
 /// The bytes of a scene file, which may not be larger than any sensible scene.
 fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
     let (file, metadata) = open(name)?;
-    let bytes = read_limited(file, &metadata)?;
+    let bytes = read_limited(file, &metadata, LARGEST_SCENE)?;
     Ok((bytes, Some(Identity::of(&metadata))))
 }

@@ -1,5 +1,6 @@
 //! Traces as inputs: streams, decompressed on the way.
-use super::{Identity, asset, no_asset, open, patient, shown};
+use super::{asset, no_asset, open, shown};
+use crate::files::{Identity, patient};
 use crate::{cli::output::has_extension, suite::library};
 use anyhow::{Context, Result, bail};
 use std::{

@@ -2,10 +2,10 @@
 mod ffmpeg;
 mod motion;
 
+use crate::files::Identity;
 use crate::{
     cli::{
-        console, exit,
-        input::{self, Identity},
+        console, exit, input,
         output::{Folder, Output, has_extension},
         pictures::{Render, RenderFormat},
     },

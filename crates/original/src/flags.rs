@@ -2,12 +2,12 @@
 
 /// A flag with a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Flag {
-    pub(super) letter: &'static str,
-    pub(super) name: &'static str,
-    pub(super) boolean: bool,
-    pub(super) required: bool,
-    pub(super) help: &'static str,
+pub(crate) struct Flag {
+    pub(crate) letter: &'static str,
+    pub(crate) name: &'static str,
+    pub(crate) boolean: bool,
+    pub(crate) required: bool,
+    pub(crate) help: &'static str,
 }
 
 const fn flag(letter: &'static str, name: &'static str, boolean: bool, help: &'static str) -> Flag {
@@ -15,7 +15,7 @@ const fn flag(letter: &'static str, name: &'static str, boolean: bool, help: &'s
 }
 
 /// The flags in the order in which the usage lists them.
-pub(super) const FLAGS: [Flag; 7] = [
+pub(crate) const FLAGS: [Flag; 7] = [
     flag("m", "moviedir", false, "Folder for one SVG picture per step"),
     flag("i", "inputfile", false, "Binary trace to grade"),
     flag("o", "outputfile", false, "Binary trace to record"),

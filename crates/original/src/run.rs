@@ -1,19 +1,16 @@
 //! Recording and grading as the original does them (oracle-behaviour.md 2).
-use super::{arguments::Arguments, pictures::Pictures};
 use crate::{
-    cli::{
-        console,
-        input::{self, Identity},
-        output,
-    },
-    judge::{Stop, Unreadable, parity, parity::Progress},
-    report::describe::step_error,
-    report::original::{
-        Heading, INPUT_AND_OUTPUT, NO_VORTEX_HESSIAN, Task, Transcript, input_not_opened, output_not_opened,
-        residual_file,
-    },
+    Outside, Pictures,
+    arguments::Arguments,
+    transcript::{Heading, Task, Transcript},
+    verdict::residual_file,
+    words::{INPUT_AND_OUTPUT, NO_VORTEX_HESSIAN, input_not_opened, output_not_opened},
+};
+use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_limited};
+use fosssim_judge::{Stop, Unreadable, parity, parity::Progress};
+use fosssim_model::{
     scene::{
-        Integrator, LARGEST_IMPLICIT, Scene,
+        Integrator, LARGEST_IMPLICIT, LARGEST_SCENE, Scene,
         original::{self, OriginalScene, Refusal, RefusalKind},
     },
     sim::{RootSearch, Simulation, StepError},
@@ -22,7 +19,7 @@ use crate::{
 use std::{
     fs::{self, File, OpenOptions},
     io::{self, BufWriter, Read, Write},
-    os::unix::{ffi::OsStrExt, fs::OpenOptionsExt},
+    os::unix::ffi::OsStrExt,
     path::Path,
 };
 
@@ -30,7 +27,7 @@ use std::{
 const FAILED: u8 = 1;
 
 /// Runs with parsed arguments; `words` are the raw ones. Returns the exit code.
-pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
+pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outside) -> u8 {
     if arguments.input.is_some() && arguments.output.is_some() {
         return complain(INPUT_AND_OUTPUT);
     }
@@ -41,7 +38,10 @@ pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
     if let Some(message) = unsupported(arguments, &scene.scene) {
         return complain(&message);
     }
-    let pictures = match Pictures::new(arguments, &scene.scene) {
+    let wanted = arguments.generate || arguments.movie.is_some();
+    let pictures =
+        wanted.then(|| outside.pictures(arguments.generate, arguments.movie.as_deref().map(Path::new), &scene.scene));
+    let pictures = match pictures.transpose() {
         Ok(pictures) => pictures,
         Err(message) => return complain(&message),
     };
@@ -55,9 +55,9 @@ pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
     let mut transcript = Transcript::new(BufWriter::new(io::stdout()), heading);
     match (&arguments.output, &arguments.input) {
         (Some(file), _) => match create(Path::new(file), identity) {
-            Ok(file) => simulate(&scene.scene, file, transcript, pictures),
+            Ok(file) => simulate(&scene.scene, file, transcript, pictures, outside),
             Err(message) => {
-                console::complain(&message);
+                crate::complain(&message);
                 FAILED
             }
         },
@@ -68,20 +68,20 @@ pub(super) fn run(arguments: &Arguments, words: &[Vec<u8>]) -> u8 {
                 {
                     return complain(&message);
                 }
-                return grade(&scene.scene, trace, transcript);
+                return grade(&scene.scene, trace, transcript, outside);
             }
             let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
-            console::complain(&input_not_opened(third_word));
+            crate::complain(&input_not_opened(third_word));
             transcript.not_opened();
             drop(transcript.finish());
             FAILED
         }
-        (None, None) => simulate(&scene.scene, io::sink(), transcript, pictures),
+        (None, None) => simulate(&scene.scene, io::sink(), transcript, pictures, outside),
     }
 }
 
 fn complain(text: &str) -> u8 {
-    console::complain(text.as_bytes());
+    crate::complain(text.as_bytes());
     FAILED
 }
 
@@ -89,12 +89,11 @@ fn complain(text: &str) -> u8 {
 fn load(arguments: &Arguments) -> Result<(OriginalScene, Option<Identity>), Refusal> {
     let name = Path::new(&arguments.scene);
     let unreadable = || Refusal::unreadable(arguments.scene.as_bytes());
-    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name).map_err(|_| unreadable())?;
-    let metadata = file.metadata().map_err(|_| unreadable())?;
+    let (file, metadata) = open_for_reading(name).map_err(|_| unreadable())?;
     let bytes = if metadata.is_dir() {
         Vec::new()
     } else {
-        input::read_limited(file, &metadata).map_err(|error| Refusal {
+        read_limited(file, &metadata, LARGEST_SCENE).map_err(|error| Refusal {
             kind: RefusalKind::Undefined,
             stderr: format!("cannot read the scene {}: {error}\n", name.display()).into_bytes(),
             exit_code: FAILED,
@@ -110,7 +109,7 @@ fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
         let name = arguments.scene.display();
         return complain(&format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
     }
-    console::complain(&refusal.stderr);
+    crate::complain(&refusal.stderr);
     refusal.exit_code
 }
 
@@ -138,14 +137,13 @@ fn create(name: &Path, scene: Option<Identity>) -> Result<File, Vec<u8>> {
 
 /// Creates or truncates a file. A pipe without a reader is an error and does not block.
 fn create_now(name: &Path) -> io::Result<File> {
-    output::open_for_writing(OpenOptions::new().write(true).create(true).truncate(true), name)
+    open_for_writing(OpenOptions::new().write(true).create(true).truncate(true), name)
 }
 
 /// Opens the trace; a directory opens and reads as an empty file.
 fn open(name: &Path) -> io::Result<Box<dyn Read + Send>> {
-    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name)?;
-    let metadata = file.metadata()?;
-    if metadata.is_dir() { Ok(Box::new(io::empty())) } else { input::patient(file, &metadata) }
+    let (file, metadata) = open_for_reading(name)?;
+    if metadata.is_dir() { Ok(Box::new(io::empty())) } else { patient(file, &metadata) }
 }
 
 /// Simulates, and records into `file`.
@@ -153,7 +151,8 @@ fn simulate<W: Write>(
     scene: &Scene,
     file: W,
     mut transcript: Transcript<'_, impl Write>,
-    mut pictures: Option<Pictures>,
+    mut pictures: Option<Box<dyn Pictures>>,
+    outside: &dyn Outside,
 ) -> u8 {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(file, Layout::of(scene), simulation.state());
@@ -169,7 +168,7 @@ fn simulate<W: Write>(
             && let Err(error) = pictures.step(step, &simulation.state().positions)
         {
             drop(transcript.finish());
-            return complain(&format!("{error:#}\n"));
+            return complain(&error);
         }
     }
     let written = recorder.finish();
@@ -179,7 +178,7 @@ fn simulate<W: Write>(
     transcript.closes();
     drop(transcript.finish());
     match (stopped, written) {
-        (Some(error), _) => step_failed(&error),
+        (Some(error), _) => step_failed(&error, outside),
         // The original would go on and claim that the trace was saved.
         (None, Err(error)) => complain(&format!("the trace could not be written: {error}\n")),
         (None, Ok(_)) => 0,
@@ -187,7 +186,7 @@ fn simulate<W: Write>(
 }
 
 /// Draws the states of a trace, as far as it can be read; what is wrong with it the grading says.
-fn draw(scene: &Scene, name: &Path, mut pictures: Pictures) -> Result<(), String> {
+fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(), String> {
     if !fs::metadata(name).is_ok_and(|data| data.is_file()) {
         return Err("pictures of a trace (-g, -m with -i) need a file, which can be read twice\n".to_owned());
     }
@@ -199,14 +198,19 @@ fn draw(scene: &Scene, name: &Path, mut pictures: Pictures) -> Result<(), String
         let record = reader.records() - 1;
         let step = layout.step_of(record);
         if step > 0 && record == layout.end_record(step) {
-            pictures.step(step, &frame.state.positions).map_err(|error| format!("{error:#}\n"))?;
+            pictures.step(step, &frame.state.positions)?;
         }
     }
     Ok(())
 }
 
 /// Grades a trace and writes `residual.txt`.
-fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<'_, impl Write>) -> u8 {
+fn grade(
+    scene: &Scene,
+    trace: Box<dyn Read + Send>,
+    mut transcript: Transcript<'_, impl Write>,
+    outside: &dyn Outside,
+) -> u8 {
     let outcome = parity::judge(scene, trace, &parity::Options::default(), &mut transcript);
     transcript.graded(&outcome);
     drop(transcript.finish());
@@ -218,7 +222,7 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
     }
     match &outcome.stop {
         None => 0,
-        Some(Stop::Step(error)) => step_failed(error),
+        Some(Stop::Step(error)) => step_failed(error, outside),
         Some(Stop::Trace { cause: Unreadable::State | Unreadable::Impulses, .. }) => FAILED,
         Some(Stop::Trace {
             cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io,
@@ -231,11 +235,11 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
 }
 
 /// What the original computes without end, or gives up.
-fn step_failed(error: &StepError) -> u8 {
+fn step_failed(error: &StepError, outside: &dyn Outside) -> u8 {
     match error {
         StepError::VortexHessian { .. } => complain(NO_VORTEX_HESSIAN),
         StepError::RootSearch { .. } | StepError::Newton { .. } | StepError::Work { .. } => {
-            let (step, words) = step_error(error);
+            let (step, words) = outside.step_error(error);
             complain(&format!("step {step} has no result: {words}\n"))
         }
     }

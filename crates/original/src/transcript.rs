@@ -1,29 +1,32 @@
 //! The original's standard output as a state machine over events (oracle-behaviour.md 3, 5, 6).
-use super::super::number::general;
-use super::{BLUE, GREEN, PINK, PLAIN, RED, collisions, verdict};
+use crate::{
+    collisions, verdict,
+    words::{BLUE, GREEN, PINK, PLAIN, RED},
+};
 use fosssim_judge::{
     Outcome, Residuals, Stop, Unreadable,
     parity::{Progress, Remark},
 };
 use fosssim_model::scene::{Integrator, Scene};
+use fosssim_num::printed::general;
 use std::io::{self, Write};
 
 /// What the original shows above a run.
 #[derive(Debug, Clone, Copy)]
-pub struct Heading<'a> {
+pub(crate) struct Heading<'a> {
     /// The scene argument as typed.
-    pub scene_name: &'a [u8],
+    pub(crate) scene_name: &'a [u8],
     /// The scene.
-    pub scene: &'a Scene,
+    pub(crate) scene: &'a Scene,
     /// The description as the file has it.
-    pub description: &'a [u8],
+    pub(crate) description: &'a [u8],
     /// What is to be done.
-    pub task: Task<'a>,
+    pub(crate) task: Task<'a>,
 }
 
 /// What the original is asked to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Task<'a> {
+pub(crate) enum Task<'a> {
     /// Simulate and keep nothing.
     Run,
     /// Record a trace in this file.
@@ -38,7 +41,7 @@ pub enum Task<'a> {
 /// `begins`, `step_begins` per step, then [`Transcript::completes`] and [`Transcript::closes`]. The first error of the
 /// stream is kept until [`Transcript::finish`]; what follows it is dropped.
 #[derive(Debug)]
-pub struct Transcript<'a, W: Write> {
+pub(crate) struct Transcript<'a, W: Write> {
     stream: W,
     heading: Heading<'a>,
     steps: u32,
@@ -61,26 +64,26 @@ const BANNER: [&str; 7] = [
 
 impl<'a, W: Write> Transcript<'a, W> {
     /// A transcript that has said nothing yet.
-    pub fn new(stream: W, heading: Heading<'a>) -> Self {
+    pub(crate) fn new(stream: W, heading: Heading<'a>) -> Self {
         Self { stream, heading, steps: heading.scene.steps(), threshold: DOT, error: None }
     }
 
     /// All steps are done.
-    pub fn completes(&mut self) {
+    pub(crate) fn completes(&mut self) {
         self.dot(self.steps);
         let time = f64::from(self.steps) * self.heading.scene.time_step;
         self.message(&format!("Simulation complete at time {}. Exiting.", general(time)));
     }
 
     /// The exit handler of a recording: the file is closed. Says nothing otherwise.
-    pub fn closes(&mut self) {
+    pub(crate) fn closes(&mut self) {
         if let Task::Record(file) = self.heading.task {
             self.message_about("Saved simulation to file '", file, "'.");
         }
     }
 
     /// Grading is over: the completion message or the reason for stopping, then the exit handler's lines.
-    pub fn graded(&mut self, outcome: &Outcome) {
+    pub(crate) fn graded(&mut self, outcome: &Outcome) {
         match &outcome.stop {
             None => self.completes(),
             Some(Stop::Trace { cause: Unreadable::State, .. }) => {
@@ -104,7 +107,7 @@ impl<'a, W: Write> Transcript<'a, W> {
     }
 
     /// The exit handler's lines when the trace could not even be opened; no banner comes before them.
-    pub fn not_opened(&mut self) {
+    pub(crate) fn not_opened(&mut self) {
         self.write(verdict::incomplete(&Residuals::default()).as_bytes());
     }
 
@@ -112,7 +115,7 @@ impl<'a, W: Write> Transcript<'a, W> {
     ///
     /// # Errors
     /// The first error of the stream.
-    pub fn finish(mut self) -> io::Result<W> {
+    pub(crate) fn finish(mut self) -> io::Result<W> {
         if let Some(error) = self.error {
             return Err(error);
         }

@@ -3,7 +3,7 @@
 //! Words are bytes: file names that are not UTF-8 pass through. The rules are those of the argument library that the
 //! original uses: value and flag are separate words, the first word that makes no sense ends the program, `--help` and
 //! `--version` take effect where they stand.
-use super::{
+use crate::{
     flags::{FLAGS, Flag},
     usage,
 };
@@ -11,28 +11,28 @@ use std::{ffi::OsString, os::unix::ffi::OsStringExt};
 
 /// What was asked for.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Arguments {
-    pub(super) scene: OsString,
-    pub(super) output: Option<OsString>,
-    pub(super) input: Option<OsString>,
-    pub(super) display: bool,
-    pub(super) generate: bool,
-    pub(super) movie: Option<OsString>,
+pub(crate) struct Arguments {
+    pub(crate) scene: OsString,
+    pub(crate) output: Option<OsString>,
+    pub(crate) input: Option<OsString>,
+    pub(crate) display: bool,
+    pub(crate) generate: bool,
+    pub(crate) movie: Option<OsString>,
 }
 
 /// How the program ends instead of running.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct Ending {
-    pub(super) stdout: Vec<u8>,
-    pub(super) stderr: Vec<u8>,
-    pub(super) exit_code: u8,
+pub(crate) struct Ending {
+    pub(crate) stdout: Vec<u8>,
+    pub(crate) stderr: Vec<u8>,
+    pub(crate) exit_code: u8,
 }
 
 /// Reads the words after the program's name.
 ///
 /// # Errors
 /// What to print, and the exit code: help, version, or a parse error.
-pub(super) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Ending> {
+pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Ending> {
     let mut values: [Option<&[u8]>; FLAGS.len()] = [None; FLAGS.len()];
     let mut words = words.iter().map(Vec::as_slice);
     while let Some(word) = words.next() {

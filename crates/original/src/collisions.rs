@@ -1,14 +1,13 @@
 //! The original's words about collisions that do not match (oracle-behaviour.md 6.1).
-use super::super::number::general;
 use fosssim_judge::parity::Remark;
 use fosssim_model::trace::LoggedImpulse;
-use fosssim_num::vector::Vec2;
+use fosssim_num::{printed::general, vector::Vec2};
 
 /// The line above the collisions of a step.
-pub(super) const HEADER: &str = "Collision Detection Error: \n";
+pub(crate) const HEADER: &str = "Collision Detection Error: \n";
 
 /// The line about one collision; `None` when the remark is about polynomials.
-pub(super) fn line(remark: &Remark) -> Option<String> {
+pub(crate) fn line(remark: &Remark) -> Option<String> {
     match remark {
         Remark::Missed(expected) => Some(format!("  Missed collision: {}\n", words(&LoggedImpulse::from(*expected)))),
         Remark::Superfluous(actual) => Some(format!("  Superfluous collision: {}\n", words(actual))),

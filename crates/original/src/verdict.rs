@@ -1,7 +1,7 @@
 //! The original's closing words about residuals, and the text of `residual.txt` (oracle-behaviour.md 6).
-use super::super::number::general;
-use super::{PINK, PLAIN};
+use crate::words::{PINK, PLAIN};
 use fosssim_judge::{Outcome, Overall, Residuals};
+use fosssim_num::printed::general;
 
 /// What the original calls the residuals, in its order.
 const NAMES: [&str; 4] = [
@@ -12,7 +12,7 @@ const NAMES: [&str; 4] = [
 ];
 
 /// The lines after the file has been closed: with verdict, or without one when grading did not come to its end.
-pub(super) fn lines(outcome: &Outcome) -> String {
+pub(crate) fn lines(outcome: &Outcome) -> String {
     if outcome.overall == Overall::None {
         return incomplete(&outcome.residuals);
     }
@@ -28,7 +28,7 @@ pub(super) fn lines(outcome: &Outcome) -> String {
 }
 
 /// The lines of a run that ended early.
-pub(super) fn incomplete(residuals: &Residuals) -> String {
+pub(crate) fn incomplete(residuals: &Residuals) -> String {
     let mut text = String::new();
     for (name, (value, _)) in NAMES.into_iter().zip(residuals.with_bounds()) {
         text += &format!("{name}: {}\n", general(value));
@@ -42,7 +42,7 @@ pub(super) fn incomplete(residuals: &Residuals) -> String {
 /// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value. `None` when grading did not come to its
 /// end; the file is not written then.
 #[must_use]
-pub fn residual_file(outcome: &Outcome) -> Option<String> {
+pub(crate) fn residual_file(outcome: &Outcome) -> Option<String> {
     if outcome.overall == Overall::None {
         return None;
     }

@@ -1,16 +1,16 @@
 //! The original's usage, version and parse-error texts, with the line breaks of its argument library.
-use super::flags::{FLAGS, Flag};
+use crate::flags::{FLAGS, Flag};
 
 const WIDTH: usize = 75;
 const TITLE: &str = "Forty One Sixty Seven Sim";
 
 /// What `--version` prints.
-pub(super) fn version(program: &[u8]) -> Vec<u8> {
+pub(crate) fn version(program: &[u8]) -> Vec<u8> {
     [b"\n", program, b"  version: none\n\n"].concat()
 }
 
 /// What `--help` prints.
-pub(super) fn help(program: &[u8]) -> Vec<u8> {
+pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     let mut text = b"\nUSAGE: \n\n".to_vec();
     text.extend(brief(program));
     text.extend(b"\n\nWhere: \n\n");
@@ -37,7 +37,7 @@ pub(super) fn help(program: &[u8]) -> Vec<u8> {
 }
 
 /// What a parse error prints; `argument` is a space when no argument is to blame.
-pub(super) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
+pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
     let mut text = [b"PARSE ERROR: ", argument, b"\n             ", message, b"\n\nBrief USAGE: \n"].concat();
     text.extend(brief(program));
     text.extend([b"\nFor complete USAGE and HELP type: \n   ", program, b" --help\n\n"].concat());

@@ -1,10 +1,12 @@
-//! The pictures of `-g 1` and `-m DIR`: one per step, as PNG in the folder `pngs`, as SVG in a folder of choice.
-use super::arguments::Arguments;
+//! What the drop-in for the original program asks of this one: pictures, and words for what has no result.
+use crate::original::{NO_PICTURE_FOLDER, Outside, Pictures};
 use crate::{
     cli::output::Folder,
     render::{Extent, Painter, PictureOptions, Raster, Size, film::png, svg},
-    report::original::NO_PICTURE_FOLDER,
+    report::describe,
+    sandbox,
     scene::Scene,
+    sim::StepError,
 };
 use anyhow::Result;
 use std::path::Path;
@@ -15,46 +17,48 @@ const PNGS: &str = "pngs";
 /// Width and height of the pictures.
 const SIDE: u32 = 512;
 
-/// Draws after each step.
-pub(super) struct Pictures {
-    painter: Painter,
-    raster: Raster,
-    png: Option<Folder>,
-    svg: Option<Folder>,
-}
+/// This program.
+pub(super) struct Program;
 
-impl Pictures {
-    /// What is asked for; nothing if no pictures are.
-    ///
-    /// # Errors
-    /// What to print, when a folder is missing.
-    pub(super) fn new(arguments: &Arguments, scene: &Scene) -> Result<Option<Self>, String> {
+impl Outside for Program {
+    fn prepare(&self) {
+        sandbox::let_large_writes_fail();
+    }
+
+    fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String> {
         let png = match Folder::existing(Path::new(PNGS)) {
-            _ if !arguments.generate => None,
+            _ if !png => None,
             // The original aborts here.
             None => {
                 return Err(format!("Error opening {PNGS}/frame00001.png: there is no folder {PNGS}; make it first\n"));
             }
             found => found,
         };
-        let svg = match &arguments.movie {
+        let svg = match svg {
             None => None,
-            Some(folder) => Some(Folder::existing(Path::new(folder)).ok_or_else(|| NO_PICTURE_FOLDER.to_owned())?),
+            Some(folder) => Some(Folder::existing(folder).ok_or_else(|| NO_PICTURE_FOLDER.to_owned())?),
         };
-        if png.is_none() && svg.is_none() {
-            return Ok(None);
-        }
         let size = Size::new(SIDE, SIDE).map_err(|error| error.to_string())?;
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
         let painter = Painter::new(scene, &Extent::of(scene, &start), PictureOptions { size, label: false });
-        Ok(Some(Self { painter, raster: Raster::new(size), png, svg }))
+        Ok(Box::new(Folders { painter, raster: Raster::new(size), png, svg }))
     }
 
-    /// Draws the state after a step, from 1.
-    ///
-    /// # Errors
-    /// When a picture can't be written.
-    pub(super) fn step(&mut self, step: u32, positions: &[f64]) -> Result<()> {
+    fn step_error(&self, error: &StepError) -> (u32, String) {
+        describe::step_error(error)
+    }
+}
+
+/// The pictures of `-g 1` and `-m DIR`: one per step, as PNG in the folder `pngs`, as SVG in a folder of choice.
+struct Folders {
+    painter: Painter,
+    raster: Raster,
+    png: Option<Folder>,
+    svg: Option<Folder>,
+}
+
+impl Folders {
+    fn draw(&mut self, step: u32, positions: &[f64]) -> Result<()> {
         let shapes = self.painter.picture(step, positions, None);
         let background = self.painter.background();
         if let Some(folder) = &self.png {
@@ -68,5 +72,11 @@ impl Pictures {
             folder.write(&format!("frame{step:020}.svg"), picture.as_bytes())?;
         }
         Ok(())
+    }
+}
+
+impl Pictures for Folders {
+    fn step(&mut self, step: u32, positions: &[f64]) -> Result<(), String> {
+        self.draw(step, positions).map_err(|error| format!("{error:#}\n"))
     }
 }

@@ -1,0 +1,97 @@
+//! Numbers as C++ streams print them by default: `%g` with six significant digits (`oracle-behaviour.md`, head).
+
+/// The number of significant digits of C++ streams.
+const DIGITS: i32 = 6;
+
+/// `%g` with six significant digits as glibc prints it: `0`, `-0`, `1e-05`, `0.00282843`, `1e+06`, `inf`, `-inf`, `nan`
+/// or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to even, as the library does.
+#[must_use]
+pub fn general(value: f64) -> String {
+    let sign = if value.is_sign_negative() { "-" } else { "" };
+    if value.is_nan() {
+        return format!("{sign}nan");
+    }
+    if value.is_infinite() {
+        return format!("{sign}inf");
+    }
+    if value == 0.0 {
+        return format!("{sign}0");
+    }
+    // The exponent that decides between the two notations is the one after rounding (999999.5 is 1e+06).
+    let scientific = format!("{:.5e}", value.abs());
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    let digits = digits.trim_end_matches('0');
+    if (-4..DIGITS).contains(&exponent) {
+        format!("{sign}{}", positional(digits, exponent))
+    } else {
+        let (first, rest) = digits.split_at(1);
+        let point = if rest.is_empty() { "" } else { "." };
+        let exponent_sign = if exponent < 0 { '-' } else { '+' };
+        format!("{sign}{first}{point}{rest}e{exponent_sign}{:02}", exponent.unsigned_abs())
+    }
+}
+
+/// The digits `d.ddd` times ten to the `exponent` without an exponent.
+fn positional(digits: &str, exponent: i32) -> String {
+    if exponent < 0 {
+        let zeros = "0".repeat(exponent.unsigned_abs() as usize - 1);
+        return format!("0.{zeros}{digits}");
+    }
+    let whole = exponent.unsigned_abs() as usize + 1;
+    if digits.len() <= whole {
+        format!("{digits:0<whole$}")
+    } else {
+        format!("{}.{}", &digits[..whole], &digits[whole..])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn general_prints_what_the_c_library_prints() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "-0"),
+            (1.0, "1"),
+            (-2.5, "-2.5"),
+            (100_000.0, "100000"),
+            (999_999.0, "999999"),
+            (999_999.5, "1e+06"),
+            (1e6, "1e+06"),
+            (1_234_567.0, "1.23457e+06"),
+            (0.0001, "0.0001"),
+            (0.000_099_999_99, "0.0001"),
+            (0.000_099_999_9, "9.99999e-05"),
+            (1e-5, "1e-05"),
+            (0.002_828_427_124_746_19, "0.00282843"),
+            (8.485_281_374_238_57e-11, "8.48528e-11"),
+            (1.414_213_562e-3, "0.00141421"),
+            (1e100, "1e+100"),
+            (1.5e-300, "1.5e-300"),
+            (5e-324, "4.94066e-324"),
+            (f64::MAX, "1.79769e+308"),
+            (123.456_789, "123.457"),
+            (10.0, "10"),
+            (120.0, "120"),
+            (f64::INFINITY, "inf"),
+            (f64::NEG_INFINITY, "-inf"),
+            (f64::NAN.copysign(1.0), "nan"),
+            (f64::NAN.copysign(-1.0), "-nan"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(general(value), text, "{value:?}");
+        }
+    }
+
+    #[test]
+    fn general_rounds_exact_ties_to_even() {
+        assert_eq!(general(1_000_005.0), "1e+06");
+        assert_eq!(general(1_000_015.0), "1.00002e+06");
+        assert_eq!(general(100_000.5), "100000");
+        assert_eq!(general(100_001.5), "100002");
+    }
+}

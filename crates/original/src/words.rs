@@ -1,0 +1,36 @@
+//! What the original says on standard error, and its colours, which are part of the text in files and pipes, too.
+
+/// Ends every colour.
+pub(crate) const PLAIN: &str = "\x1b[m";
+pub(crate) const RED: &str = "\x1b[31;1m";
+pub(crate) const GREEN: &str = "\x1b[32;1m";
+pub(crate) const BLUE: &str = "\x1b[34;1m";
+pub(crate) const PINK: &str = "\x1b[35;1m";
+
+/// The line on standard error when the output file can't be created (oracle-behaviour.md 2).
+#[must_use]
+pub(crate) fn output_not_opened(name: &[u8]) -> Vec<u8> {
+    not_opened("output", name)
+}
+
+/// The line on standard error when the trace can't be opened. The original names **the third word of the command line**
+/// instead of the file (oracle-behaviour.md 2).
+#[must_use]
+pub(crate) fn input_not_opened(third_word: &[u8]) -> Vec<u8> {
+    not_opened("input", third_word)
+}
+
+fn not_opened(which: &str, name: &[u8]) -> Vec<u8> {
+    let start = format!("{RED}ERROR IN INITIALIZATION: {PLAIN}Failed to open binary {which} file:  `");
+    [start.as_bytes(), name, b"`   Exiting.\n"].concat()
+}
+
+/// The line on standard error when a vortex force meets an implicit integrator (scene-format.md 6).
+pub(crate) const NO_VORTEX_HESSIAN: &str =
+    "\x1b[31;1mERROR IN VORTEXFORCE: \x1b[mNo addHessXToTotal defined for VortexForce.\n";
+
+/// The line on standard error when the folder for pictures is missing (oracle-behaviour.md 1).
+pub const NO_PICTURE_FOLDER: &str = "Failure writing SVG file!\n";
+
+/// The line on standard error when a trace is to be graded and recorded at once (oracle-behaviour.md 1).
+pub(crate) const INPUT_AND_OUTPUT: &str = "error: arguments i and o -- arguments i and o specified simultaneously\n";
