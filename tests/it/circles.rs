@@ -9,11 +9,12 @@ use std::{
 use crate::layers::{root, rust_files};
 
 /// The rooms: their folders of sources.
-const ROOMS: [&str; 11] = [
+const ROOMS: [&str; 12] = [
     "crates/num/src",
     "crates/model/src",
     "crates/judge/src",
     "crates/mistakes/src",
+    "crates/original/src",
     "crates/sandbox/src",
     "crates/grading/src",
     "crates/report/src",
