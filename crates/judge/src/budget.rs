@@ -139,15 +139,22 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_step_without_end_is_given_up() {
+    fn is_given_up_in_the_second_step(fair: bool) {
         let scene = posts(100.0, 2_000_000_000);
         let trace = squeezed(&scene);
-        for fair in [false, true] {
-            let outcome = judged(FLOOR, &scene, &trace, fair, 1);
-            assert_eq!((given_up(&outcome), outcome.overall), (Some(2), Overall::None), "{:?}", outcome.stop);
-            assert_eq!(outcome.steps_judged, 1);
-        }
+        let outcome = judged(FLOOR, &scene, &trace, fair, 1);
+        assert_eq!((given_up(&outcome), outcome.overall), (Some(2), Overall::None), "{:?}", outcome.stop);
+        assert_eq!(outcome.steps_judged, 1);
+    }
+
+    #[test]
+    fn a_step_without_end_is_given_up() {
+        is_given_up_in_the_second_step(false);
+    }
+
+    #[test]
+    fn a_step_without_end_is_given_up_by_the_fair_rules_too() {
+        is_given_up_in_the_second_step(true);
     }
 
     #[test]

@@ -12,14 +12,12 @@ use fosssim_oracle::{
     report::words::explanation::{details, what},
     student::mutants::mutants,
 };
-use rayon::prelude::*;
 
 fn main() -> ExitCode {
     let part = std::env::args().nth(1).unwrap_or_default();
     let wanted: Vec<usize> =
         mutants().enumerate().filter(|(_, mutant)| mutant.id.contains(&part)).map(|(number, _)| number).collect();
-    let all: Vec<Rated> =
-        wanted.into_par_iter().flat_map_iter(|number| rated(move |other| other == number, words)).collect();
+    let all: Vec<Rated> = rated(|number| wanted.contains(&number), words);
     for one in &all {
         println!("{:<32} {:<10} ({})", one.id, format!("{:?}", one.rating), one.what);
         for told in &one.told {

@@ -9,6 +9,7 @@ use fosssim_judge::{
     parity::{Options, judge},
 };
 use fosssim_model::{assignments::Assignment, scene::Scene};
+use rayon::prelude::*;
 
 /// How what is told of a mistake stands to it, from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,16 +55,19 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
 }
 
 /// Asks about the mutants with these numbers. What an explanation says is told by `words`: a mutant names words by which it
-/// is recognised.
-pub fn rated(wanted: impl Fn(usize) -> bool, words: impl Fn(&Explanation) -> String) -> impl Iterator<Item = Rated> {
-    mutants().enumerate().filter(move |(number, _)| wanted(*number)).map(move |(_, mutant)| {
+/// is recognised. Several are asked about at a time; the answers come in the mutants' order.
+pub fn rated(wanted: impl Fn(usize) -> bool, words: impl Fn(&Explanation) -> String + Sync) -> Vec<Rated> {
+    let wanted: Vec<&Mutant> =
+        mutants().enumerate().filter(|(number, _)| wanted(*number)).map(|(_, mutant)| mutant).collect();
+    let rate = |mutant: &'static Mutant| {
         let told = told_of(Student::default().with_mutant(mutant));
         Rated { id: mutant.id, what: mutant.what, rating: overall(mutant, &told, &words), told }
-    })
+    };
+    wanted.into_par_iter().map(rate).collect()
 }
 
 /// The best of what is told, unless something misleads.
-fn overall(mutant: &Mutant, told: &[Explanation], words: &dyn Fn(&Explanation) -> String) -> Rating {
+fn overall(mutant: &Mutant, told: &[Explanation], words: &(dyn Fn(&Explanation) -> String + Sync)) -> Rating {
     let ratings = || told.iter().map(|one| rating(mutant, one, &words(one)));
     match ratings().max() {
         Some(Rating::Misleading) => Rating::Misleading,

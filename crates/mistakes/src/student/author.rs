@@ -30,15 +30,20 @@ impl Student {
         self
     }
 
+    /// The mistakes, which stand before all free places.
+    fn mistakes(&self) -> impl Iterator<Item = Mistake> {
+        self.mistakes.iter().map_while(|mistake| *mistake)
+    }
+
     /// Whether the student makes this mistake.
     pub fn makes(self, mistake: Mistake) -> bool {
-        self.mistakes.contains(&Some(mistake))
+        self.mistakes().any(|made| made == mistake)
     }
 
     /// The mistake of these parts of the assignment, where many are told apart in one place; the first part that has one
     /// counts.
     pub fn mistake_in(self, areas: &[Area]) -> Option<Mistake> {
-        areas.iter().find_map(|area| self.mistakes.into_iter().flatten().find(|mistake| mistake.area() == *area))
+        areas.iter().find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
     }
 
     /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too, and

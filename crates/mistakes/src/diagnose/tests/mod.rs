@@ -2,6 +2,7 @@
 use super::{About, Explanation, explain, outside::told_of, probe_scenes, several};
 use crate::student::{self, Area, CATALOGUE, Row, RowKind, Student};
 use fosssim_model::{assignments::Assignment, sim::PairKind};
+use rayon::prelude::*;
 
 mod probes;
 
@@ -95,7 +96,7 @@ fn does_the_same(program: &[&Row], told: &[Explanation]) -> bool {
 /// ten something is.
 #[test]
 fn of_several_mistakes_some_are_named_and_no_other() {
-    let said: Vec<(Said, String)> = programs().iter().map(|program| said_of(program)).collect();
+    let said: Vec<(Said, String)> = programs().par_iter().map(|program| said_of(program)).collect();
     let count = |what: Said| said.iter().filter(|(said, _)| *said == what).count();
     let (all, some, nothing, wrong) = (count(Said::All), count(Said::Some), count(Said::Nothing), count(Said::Wrong));
     let lines: Vec<&String> = said.iter().filter(|(said, _)| *said != Said::All).map(|(_, line)| line).collect();

@@ -248,7 +248,7 @@ fn words(one: &Explanation) -> String {
 /// helps. `crates/lab` has the table of all.
 #[test]
 fn of_unknown_mistakes_the_place_is_told_and_none_is_taken_for_another() {
-    let rated: Vec<Rated> = rated(|number| number % 4 == 1, words).collect();
+    let rated: Vec<Rated> = rated(|number| number % 4 == 1, words);
     let misleading: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Misleading).collect();
     assert!(misleading.is_empty(), "{misleading:#?}");
     let open: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Unknown).collect();
