@@ -179,6 +179,32 @@ impl<S: Simd> Lanes<S> {
         S::as_mut_simd_f64s(&mut numbers[..Self::COUNT]).0[0] = self.values;
     }
 
+    /// Writes the numbers of each lane one behind the other, four at a time; those of the next lane begin `stride` later.
+    ///
+    /// # Panics
+    /// When the slice is too short.
+    #[inline(always)]
+    pub fn store_by_lane<const FOURS: usize>(numbers: &[[Self; 4]; FOURS], stride: usize, rows: &mut [f64]) {
+        for (four, [a, b, c, d]) in numbers.iter().enumerate() {
+            if Self::COUNT == 4 {
+                // Of as many vectors as there are lanes this is a transposition: four instructions of eight.
+                let turned = a.simd.interleave_shfl_f64s([a.values, b.values, c.values, d.values]);
+                for (lane, values) in turned.into_iter().enumerate() {
+                    let begin = lane * stride + 4 * four;
+                    S::as_mut_simd_f64s(&mut rows[begin..begin + 4]).0[0] = values;
+                }
+            } else {
+                for (number, lanes) in [a, b, c, d].into_iter().enumerate() {
+                    let mut single = [0.0; MOST_LANES];
+                    lanes.store(&mut single);
+                    for (lane, value) in single[..Self::COUNT].iter().enumerate() {
+                        rows[lane * stride + 4 * four + number] = *value;
+                    }
+                }
+            }
+        }
+    }
+
     /// The moduli.
     #[inline(always)]
     pub fn abs(self) -> Self {
@@ -348,5 +374,97 @@ impl<S: Simd> Not for Mask<S> {
     #[inline(always)]
     fn not(self) -> Self {
         Self { lanes: self.simd.not_m64s(self.lanes), ..self }
+    }
+}
+
+/// Some bits per lane.
+#[derive(Debug, Clone, Copy)]
+pub struct Bits<S: Simd> {
+    simd: S,
+    values: S::u64s,
+}
+
+impl<S: Simd> Bits<S> {
+    /// None at all.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        Self { simd, values: simd.splat_u64s(0) }
+    }
+
+    /// All bits one place higher, and below them a bit that is set where the mask says yes.
+    #[inline(always)]
+    #[must_use]
+    pub fn above(self, mask: Mask<S>) -> Self {
+        let simd = self.simd;
+        // All bits of a lane that says yes are set, so it is -1.
+        let mask = simd.select_u64s(mask.lanes, simd.splat_u64s(u64::MAX), simd.splat_u64s(0));
+        Self { simd, values: simd.sub_u64s(simd.add_u64s(self.values, self.values), mask) }
+    }
+
+    /// The numbers whose [bits](f64::to_bits) these are, to be stored beside others.
+    #[inline(always)]
+    pub fn as_lanes(self) -> Lanes<S> {
+        Lanes { simd: self.simd, values: self.simd.transmute_f64s_u64s(self.values) }
+    }
+}
+
+/// Writes numbers as little-endian bytes, in one copy where the machine has them so.
+///
+/// # Panics
+/// When there is no room for all of them.
+#[inline(always)]
+pub fn copy_little_endian(numbers: &[f64], room: &mut [u8]) {
+    let room = &mut room[..8 * numbers.len()];
+    if cfg!(target_endian = "little") {
+        room.copy_from_slice(pulp::bytemuck::cast_slice(numbers));
+    } else {
+        for (place, number) in room.as_chunks_mut::<8>().0.iter_mut().zip(numbers) {
+            *place = number.to_le_bytes();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Rows;
+
+    impl Work for Rows {
+        type Output = (usize, Vec<f64>);
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let from = |first: u32| {
+                let values: [f64; MOST_LANES] = std::array::from_fn(|lane| f64::from(first) + 0.125 * lane as f64);
+                Lanes::load(simd, &values)
+            };
+            let bits = Bits::none(simd).above(from(4).at_least(4.125)).above(from(0).below(0.25));
+            let numbers = [[from(0), from(1), from(2), from(3)], [bits.as_lanes(), from(5), from(6), from(7)]];
+            let mut rows = vec![-1.0; 9 * Lanes::<S>::COUNT];
+            Lanes::store_by_lane(&numbers, 9, &mut rows);
+            (Lanes::<S>::COUNT, rows)
+        }
+    }
+
+    #[test]
+    fn bytes_are_little_endian() {
+        let mut room = [7; 18];
+        copy_little_endian(&[-0.25, 1.0], &mut room);
+        assert_eq!(room, [0, 0, 0, 0, 0, 0, 0xd0, 0xbf, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f, 7, 7]);
+    }
+
+    #[test]
+    fn the_numbers_of_a_lane_stand_one_behind_the_other() {
+        for instructions in [Instructions::default(), Instructions::plain()] {
+            let (count, rows) = instructions.run(Rows);
+            assert_eq!(rows.len(), 9 * count);
+            for (lane, row) in rows.chunks(9).enumerate() {
+                let value = |number: u32| f64::from(number) + 0.125 * lane as f64;
+                let bits = [1, 3, 2][lane.min(2)];
+                let expected =
+                    [value(0), value(1), value(2), value(3), f64::from_bits(bits), value(5), value(6), value(7), -1.0];
+                assert_eq!(row, expected);
+            }
+        }
     }
 }

@@ -7,33 +7,47 @@ use super::{
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
     certificate::lanes::{excludes_edge, excludes_two, is_small},
-    lanes::{Lanes, Mask, Plane, Simd},
+    lanes::{Bits, Lanes, Mask, Plane, Simd},
     vector::Vec2,
 };
 use std::ops::Range;
 
 crate::drops_leading!();
 
-/// Numbers of a pair with an edge: its coefficients, and what is known about it.
-pub(super) const OF_EDGE: usize = 18;
+/// Numbers of a pair with an edge: its coefficients, what is [known] about it, and room.
+pub(super) const EDGE_ROW: usize = 20;
 
-/// Numbers of a pair of particles, or with a half-plane.
-pub(super) const OF_TWO: usize = 6;
+/// Where what is known about it stands.
+pub(super) const EDGE_KNOWN: usize = 17;
 
-/// What is known about a pair, the last of its numbers: an impact is excluded, and no leading coefficient is small.
-pub(super) const WHOLE: f64 = 0.0;
+/// Numbers of a pair of particles, or with a half-plane: the parabola's coefficients, what is known, the line's, and room. A
+/// polynomial is read soon after it is stored, which is fast where both are done at once.
+pub(super) const TWO_ROW: usize = 8;
 
-/// An impact is excluded, and a leading coefficient is small and will be dropped.
-pub(super) const TRIMMED: f64 = 1.0;
+/// Where what is known about it stands.
+pub(super) const TWO_KNOWN: usize = 3;
 
-/// The pairs of a group of particles with edges and half-planes. Numbers of one pair lie a lane's width apart.
+/// Where the line begins.
+pub(super) const LINE: usize = 4;
+
+/// So many numbers behind a row may be read, too, whatever they are: as many as a polynomial has coefficients, and two more.
+pub(super) const BEHIND: usize = 8;
+
+/// What is known about a pair, in bits: the lowest ones say which of its coefficients are so small that they are dropped when
+/// they lead; the next one, that the certificate has to be asked whether there is an impact.
+pub(super) const EDGE_OPEN: u64 = 1 << 17;
+
+/// The same of another pair.
+pub(super) const TWO_OPEN: u64 = 1 << 5;
+
+/// The pairs of a group of particles with edges and half-planes: rows of numbers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Group {
     /// The particles.
     pub particles: Range<usize>,
-    /// The pairs with edges, edge by edge.
+    /// The pairs with edges, edge by edge, and for each of these particle by particle.
     pub edges: Vec<f64>,
-    /// The pairs with half-planes.
+    /// The pairs with half-planes, likewise.
     pub half_planes: Vec<f64>,
     /// No coefficient has a larger modulus.
     pub largest: f64,
@@ -50,11 +64,11 @@ impl Group {
     pub fn fill<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize) {
         let width = Lanes::<S>::COUNT;
         self.particles = first..first + width;
-        self.edges.resize(bodies.edges.len() * OF_EDGE * width, 0.0);
-        self.half_planes.resize(bodies.points.len() * OF_TWO * width, 0.0);
+        self.edges.resize(bodies.edges.len() * EDGE_ROW * width + BEHIND, 0.0);
+        self.half_planes.resize(bodies.points.len() * TWO_ROW * width, 0.0);
         let (x, d, radius) = lists.particles(simd, first);
         let mut largest = Lanes::all(simd, 0.0);
-        for (edge, numbers) in self.edges.chunks_exact_mut(OF_EDGE * width).enumerate() {
+        for (edge, rows) in self.edges.chunks_exact_mut(EDGE_ROW * width).enumerate() {
             let motion = lists.edge(simd, edge);
             let sum = radius + Lanes::all(simd, bodies.edge_radii[edge]);
             let pair = particle_edge::coefficients(x, d, &motion, sum);
@@ -62,21 +76,22 @@ impl Group {
             let [f0, f1, f2] = pair.beyond_first;
             let [s0, s1, s2] = pair.before_second;
             let [a0, a1, a2, a3, a4, a5] = pair.approach;
+            let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5];
             let excluded = excludes_edge(pair.distance, pair.beyond_first, pair.before_second, pair.approach);
-            let has_small = is_small(o0) | is_small(a0) | is_small(f0) | is_small(s0);
-            let known = known(excluded, has_small);
-            let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5, known];
-            for (lanes, place) in all.iter().zip(numbers.chunks_exact_mut(width)) {
-                lanes.store(place);
+            let known = known(simd, excluded, &all);
+            for lanes in &all {
                 largest = largest.max(lanes.abs());
             }
+            let numbers =
+                [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4], [a5, known, known, known]];
+            Lanes::store_by_lane(&numbers, EDGE_ROW, rows);
         }
-        for (half_plane, numbers) in self.half_planes.chunks_exact_mut(OF_TWO * width).enumerate() {
+        for (half_plane, rows) in self.half_planes.chunks_exact_mut(TWO_ROW * width).enumerate() {
             let point = all(simd, bodies.points[half_plane]);
             let normal = all(simd, bodies.normals[half_plane]);
             let squared = Lanes::all(simd, lists.squares[half_plane]);
             let (overlap, approach) = particle_half_plane::coefficients(x, d, radius, point, normal, squared);
-            largest = store(overlap, approach, numbers, largest);
+            largest = store(simd, overlap, approach, rows, largest);
         }
         self.largest = largest.largest();
     }
@@ -94,35 +109,41 @@ pub(super) fn of_particles<S: Simd>(
     simd: S,
     lists: &Lists,
     [first, second]: [usize; 2],
-    numbers: &mut [f64],
+    rows: &mut [f64],
     largest: Lanes<S>,
 ) -> Lanes<S> {
     let (x1, d1, r1) = lists.particle(simd, first);
     let (x2, d2, r2) = lists.particles(simd, second);
     let (overlap, approach) = particle_particle::coefficients(x1, d1, x2, d2, r1 + r2);
-    store(overlap, approach, numbers, largest)
+    store(simd, overlap, approach, rows, largest)
 }
 
-/// Asks the certificate about a parabola and a line with the same leading coefficient, and stores everything.
+/// Asks the certificate about a parabola and a line, and stores everything.
 #[inline(always)]
 fn store<S: Simd>(
+    simd: S,
     overlap: [Lanes<S>; 3],
     approach: [Lanes<S>; 2],
-    numbers: &mut [f64],
+    rows: &mut [f64],
     mut largest: Lanes<S>,
 ) -> Lanes<S> {
     let excluded = excludes_two(overlap, approach);
     let ([a, b, c], [d, e]) = (overlap, approach);
-    let all = [a, b, c, d, e, known(excluded, is_small(a))];
-    for (lanes, place) in all.iter().zip(numbers.chunks_exact_mut(Lanes::<S>::COUNT)) {
-        lanes.store(place);
+    let all = [a, b, c, d, e];
+    let known = known(simd, excluded, &all);
+    for lanes in &all {
         largest = largest.max(lanes.abs());
     }
+    Lanes::store_by_lane(&[[a, b, c, known], [d, e, d, e]], TWO_ROW, rows);
     largest
 }
 
-/// [`WHOLE`], [`TRIMMED`], or more where the certificate has to be asked.
+/// What is known about pairs, see [`EDGE_OPEN`].
 #[inline(always)]
-fn known<S: Simd>(excluded: Mask<S>, has_small: Mask<S>) -> Lanes<S> {
-    TRIMMED * has_small.as_numbers() + 2.0 * (!excluded).as_numbers()
+fn known<S: Simd, const COEFFICIENTS: usize>(simd: S, excluded: Mask<S>, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
+    let mut bits = Bits::none(simd).above(!excluded);
+    for coefficient in all.iter().rev() {
+        bits = bits.above(is_small(*coefficient));
+    }
+    bits.as_lanes()
 }

@@ -119,11 +119,28 @@ impl Lists {
     /// The motion of an edge, in all lanes.
     #[inline(always)]
     pub fn edge<S: Simd>(&self, simd: S, edge: usize) -> EdgeMotions<Lanes<S>> {
-        let mut values = [Lanes::all(simd, 0.0); 19];
-        for (lanes, value) in values.iter_mut().zip(self.edges[edge].values()) {
-            *lanes = Lanes::all(simd, value);
-        }
-        EdgeMotions::of(values)
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s] = self.edges[edge].values();
+        EdgeMotions::of([
+            Lanes::all(simd, a),
+            Lanes::all(simd, b),
+            Lanes::all(simd, c),
+            Lanes::all(simd, d),
+            Lanes::all(simd, e),
+            Lanes::all(simd, f),
+            Lanes::all(simd, g),
+            Lanes::all(simd, h),
+            Lanes::all(simd, i),
+            Lanes::all(simd, j),
+            Lanes::all(simd, k),
+            Lanes::all(simd, l),
+            Lanes::all(simd, m),
+            Lanes::all(simd, n),
+            Lanes::all(simd, o),
+            Lanes::all(simd, p),
+            Lanes::all(simd, q),
+            Lanes::all(simd, r),
+            Lanes::all(simd, s),
+        ])
     }
 }
 

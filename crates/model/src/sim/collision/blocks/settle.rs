@@ -2,32 +2,37 @@
 use super::{
     super::{impact::time_of_impact, particle_edge, particle_half_plane, particle_particle},
     Setting,
+    group::{BEHIND, EDGE_ROW, LINE, TWO_ROW},
 };
 use crate::sim::{
     observer::{Impulse, Time},
     pair::{Pair, PairKind},
+    pairs::Place,
     search::{RootSearch, SearchCounts},
     step_error::StepError,
 };
 use fosssim_num::{
-    polynomial::{MAX_COEFFICIENTS, Polynomial},
-    tolerances::LEADING_COEFFICIENT,
+    lanes::copy_little_endian,
+    polynomial::Polynomial,
     vector::{Vec2, at},
 };
 
 crate::drops_leading!();
 
-/// Room for the coefficients of any pair, and as many more as a polynomial has.
-const PADDED: usize = 17 + MAX_COEFFICIENTS;
+/// Bytes of a pair with an edge, and of another one, where nothing is dropped.
+pub(super) const EDGE_BYTES: usize = 4 * 4 + 8 * 17;
+pub(super) const TWO_BYTES: usize = 2 * 4 + 8 * 5;
 
 /// Where polynomials go, and how many have gone there.
 pub(super) struct Output<'a> {
     /// Room for all of them; none where nobody wants to know.
-    pub room: Option<&'a mut [u8]>,
+    pub room: &'a mut [u8],
     /// Bytes that are written.
     pub used: usize,
     /// Polynomials that are written.
     pub polynomials: usize,
+    /// Pairs of which the certificate's closed forms have excluded an impact.
+    pub excluded: u64,
     /// The largest modulus of coefficients.
     pub largest: f64,
     /// The hit that was found, or why the search has no end. Handed on here, since it is seldom there and large.
@@ -37,86 +42,92 @@ pub(super) struct Output<'a> {
 impl<'a> Output<'a> {
     /// Nothing is written yet.
     #[inline(always)]
-    pub fn new(room: Option<&'a mut [u8]>) -> Self {
-        Self { room, used: 0, polynomials: 0, largest: 0.0, found: Ok(None) }
+    pub fn new(room: &'a mut [u8]) -> Self {
+        Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
     }
 
-    /// Writes a pair's polynomials of which nothing is dropped.
+    /// Takes what was found of a pair. Whether this is a hit, behind which the place is then, or a search without end, which
+    /// is not logged.
     #[inline(always)]
-    pub fn write_whole<const COEFFICIENTS: usize, const COUNT: usize, const BYTES: usize>(
-        &mut self,
-        coefficients: &[f64; COEFFICIENTS],
-        lengths: [usize; COUNT],
-    ) {
-        let Some(room) = self.room.as_deref_mut().and_then(|room| room[self.used..].first_chunk_mut::<BYTES>()) else {
-            return;
-        };
-        let (mut at, mut number) = (0, 0);
-        for length in lengths {
-            #[expect(clippy::cast_possible_truncation, reason = "at most six")]
-            let size = length as u32;
-            room[at..at + 4].copy_from_slice(&size.to_le_bytes());
-            at += 4;
-            for _ in 0..length {
-                room[at..at + 8].copy_from_slice(&coefficients[number].to_le_bytes());
-                (at, number) = (at + 8, number + 1);
-            }
+    pub fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut Place) -> bool {
+        if matches!(found, Ok(None)) {
+            return false;
         }
-        self.used += BYTES;
-        self.polynomials += COUNT;
+        if found.is_err() {
+            self.room = &mut [];
+        }
+        self.found = found;
+        *place = Place::behind(pair.kind, pair.first as usize, pair.second as usize);
+        true
     }
 
-    /// Writes the polynomials of a pair with an edge without their small leading coefficients.
+    /// Writes the polynomials of a pair with an edge without their small leading coefficients, which `small` tells in bits.
     #[inline(always)]
-    pub fn write_edge(&mut self, coefficients: &[f64; 17]) {
-        let padded = padded(coefficients);
-        self.write_one::<5, 44>(&padded, 0);
-        self.write_one::<3, 28>(&padded, 5);
-        self.write_one::<3, 28>(&padded, 8);
-        self.write_one::<6, 52>(&padded, 11);
+    pub fn write_edge(&mut self, row: &[f64; EDGE_ROW + BEHIND], small: u64) {
+        let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<EDGE_BYTES>) else { return };
+        let mut used = 0;
+        write_one::<5>(room, &mut used, row, small);
+        write_one::<3>(room, &mut used, &row[5..], small >> 5);
+        write_one::<3>(room, &mut used, &row[8..], small >> 8);
+        write_one::<6>(room, &mut used, &row[11..], small >> 11);
+        self.used += used;
+        self.polynomials += 4;
     }
 
     /// The same of another pair.
     #[inline(always)]
-    pub fn write_two(&mut self, coefficients: &[f64; 5]) {
-        let padded = padded(coefficients);
-        self.write_one::<3, 28>(&padded, 0);
-        self.write_one::<2, 20>(&padded, 3);
-    }
-
-    /// One polynomial, whose coefficients begin there; a copy of `LENGTH` coefficients takes `BYTES`, of which less may count.
-    #[inline(always)]
-    fn write_one<const LENGTH: usize, const BYTES: usize>(&mut self, padded: &[f64; PADDED], begin: usize) {
-        let Some(room) = &mut self.room else { return };
-        let mut dropped = 0;
-        while dropped < LENGTH && padded[begin + dropped].abs() < LEADING_COEFFICIENT {
-            dropped += 1;
-        }
-        let Some(kept) = padded[begin + dropped..].first_chunk::<LENGTH>() else { return };
-        let mut bytes = [0; BYTES];
-        #[expect(clippy::cast_possible_truncation, reason = "at most six")]
-        bytes[..4].copy_from_slice(&((LENGTH - dropped) as u32).to_le_bytes());
-        for (place, coefficient) in bytes[4..].as_chunks_mut::<8>().0.iter_mut().zip(kept) {
-            *place = coefficient.to_le_bytes();
-        }
-        room[self.used..self.used + BYTES].copy_from_slice(&bytes);
-        self.used += 4 + 8 * (LENGTH - dropped);
-        self.polynomials += 1;
+    pub fn write_two(&mut self, row: &[f64; TWO_ROW], small: u64) {
+        let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<TWO_BYTES>) else { return };
+        let mut used = 0;
+        write_one::<3>(room, &mut used, row, small);
+        write_one::<2>(room, &mut used, &row[LINE..], small >> 3);
+        self.used += used;
+        self.polynomials += 2;
     }
 }
 
-/// The coefficients of a pair, and zeros behind them.
+/// Writes a polynomial whose coefficients stand in front: always as many as it could have, of which less may count.
 #[inline(always)]
-fn padded<const COEFFICIENTS: usize>(coefficients: &[f64; COEFFICIENTS]) -> [f64; PADDED] {
-    let mut padded = [0.0; PADDED];
-    padded[..COEFFICIENTS].copy_from_slice(coefficients);
-    padded
+fn write_one<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
+    // So many small ones in a row, of which the coefficients are all at most.
+    let dropped = (!small | 1 << LENGTH).trailing_zeros() as usize;
+    let Some(kept) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
+    let Some((size, places)) = room.get_mut(*used..).and_then(<[u8]>::split_first_chunk_mut::<4>) else { return };
+    let Some(places) = places.get_mut(..8 * LENGTH) else { return };
+    #[expect(clippy::cast_possible_truncation, reason = "at most six")]
+    let count = (LENGTH - dropped) as u32;
+    *size = count.to_le_bytes();
+    copy_little_endian(kept, places);
+    *used += 4 + 8 * (LENGTH - dropped);
 }
 
-/// Asks the certificate about a pair, and the root finder where it knows no answer.
+/// Asks the certificate about a pair with an edge, and the root finder where it knows no answer.
+#[inline(never)]
+pub(super) fn decide_edge(
+    setting: &Setting<'_>,
+    counts: &mut SearchCounts,
+    pair: Pair,
+    row: &[f64; EDGE_ROW + BEHIND],
+) -> Result<Option<Impulse>, StepError> {
+    decide(setting, counts, pair, row, [5, 3, 3, 6])
+}
+
+/// The same of another pair.
+#[inline(never)]
+pub(super) fn decide_two(
+    setting: &Setting<'_>,
+    counts: &mut SearchCounts,
+    pair: Pair,
+    row: &[f64; TWO_ROW],
+) -> Result<Option<Impulse>, StepError> {
+    let [a, b, c, _, d, e, ..] = *row;
+    decide(setting, counts, pair, &[a, b, c, d, e], [3, 2])
+}
+
+/// Decides about polynomials of these lengths, small leading coefficients included.
 #[inline(always)]
-pub(super) fn decide<const COUNT: usize>(
-    setting: Setting<'_>,
+fn decide<const COUNT: usize>(
+    setting: &Setting<'_>,
     counts: &mut SearchCounts,
     pair: Pair,
     coefficients: &[f64],
@@ -135,8 +146,8 @@ pub(super) fn decide<const COUNT: usize>(
 }
 
 /// The contact normal; none where it is zero and therefore no hit.
-fn normal(setting: Setting<'_>, pair: Pair, time: f64) -> Option<Vec2> {
-    let Setting { bodies, q_start, displacements, .. } = setting;
+fn normal(setting: &Setting<'_>, pair: Pair, time: f64) -> Option<Vec2> {
+    let Setting { bodies, q_start, displacements, .. } = *setting;
     let (first, second) = (pair.first as usize, pair.second as usize);
     let x = |particle: usize| at(q_start, particle);
     let d = |particle: usize| at(displacements, particle);
