@@ -11,7 +11,7 @@ use anyhow::{Context, Result, bail};
 use std::{
     ffi::OsStr,
     fs::{self, File, OpenOptions, Permissions},
-    io::{self, Write},
+    io::{self, IoSlice, Write},
     os::unix::fs::{FileTypeExt, PermissionsExt},
     path::{Path, PathBuf},
 };
@@ -141,6 +141,20 @@ impl Write for Output {
             },
             Self::Device(device, _) => device.write(bytes),
             Self::File { temporary, .. } => temporary.write(bytes),
+        }
+    }
+
+    fn write_vectored(&mut self, parts: &[IoSlice<'_>]) -> io::Result<usize> {
+        match self {
+            Self::Nowhere => Ok(parts.iter().map(|part| part.len()).sum()),
+            Self::Stdout => match io::stdout().write_vectored(parts) {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+                    Ok(parts.iter().map(|part| part.len()).sum())
+                }
+                other => other,
+            },
+            Self::Device(device, _) => device.write_vectored(parts),
+            Self::File { temporary, .. } => temporary.write_vectored(parts),
         }
     }
 

@@ -3,12 +3,15 @@
 //! A detection pass whose polynomials only have to be logged writes them here (trace-format.md 1: little-endian, packed,
 //! a 32-bit size before the coefficients), and whoever records or compares a step takes the bytes as they are.
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
+use std::ops::Range;
 
-/// A list of polynomials in a trace's own bytes, without the list's count. Its memory is kept from step to step.
+/// A list of polynomials in a trace's own bytes, without the list's count. Its memory is kept from step to step, and so may
+/// be its bytes, for whoever writes those of several steps at once.
 #[derive(Debug, Clone, Default)]
 pub struct PolynomialBytes {
-    /// The first `used` bytes are the list's; what follows is room for more.
+    /// Those from `begin` up to `used` are the list's; before them earlier ones may stand; what follows is room for more.
     bytes: Vec<u8>,
+    begin: usize,
     used: usize,
     count: usize,
     largest: f64,
@@ -22,9 +25,25 @@ const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 const MOST_GROWTH: usize = 16 << 20;
 
 impl PolynomialBytes {
-    /// Empties the list.
+    /// Empties the list, and forgets earlier ones.
     pub fn clear(&mut self) {
-        (self.used, self.count, self.largest) = (0, 0, 0.0);
+        self.used = 0;
+        self.begin();
+    }
+
+    /// Begins a new list behind those that are there.
+    pub(crate) fn begin(&mut self) {
+        (self.begin, self.count, self.largest) = (self.used, 0, 0.0);
+    }
+
+    /// Where the list stands among [all](Self::all) that are there.
+    pub(crate) fn range(&self) -> Range<usize> {
+        self.begin..self.used
+    }
+
+    /// The bytes of all lists that are there.
+    pub(crate) fn all(&self) -> &[u8] {
+        &self.bytes[..self.used]
     }
 
     /// Number of polynomials.
@@ -36,7 +55,7 @@ impl PolynomialBytes {
     /// The list's bytes.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
-        &self.bytes[..self.used]
+        &self.bytes[self.range()]
     }
 
     /// The bytes of each polynomial's coefficients.
@@ -134,6 +153,10 @@ mod tests {
         assert_eq!(list.bytes()[..4], [2, 0, 0, 0]);
         assert_eq!(list.bytes()[12..20], (-3.0_f64).to_le_bytes());
         assert_eq!(list.bytes()[20..28], [0, 0, 0, 0, 6, 0, 0, 0]);
+        list.begin();
+        list.push(&[1.0]);
+        assert_eq!((list.count(), list.largest(), list.bytes().len(), list.range()), (1, 1.0, 12, 76..88));
+        assert_eq!(list.all()[..4], [2, 0, 0, 0]);
         list.clear();
         list.push(&[f64::NAN]);
         assert_eq!((list.count(), list.largest(), list.bytes().len()), (1, 0.0, 12));

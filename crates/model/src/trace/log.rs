@@ -19,8 +19,14 @@ pub(super) struct Log {
 impl Log {
     /// A step begins, with empty lists.
     pub(super) fn begin_step(&mut self) {
-        self.impulses.clear();
         self.polynomials.clear();
+        self.begin_step_behind();
+    }
+
+    /// The same; polynomials of earlier steps are kept.
+    pub(super) fn begin_step_behind(&mut self) {
+        self.impulses.clear();
+        self.polynomials.begin();
         self.logs_impulses = false;
     }
 

@@ -46,14 +46,19 @@ impl<W: Write> Recorder<W> {
     ///
     /// # Errors
     /// The first error that the stream reported, now or earlier.
-    pub fn finish(self) -> io::Result<(W, Written)> {
+    pub fn finish(mut self) -> io::Result<(W, Written)> {
+        self.writer.hand_on(self.log.polynomials.all());
         self.writer.finish()
     }
 }
 
 impl<W: Write> Observer for Recorder<W> {
     fn begin_step(&mut self, _step: u32) {
-        self.log.begin_step();
+        if self.writer.borrows() {
+            self.log.begin_step_behind();
+        } else {
+            self.log.begin_step();
+        }
     }
 
     fn begin_pass(&mut self, pass: Pass) {
@@ -142,6 +147,38 @@ mod tests {
         assert_eq!(bytes[72..80], [0, 0, 0, 0, 2, 0, 0, 0]);
         assert_eq!(bytes[112 + 32..112 + 40], [0, 0, 0, 0, 4, 0, 0, 0]);
         assert_eq!(bytes[112..120], 2.0_f64.to_le_bytes());
+    }
+
+    /// Long lists are not copied before they are written; the trace is the same as of short ones.
+    #[test]
+    fn long_lists_stand_where_they_belong() {
+        let polynomial = Polynomial::trimmed(&[1.0, 2.0, 3.0]);
+        let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
+        let mut expected = vec![0; 40];
+        let mut random = 1_u32;
+        for step in 1..=100 {
+            recorder.begin_step(step);
+            let mut list = Vec::new();
+            for x in [-1.0, 1.0] {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                for _ in 0..random >> [20, 25, 31][step as usize % 3] {
+                    recorder.log.polynomials.push(polynomial.coefficients());
+                    list.extend([3, 0, 0, 0]);
+                    [1.0, 2.0, 3.0].iter().for_each(|c: &f64| list.extend(c.to_le_bytes()));
+                }
+                let state = state(x * f64::from(step));
+                recorder.writer.record(&state, &recorder.log);
+                state.positions.iter().chain(&state.velocities).for_each(|c| expected.extend(c.to_le_bytes()));
+                expected.extend([0; 4]);
+                expected.extend((list.len() as u32 / 28).to_le_bytes());
+                expected.extend(&list);
+                assert_eq!(recorder.written().bytes, expected.len() as u64);
+            }
+        }
+        let (bytes, written) = recorder.finish().unwrap();
+        assert!(bytes == expected);
+        assert_eq!(written, Written { records: 201, bytes: expected.len() as u64 });
+        assert!(expected.len() > 1 << 21, "{}", expected.len());
     }
 
     #[test]

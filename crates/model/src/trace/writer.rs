@@ -1,14 +1,23 @@
 //! Frames to bytes.
 //!
-//! [`Writer`] gathers records in a buffer and hands them to any `Write` in large pieces, so the stream below needs no
-//! buffer of its own. It counts what it wrote, keeps the first I/O error until [`Writer::finish`], and checks nothing:
+//! [`Writer`] gathers records and hands them to any `Write` in large pieces, so the stream below needs no buffer of its own.
+//! What is short it copies into a buffer; a recorder's long lists stay where they are until they are written. It counts what it wrote, keeps the first I/O error until [`Writer::finish`], and checks nothing:
 //! damaged traces for tests can be written, too.
 use super::{encode, frame::Frame, layout::Layout, log::Log};
 use crate::sim::State;
-use std::io::{self, Write};
+use std::{
+    io::{self, ErrorKind, IoSlice, Write},
+    ops::Range,
+};
 
-/// The buffer is handed on once it holds this many bytes.
+/// What is gathered is handed on once it has this many bytes.
 const PIECE: usize = 256 * 1024;
+
+/// A list of fewer bytes is copied, since a part of its own would cost the system more than a copy.
+const LONG: usize = 1024;
+
+/// So many long lists are gathered at most.
+const LISTS: usize = 128;
 
 /// What has been written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -25,6 +34,10 @@ pub struct Writer<W: Write> {
     stream: W,
     layout: Layout,
     buffer: Vec<u8>,
+    /// Long lists that are not in the buffer: where they belong in it, and where they stand among the log's polynomials.
+    lists: Vec<(usize, Range<usize>)>,
+    /// Their bytes.
+    listed: usize,
     written: Written,
     error: Option<io::Error>,
 }
@@ -32,7 +45,15 @@ pub struct Writer<W: Write> {
 impl<W: Write> Writer<W> {
     /// A writer of records with the blocks of `layout`.
     pub fn new(stream: W, layout: Layout) -> Self {
-        Self { stream, layout, buffer: Vec::with_capacity(2 * PIECE), written: Written::default(), error: None }
+        Self {
+            stream,
+            layout,
+            buffer: Vec::with_capacity(2 * PIECE),
+            lists: Vec::with_capacity(LISTS),
+            listed: 0,
+            written: Written::default(),
+            error: None,
+        }
     }
 
     /// Writes one frame; lists that the layout has no room for are left out.
@@ -48,10 +69,10 @@ impl<W: Write> Writer<W> {
             encode::count(&mut self.buffer, frame.polynomials.len());
             encode::polynomials(&mut self.buffer, &frame.polynomials);
         }
-        self.end();
+        self.end(&[]);
     }
 
-    /// Writes one record whose lists are encoded already. A long list goes to the stream as it is, without a copy.
+    /// Writes one record whose lists are encoded already. While it [borrows](Self::borrows) the log keeps its polynomials.
     pub(super) fn record(&mut self, state: &State, log: &Log) {
         self.begin(state);
         if self.layout.impulses {
@@ -61,20 +82,25 @@ impl<W: Write> Writer<W> {
         if self.layout.polynomials {
             encode::count(&mut self.buffer, log.polynomials.count());
             let polynomials = log.polynomials.bytes();
-            if polynomials.len() < PIECE {
+            if polynomials.len() < LONG {
                 self.buffer.extend_from_slice(polynomials);
             } else {
-                self.hand_on();
-                self.pass_on(polynomials);
+                self.lists.push((self.buffer.len(), log.polynomials.range()));
+                self.listed += polynomials.len();
             }
         }
-        self.end();
+        self.end(log.polynomials.all());
+    }
+
+    /// Whether polynomials of the log are still to be written.
+    pub(super) fn borrows(&self) -> bool {
+        !self.lists.is_empty()
     }
 
     /// What has been written so far, what is still in the buffer included.
     #[must_use]
     pub fn written(&self) -> Written {
-        Written { records: self.written.records, bytes: self.written.bytes + self.buffer.len() as u64 }
+        Written { records: self.written.records, bytes: self.written.bytes + (self.buffer.len() + self.listed) as u64 }
     }
 
     /// Whether writing has failed; what follows is thrown away then.
@@ -88,7 +114,7 @@ impl<W: Write> Writer<W> {
     /// # Errors
     /// The first error that the stream reported, now or earlier.
     pub fn finish(mut self) -> io::Result<(W, Written)> {
-        self.hand_on();
+        self.hand_on(&[]);
         if let Some(error) = self.error {
             return Err(error);
         }
@@ -100,29 +126,49 @@ impl<W: Write> Writer<W> {
         encode::state(&mut self.buffer, state);
     }
 
-    fn end(&mut self) {
+    fn end(&mut self, polynomials: &[u8]) {
         self.written.records += 1;
-        if self.buffer.len() >= PIECE {
-            self.hand_on();
+        if self.buffer.len() + self.listed >= PIECE || self.lists.len() == LISTS {
+            self.hand_on(polynomials);
         }
     }
 
-    fn hand_on(&mut self) {
-        let buffer = std::mem::take(&mut self.buffer);
-        self.pass_on(&buffer);
-        self.buffer = buffer;
-        self.buffer.clear();
-    }
-
-    /// Writes to the stream, past the buffer, which is empty or on its way.
-    fn pass_on(&mut self, bytes: &[u8]) {
-        if self.error.is_none() {
-            match self.stream.write_all(bytes) {
-                Ok(()) => self.written.bytes += bytes.len() as u64,
+    /// Writes what is gathered; the log has these polynomials.
+    pub(super) fn hand_on(&mut self, polynomials: &[u8]) {
+        let bytes = (self.buffer.len() + self.listed) as u64;
+        if self.error.is_none() && bytes > 0 {
+            let mut parts = [IoSlice::new(&[]); 2 * LISTS + 1];
+            let (mut count, mut begin) = (0, 0);
+            for (end, list) in &self.lists {
+                parts[count] = IoSlice::new(&self.buffer[begin..*end]);
+                parts[count + 1] = IoSlice::new(&polynomials[list.clone()]);
+                (count, begin) = (count + 2, *end);
+            }
+            parts[count] = IoSlice::new(&self.buffer[begin..]);
+            match write_all(&mut self.stream, &mut parts[..=count]) {
+                Ok(()) => self.written.bytes += bytes,
                 Err(error) => self.error = Some(error),
             }
         }
+        self.buffer.clear();
+        self.lists.clear();
+        self.listed = 0;
     }
+}
+
+/// Writes all parts. (`Write::write_all_vectored` is not stable.)
+fn write_all(stream: &mut impl Write, mut parts: &mut [IoSlice<'_>]) -> io::Result<()> {
+    // Past empty parts.
+    IoSlice::advance_slices(&mut parts, 0);
+    while !parts.is_empty() {
+        match stream.write_vectored(parts) {
+            Ok(0) => return Err(ErrorKind::WriteZero.into()),
+            Ok(written) => IoSlice::advance_slices(&mut parts, written),
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -162,6 +208,28 @@ mod tests {
         assert_eq!(bytes.len(), 64);
         assert_eq!(written, Written { records: 2, bytes: 64 });
         assert_eq!(bytes[24..32], 4.0_f64.to_le_bytes());
+    }
+
+    /// Takes a few bytes of whatever it is given at a time.
+    struct Slow(Vec<u8>);
+
+    impl Write for Slow {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.write(&bytes[..bytes.len().min(7)])
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_stream_that_takes_little_at_a_time_gets_all() {
+        let (parts, all) = ([&b""[..], b"a part of sixteen", b"", b"another one"], b"a part of sixteenanother one");
+        let mut stream = Slow(Vec::new());
+        write_all(&mut stream, &mut parts.map(IoSlice::new)).unwrap();
+        assert_eq!(stream.0, all);
+        write_all(&mut stream, &mut []).unwrap();
+        assert_eq!(write_all(&mut Full(20), &mut parts.map(IoSlice::new)).unwrap_err().to_string(), "no space left");
     }
 
     #[test]
