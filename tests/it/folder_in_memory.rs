@@ -12,7 +12,7 @@ fn job(folder: &Path, script: &str) -> Job {
 }
 
 /// The sandbox, where it has namespaces.
-fn with_namespaces() -> Option<&'static Backend> {
+pub fn with_namespaces() -> Option<&'static Backend> {
     let backend = backend()?;
     let active = backend.layers().iter().any(|report| report.layer == Layer::Namespaces && report.active);
     if !active {

@@ -14,6 +14,7 @@ mod fuzz_replay;
 mod grading;
 mod handed_in;
 mod judging;
+mod keepers;
 mod kills;
 mod known;
 mod layers;

@@ -2,7 +2,7 @@
 //!
 //! The hostile programs are in `attacks.rs`.
 
-mod deaths;
+pub mod deaths;
 
 use std::ffi::OsString;
 use std::io::Read;

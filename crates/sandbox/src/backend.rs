@@ -14,15 +14,16 @@ use std::time::Duration;
 
 use super::bubblewrap;
 use super::fake::FakeRun;
-use super::fault::{SandboxError, lost, set_up_failed};
+use super::fault::{SandboxError, set_up_failed};
 use super::job::{Identity, Job, Policy};
+use super::keepers::{Host, Keeper, Kind as Keeping, Pool};
 use super::layers::{self, Layer, LayerReport};
 use super::outcome::StartProblem;
 use super::own;
 use super::program;
 use super::room;
 use super::running::{Running, Supervised};
-use super::supervisor::{MODE_PROBE, MODE_RUN};
+use super::supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN};
 use super::sys;
 use super::wire::{self, Event, Order, Probe, SUPERVISOR_ARGUMENT, Walls};
 
@@ -71,16 +72,38 @@ impl Supervisor {
     }
 
     /// Starts it for a run, with what the run's walls ask for.
-    fn spawn_for(&self, order: &Order) -> Result<(Child, UnixStream), SandboxError> {
+    fn spawn_for(&self, order: &Order) -> Result<Asked, SandboxError> {
         let (name, command) = match order.walls.bubblewrap {
             true => ("in bubblewrap".into(), self.wrapped(MODE_RUN, Some(&wire::path(&order.folder)))),
             false => (self.program.display().to_string(), Ok(self.command(MODE_RUN))),
         };
         let begin = || -> io::Result<_> {
-            let (control, theirs) = UnixStream::pair()?;
-            Ok((command?.stdin(OwnedFd::from(theirs)).spawn()?, control))
+            let (mut child, control) = connected(command?)?;
+            let answers = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
+            Ok(Asked { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
-        begin().map_err(|source| SandboxError::Supervisor { program: name, source })
+        let asked = begin().map_err(|source| SandboxError::Supervisor { program: name, source })?;
+        // One that does not listen says why, or ends.
+        let _ = wire::send(&asked.control, order);
+        Ok(asked)
+    }
+
+    /// Asks a keeper of runs of this kind, and starts one if there is none; with the word whether it was there before.
+    fn ask_keeper(&self, order: &Order, kind: Keeping, pool: &Arc<Pool>) -> Result<(Asked, bool), SandboxError> {
+        if let Some(keeper) = pool.take(&kind)
+            && let Ok((control, answers)) = keeper.ask(order)
+        {
+            return Ok((Asked { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, true));
+        }
+        let begin = || -> io::Result<_> {
+            let mut command = self.command(MODE_KEEP);
+            command.stdout(Stdio::null());
+            let (child, socket) = connected(command)?;
+            let keeper = Keeper::new(kind, child, socket);
+            let (control, answers) = keeper.ask(order)?;
+            Ok((Asked { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, false))
+        };
+        begin().map_err(|source| SandboxError::Supervisor { program: self.program.display().to_string(), source })
     }
 
     fn spawn(&self, mode: &str) -> Result<Child, SandboxError> {
@@ -127,6 +150,31 @@ impl Supervisor {
     }
 }
 
+/// Starts a supervisor; the answer is also the other end of its standard input.
+fn connected(mut command: Command) -> io::Result<(Child, UnixStream)> {
+    let (ours, theirs) = UnixStream::pair()?;
+    Ok((command.stdin(OwnedFd::from(theirs)).spawn()?, ours))
+}
+
+/// A supervisor that has its order.
+struct Asked {
+    host: Host,
+    control: UnixStream,
+    answers: File,
+}
+
+impl Asked {
+    /// Its first word.
+    fn first(&mut self) -> io::Result<Event> {
+        wire::receive(&mut self.answers)
+    }
+
+    fn lost(self) -> SandboxError {
+        drop(self.control);
+        self.host.lost()
+    }
+}
+
 /// A way to run programs. Cheap to clone; runs from several threads do not disturb each other.
 #[derive(Clone)]
 pub struct Backend {
@@ -136,8 +184,14 @@ pub struct Backend {
 
 #[derive(Clone)]
 enum Kind {
-    Launcher { supervisor: Supervisor, walls: Walls },
+    Launcher { supervisor: Supervisor, walls: Walls, keepers: Arc<Pool> },
     Fake(Arc<dyn Fn(&Job) -> FakeRun + Send + Sync>),
+}
+
+impl Kind {
+    fn launcher(supervisor: Supervisor, walls: Walls) -> Self {
+        Self::Launcher { supervisor, walls, keepers: Arc::default() }
+    }
 }
 
 impl std::fmt::Debug for Backend {
@@ -160,7 +214,7 @@ impl Backend {
     pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
-        Ok(Self { kind: Kind::Launcher { supervisor, walls }, layers: reports.into() })
+        Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
     /// The same without one of its walls, to prove what the others hold alone. Reports state it.
@@ -173,7 +227,7 @@ impl Backend {
         let kind = match &self.kind {
             Kind::Launcher { supervisor, .. } => {
                 let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
-                Kind::Launcher { supervisor: supervisor.clone(), walls }
+                Kind::launcher(supervisor.clone(), walls)
             }
             Kind::Fake(script) => Kind::Fake(script.clone()),
         };
@@ -191,7 +245,7 @@ impl Backend {
             Kind::Launcher { supervisor, .. } => {
                 let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
                 let walls = Walls { landlock_version: version, ..walls };
-                Kind::Launcher { supervisor: supervisor.clone(), walls }
+                Kind::launcher(supervisor.clone(), walls)
             }
             Kind::Fake(script) => Kind::Fake(script.clone()),
         };
@@ -211,7 +265,7 @@ impl Backend {
         supervisor.try_bubblewrap(&probe).map_err(missing)?;
         let reports = layers::in_bubblewrap(&self.layers);
         let walls = layers::walls(&reports).map_err(missing)?;
-        Ok(Self { kind: Kind::Launcher { supervisor: supervisor.clone(), walls }, layers: reports.into() })
+        Ok(Self { kind: Kind::launcher(supervisor.clone(), walls), layers: reports.into() })
     }
 
     /// Every wall that holds on this host, however few: nothing is refused for a missing one. For
@@ -224,7 +278,7 @@ impl Backend {
     pub fn unsandboxed(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::whatever_holds(&reports).map_err(|missing| SandboxError::Missing { missing })?;
-        Ok(Self { kind: Kind::Launcher { supervisor, walls }, layers: reports.into() })
+        Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
     /// Whether every wall holds that this host may not grade without.
@@ -258,8 +312,8 @@ impl Backend {
     ///
     /// Faults of ours or of the host.
     pub fn start(&self, job: &Job) -> Result<Running, SandboxError> {
-        let (supervisor, walls) = match &self.kind {
-            Kind::Launcher { supervisor, walls } => (supervisor, *walls),
+        let (supervisor, walls, keepers) = match &self.kind {
+            Kind::Launcher { supervisor, walls, keepers } => (supervisor, *walls, keepers),
             Kind::Fake(script) => return Ok(script(job).into_running(job, self.layers.clone())),
         };
         if let Some(staged) = &job.staged
@@ -283,11 +337,16 @@ impl Backend {
             Some(name) => Some(TracePipe::make(&wire::path(&order.folder), name)?),
             None => None,
         };
-        let (mut child, control) = supervisor.spawn_for(&order)?;
-        let first = match (wire::send(&control, &order), child.stdout.as_mut()) {
-            (Ok(()), Some(stdout)) => wire::receive(stdout),
-            (Err(error), _) => Err(error),
-            (Ok(()), None) => Err(io::ErrorKind::BrokenPipe.into()),
+        let (mut asked, first) = loop {
+            let (mut asked, kept) = match Keeping::of(&order) {
+                Some(kind) => supervisor.ask_keeper(&order, kind, keepers)?,
+                None => (supervisor.spawn_for(&order)?, false),
+            };
+            match asked.first() {
+                // It had gone for want of orders before this one came.
+                Err(_) if kept => asked.host.kill(),
+                first => break (asked, first),
+            }
         };
         match first {
             Ok(Event::Ready { session, user }) => {
@@ -295,26 +354,23 @@ impl Backend {
                 let mut reader = pipe.map(|pipe| pipe.reader);
                 let mut folder = None;
                 if order.volatile {
-                    match handed_over(&control, order.pipe.is_some()) {
+                    match handed_over(&asked.control, order.pipe.is_some()) {
                         Ok((inside, pipe)) => (folder, reader) = (Some(inside.into()), pipe.map(File::from)),
-                        Err(_) => {
-                            drop(control);
-                            return Err(lost(child));
-                        }
+                        Err(_) => return Err(asked.lost()),
                     }
                 }
                 let (trace_limit, layers) = (job.limits.trace_bytes, self.layers.clone());
-                let supervised = Supervised { child, session, user, order, trace_limit, layers };
+                let Asked { host, control, answers } = asked;
+                let supervised = Supervised { host, answers, session, user, order, trace_limit, layers };
                 Ok(Running::new(supervised, control, reader, folder))
             }
             Ok(Event::Failed(failure)) => {
-                let _ = child.wait();
+                asked.host.rest(None, false);
                 Err(set_up_failed(failure))
             }
             Ok(Event::Done(_)) | Err(_) => {
-                let _ = child.kill();
-                drop(control);
-                Err(lost(child))
+                asked.host.kill();
+                Err(asked.lost())
             }
         }
     }

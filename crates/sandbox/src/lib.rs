@@ -12,7 +12,8 @@
 //!
 //! Where the kernel lets it, the supervisor first moves into namespaces of its own, in which only the run's processes
 //! and files exist and no network; whatever dies there takes all below it along. This is a further wall, never the only
-//! one: everything else holds without it.
+//! one: everything else holds without it. There, runs of one submission have a *keeper* in common, which is prepared once and
+//! forks a supervisor for each run into fresh namespaces; one whose run was stopped, crashed or left anything serves no other.
 //!
 //! What it never does: trust a path the program could change, read a result while the program lives, or go on
 //! silently when a required layer is missing ([`Backend::best`] refuses).
@@ -25,6 +26,7 @@ mod doctor;
 mod fake;
 mod fault;
 mod job;
+mod keepers;
 mod layers;
 mod mounts;
 mod outcome;

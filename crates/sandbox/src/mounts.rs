@@ -9,6 +9,8 @@ use std::ffi::CStr;
 use std::io;
 use std::os::fd::{AsRawFd, BorrowedFd, FromRawFd, OwnedFd, RawFd};
 
+use crate::sys::{Fork, SingleThread};
+
 /// Whatever lies there can be read and not changed.
 pub(super) const READ_ONLY: u64 = 0x1;
 /// Set-user bits are without effect.
@@ -37,6 +39,17 @@ fn check(answer: i64) -> io::Result<i64> {
 pub(super) fn unshare(flags: i32) -> io::Result<()> {
     // SAFETY: an integer; nothing of ours depends on the namespaces that are left.
     check(i64::from(unsafe { libc::unshare(flags) })).map(drop)
+}
+
+/// Forks into new namespaces (`CLONE_NEW*`), in which the child is at once, and the first process if one is of processes.
+pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
+    let flags = namespaces | libc::SIGCHLD;
+    // SAFETY: without a stack of its own the child goes on with a copy of ours, as after `fork`; the process has one thread,
+    // so that the copy is consistent. The other arguments are for flags that are not set.
+    match check(unsafe { libc::syscall(libc::SYS_clone, flags, 0, 0, 0, 0) })? {
+        0 => Ok(Fork::Child),
+        pid => Ok(Fork::Parent(pid as i32)),
+    }
 }
 
 /// Has no mount of this namespace show anywhere else.

@@ -3,14 +3,14 @@
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
-use std::process::Child;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use super::collect::OpenFolder;
 use super::decide;
-use super::fault::{SandboxError, lost, set_up_failed};
+use super::fault::{SandboxError, set_up_failed};
+use super::keepers::Host;
 use super::layers::LayerReport;
 use super::outcome::{Captured, RunOutcome};
 use super::supervisor::orphans;
@@ -49,7 +49,9 @@ enum State {
 
 #[derive(Debug)]
 pub(super) struct Supervised {
-    pub(super) child: Child,
+    pub(super) host: Host,
+    /// What the supervisor says.
+    pub(super) answers: File,
     pub(super) session: Option<i32>,
     pub(super) user: Option<u32>,
     pub(super) order: Order,
@@ -112,7 +114,9 @@ impl Running {
     /// # Errors
     ///
     /// Faults of ours or of the host.
-    pub fn wait(self) -> Result<RunOutcome, SandboxError> {
+    pub fn wait(mut self) -> Result<RunOutcome, SandboxError> {
+        // Its pages would count for the supervisor's next run.
+        self.folder = None;
         self.wait_with_folder().map(|(outcome, _)| outcome)
     }
 
@@ -139,19 +143,22 @@ impl Running {
     }
 
     fn conclude(&self, mut supervised: Supervised) -> Result<RunOutcome, SandboxError> {
-        let answer = receive(&mut supervised.child);
+        let answer = receive(&mut supervised.answers);
         // Nobody commands a supervisor that has reported.
         drop(self.canceller.control.lock().unwrap_or_else(PoisonError::into_inner).take());
         let (event, stdout, stderr) = match answer {
             Ok(answer) => answer,
             Err(_) => {
-                let error = lost(supervised.child);
+                let error = supervised.host.lost();
                 orphans::end(supervised.session, supervised.user);
                 return Err(error);
             }
         };
-        // It ends by itself after its report; how, no longer matters.
-        let _ = supervised.child.wait();
+        let report = match &event {
+            Event::Done(report) => Some(report),
+            _ => None,
+        };
+        supervised.host.rest(report, self.folder.is_none());
         let report = match event {
             Event::Done(report) => report,
             Event::Failed(failure) => return Err(set_up_failed(failure)),
@@ -193,12 +200,11 @@ impl Drop for Running {
 }
 
 /// The supervisor's last message and the captured bytes behind it.
-fn receive(child: &mut Child) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
-    let stdout = child.stdout.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;
-    let event = wire::receive(&mut *stdout)?;
+fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
+    let event = wire::receive(&mut *answers)?;
     let mut bytes = |length: u64| -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
-        let read = (&mut *stdout).take(length).read_to_end(&mut bytes)?;
+        let read = (&mut *answers).take(length).read_to_end(&mut bytes)?;
         if read as u64 == length { Ok(bytes) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
     };
     let (first, second) = match &event {

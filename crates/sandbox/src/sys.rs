@@ -27,16 +27,26 @@ pub(super) enum Fork {
     Parent(i32),
 }
 
+/// The proof that this process has one thread, and starts none: the copy of its memory that a child gets is consistent.
+pub(super) struct SingleThread(());
+
+/// # Errors
+///
+/// When the process has more than one thread: its child could find locks held for ever.
+pub(super) fn single_thread() -> io::Result<SingleThread> {
+    match std::fs::read_dir("/proc/self/task")?.count() {
+        1 => Ok(SingleThread(())),
+        _ => Err(io::Error::other("the supervisor must have one thread only")),
+    }
+}
+
 /// Forks the process.
 ///
 /// # Errors
 ///
-/// When the process has more than one thread (the child could then find locks held for ever), or the kernel refuses.
+/// When the process has more than one thread, or the kernel refuses.
 pub(super) fn fork() -> io::Result<Fork> {
-    let threads = std::fs::read_dir("/proc/self/task")?.count();
-    if threads != 1 {
-        return Err(io::Error::other("the supervisor must have one thread only"));
-    }
+    single_thread()?;
     // SAFETY: the process has one thread, as was just checked, so the child's copy of memory is consistent.
     match check(i64::from(unsafe { libc::fork() }))? {
         0 => Ok(Fork::Child),

@@ -22,7 +22,11 @@ pub(super) const PIPE_BYTES: i32 = 1 << 20;
 /// No message is longer than this; a longer one means that the streams are out of step.
 const LONGEST_MESSAGE: u64 = 64 << 20;
 
-/// Comes with the working folder, where that lies in memory.
+/// Comes with the way of commands, to a supervisor that serves several runs.
+pub(super) const CONTROL: u8 = b'c';
+/// Comes with the way of answers, likewise.
+pub(super) const ANSWERS: u8 = b'a';
+/// Comes with the working folder: to the grader, where that lies in memory; to such a supervisor, as it lies on the disk.
 pub(super) const FOLDER: u8 = b'f';
 /// Comes with the reading end of the trace pipe.
 pub(super) const TRACE: u8 = b't';

@@ -2,7 +2,7 @@
 use super::*;
 
 /// The process that runs exactly these words, and its parent.
-fn process(words: &[&str]) -> Option<(i32, i32)> {
+pub fn process(words: &[&str]) -> Option<(i32, i32)> {
     let line: Vec<u8> = words.iter().flat_map(|word| [word.as_bytes(), b"\0"].concat()).collect();
     let pids =
         std::fs::read_dir("/proc").unwrap().flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok());
@@ -14,7 +14,7 @@ fn process(words: &[&str]) -> Option<(i32, i32)> {
 }
 
 /// Looks again and again until there is an answer; a test that gets none fails after half a minute.
-fn eventually<T>(mut look: impl FnMut() -> Option<T>) -> T {
+pub fn eventually<T>(mut look: impl FnMut() -> Option<T>) -> T {
     let start = std::time::Instant::now();
     loop {
         if let Some(found) = look() {
@@ -25,7 +25,7 @@ fn eventually<T>(mut look: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-fn kill(pid: i32) {
+pub fn kill(pid: i32) {
     assert!(std::process::Command::new("/bin/kill").args(["-KILL", &pid.to_string()]).status().unwrap().success());
 }
 

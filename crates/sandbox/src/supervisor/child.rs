@@ -10,10 +10,13 @@ use std::os::fd::{AsFd, AsRawFd, OwnedFd};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::UnixStream;
 use std::path::Path;
+use std::rc::Rc;
 use std::time::Duration;
 
 use landlock::RulesetCreated;
+use seccompiler::BpfProgram;
 
+use super::filter::Purpose;
 use super::{filter, processes, walls};
 use crate::sys;
 use crate::wire::{self, Failure, Order, Raw};
@@ -33,6 +36,8 @@ pub(super) struct Plan {
     /// What is executed, open under a number beyond the limit of descriptors, where execution is not announced.
     pub(super) entrance: Option<OwnedFd>,
     pub(super) rules: Option<RulesetCreated>,
+    /// The filters, as far as they are compiled.
+    pub(super) filters: Option<Filters>,
     /// The ways into the run's control group.
     pub(super) groups: Vec<File>,
     pub(super) user: Option<u32>,
@@ -142,18 +147,32 @@ fn limits(order: &Order, own_user: bool) -> io::Result<()> {
     Ok(())
 }
 
+/// Filters that were compiled before there was a child, with what they are for.
+pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
+
+/// What the filters of a child with this number are for.
+pub(super) fn purpose(order: &Order, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
+    let walls = order.walls;
+    Purpose {
+        tools: order.tools,
+        announce: walls.notify,
+        // Tools signal their own children, which Landlock's scope or the own user tell from others.
+        own_process: (!order.tools || !(walls.scopes || walls.own_user)).then_some(number),
+        entrance,
+        own_user,
+    }
+}
+
 /// Installs the filters and hands the listener to the supervisor.
 fn filter_calls(plan: &Plan) -> io::Result<()> {
     let walls = plan.order.walls;
-    let purpose = filter::Purpose {
-        tools: plan.order.tools,
-        announce: walls.notify,
-        // Tools signal their own children, which Landlock's scope or the own user tell from others.
-        own_process: (!plan.order.tools || !(walls.scopes || walls.own_user)).then(|| std::process::id() as i32),
-        entrance: plan.entrance.as_ref().map(|file| file.as_raw_fd() as u64),
-        own_user: plan.user.is_some(),
+    let entrance = plan.entrance.as_ref().map(|file| file.as_raw_fd() as u64);
+    let purpose = purpose(&plan.order, plan.user.is_some(), entrance, std::process::id() as i32);
+    let compiled = match plan.filters.as_ref().filter(|filters| filters.0 == purpose) {
+        Some(filters) => filters.clone(),
+        None => Rc::new((purpose, filter::filters(purpose)?)),
     };
-    for (index, program) in filter::filters(purpose)?.iter().enumerate() {
+    for (index, program) in compiled.1.iter().enumerate() {
         let listener = sys::install_filter(program, walls.notify && index == 0)?;
         if let Some(listener) = listener {
             sys::send_descriptor(&plan.status, LISTENER, listener.as_fd())?;

@@ -1,24 +1,24 @@
 //! The seccomp filters: an allow list, refusals with an error number, and calls that end the program.
 //!
-//! Three kinds of filter are stacked; the kernel takes the strictest answer, in the order kill, error, announce,
-//! allow. The first installed announces forbidden calls to the supervisor, which names the call and kills; where the
-//! kernel cannot announce, the call kills by `SIGSYS`. The allow list comes last, because it also takes away the calls
+//! Rules come in layers; the strictest answer counts, in the order kill, error, announce, allow. Forbidden calls are announced to
+//! the supervisor, which names the call and kills; that filter is installed first. Where the kernel cannot announce, the call
+//! kills by `SIGSYS`. All other layers make one filter, which comes last, because its allow list also takes away the calls
 //! that install filters. Every filter ends programs that use another architecture's calls (32-bit `int 0x80`); x32
 //! numbers are on no list and so do not exist.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io;
 
 use seccompiler::{
     BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter, SeccompRule,
 };
 
-use super::{calls, sets};
+use super::calls;
+use super::search::{self, Answer};
 
 /// Stands for "announce" while a filter is compiled, because the compiler does not know that action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
 const RETURN_CONSTANT: u16 = 0x06;
-const ACTION_TRACE: u32 = 0x7ff0_0000;
 const ACTION_ANNOUNCE: u32 = 0x7fc0_0000;
 
 /// Flags of `clone` that make namespaces.
@@ -94,7 +94,7 @@ const HARMLESS_OPTIONS: [i32; 10] = [
 ];
 
 /// What a set of filters is for.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Purpose {
     /// Compilers may start processes, execute programs and make links within their folder.
     pub(super) tools: bool,
@@ -112,7 +112,60 @@ pub(super) struct Purpose {
 
 /// The filters in the order of installation; the first is the one that announces.
 pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
-    let mut filters = vec![forbidden(purpose)?];
+    let (forbidden, mut layers) = (forbidden(purpose)?, refusals(purpose)?);
+    let allow: u32 = SeccompAction::Allow.into();
+    let mut filters = Vec::new();
+    if purpose.announce {
+        let announced = joined(forbidden.keys().copied(), &[(forbidden.clone(), announce())])?;
+        filters.push(search::filter(&announced, allow, frame()?)?);
+    } else {
+        layers.insert(0, (forbidden, SeccompAction::KillProcess));
+    }
+    // Whatever is in some group exists, and the layers decide. All else does not.
+    let known = calls::GROUPS.into_iter().flatten().map(|(_, call)| *call);
+    filters.push(search::filter(&joined(known, &layers)?, SeccompAction::Errno(libc::ENOSYS as u32).into(), frame()?)?);
+    for instruction in filters.iter_mut().flatten() {
+        if instruction.code == RETURN_CONSTANT && instruction.k == u32::from(announce()) {
+            instruction.k = ACTION_ANNOUNCE;
+        }
+    }
+    Ok(filters)
+}
+
+/// Rules with the answer to what they match; calls without rules always match.
+type Layer = (Rules, SeccompAction);
+
+/// What each of these calls is answered by layers of which the first that matches decides.
+fn joined(calls: impl Iterator<Item = i64>, layers: &[Layer]) -> io::Result<BTreeMap<u32, Answer>> {
+    let mut answers = BTreeMap::new();
+    for call in calls {
+        let mut asked = Vec::new();
+        let mut at_last = SeccompAction::Allow;
+        for (rules, action) in layers {
+            match rules.get(&call) {
+                None => {}
+                Some(always) if always.is_empty() => {
+                    at_last = action.clone();
+                    break;
+                }
+                Some(rules) => asked.push(compile(Rules::from([(call, rules.clone())]), action.clone())?),
+            }
+        }
+        let at_last = u32::from(at_last);
+        let answer = match asked.is_empty() {
+            true => Answer::Constant(at_last),
+            false => {
+                asked.push(vec![search::answer(at_last)]);
+                Answer::Asked(asked)
+            }
+        };
+        answers.insert(u32::try_from(call).map_err(io::Error::other)?, answer);
+    }
+    Ok(answers)
+}
+
+/// The layers of refusals. The largest error number comes first.
+fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
     let mut refusals: BTreeMap<i32, Rules> = BTreeMap::new();
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
         refusals.entry(errno).or_default().insert(call, rules);
@@ -180,30 +233,13 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
         refuse(libc::EPERM, libc::SYS_tgkill, vec![all_differ(0, &[pid])?]);
         refuse(libc::EPERM, libc::SYS_tkill, vec![all_differ(0, &[pid])?]);
     }
-    for (errno, rules) in refusals {
-        let action = SeccompAction::Errno(errno as u32);
-        let (always, sometimes): (Rules, Rules) = rules.into_iter().partition(|(_, rules)| rules.is_empty());
-        if !always.is_empty() {
-            filters.push(set(always.into_keys().collect(), action.clone(), SeccompAction::Allow)?);
-        }
-        if !sometimes.is_empty() {
-            filters.push(compile(sometimes, SeccompAction::Allow, action)?);
-        }
-    }
-    filters.push(known()?);
-    Ok(filters)
+    Ok(refusals.into_iter().rev().map(|(errno, rules)| (rules, SeccompAction::Errno(errno as u32))).collect())
 }
 
 type Rules = BTreeMap<i64, Vec<SeccompRule>>;
 
-/// Whatever is in some group gets past this filter; the others then decide. All else does not exist.
-fn known() -> io::Result<BpfProgram> {
-    let calls = calls::GROUPS.into_iter().flatten().map(|(_, call)| *call).collect();
-    set(calls, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))
-}
-
-/// The filter of the calls that end the program.
-fn forbidden(purpose: Purpose) -> io::Result<BpfProgram> {
+/// Which calls end the program, or are the supervisor's to decide.
+fn forbidden(purpose: Purpose) -> io::Result<Rules> {
     let mut rules: Rules =
         calls::FORBIDDEN.iter().chain(calls::FORBIDDEN_OLD).map(|(_, call)| (*call, Vec::new())).collect();
     let mut clone = Vec::new();
@@ -233,26 +269,23 @@ fn forbidden(purpose: Purpose) -> io::Result<BpfProgram> {
         // The supervisor changes the mode itself, in the working folder only.
         rules.extend(calls::MODES.iter().chain(calls::MODES_OLD).map(|(_, call)| (*call, Vec::new())));
     }
-    let action =
-        if purpose.announce { SeccompAction::Trace(ANNOUNCE_PLACEHOLDER.into()) } else { SeccompAction::KillProcess };
-    let mut program = compile(rules, SeccompAction::Allow, action)?;
-    for instruction in &mut program {
-        if instruction.code == RETURN_CONSTANT && instruction.k == ACTION_TRACE | u32::from(ANNOUNCE_PLACEHOLDER) {
-            instruction.k = ACTION_ANNOUNCE;
-        }
-    }
-    Ok(program)
+    Ok(rules)
 }
 
-/// The filter of calls that need no look at their arguments.
-fn set(calls: BTreeSet<i64>, inside: SeccompAction, outside: SeccompAction) -> io::Result<BpfProgram> {
-    let frame = compile(Rules::new(), outside.clone(), inside.clone())?;
-    sets::filter(&calls, inside, outside, frame)
+/// Stands for the announcement as long as a filter is compiled.
+fn announce() -> SeccompAction {
+    SeccompAction::Trace(ANNOUNCE_PLACEHOLDER.into())
 }
 
-fn compile(rules: Rules, otherwise: SeccompAction, matched: SeccompAction) -> io::Result<BpfProgram> {
+/// A filter that looks at the architecture only.
+fn frame() -> io::Result<BpfProgram> {
+    compile(Rules::new(), SeccompAction::Log)
+}
+
+fn compile(rules: Rules, matched: SeccompAction) -> io::Result<BpfProgram> {
     let machine = std::env::consts::ARCH.try_into().map_err(io::Error::other)?;
-    SeccompFilter::new(rules, otherwise, matched, machine).and_then(BpfProgram::try_from).map_err(io::Error::other)
+    let filter = SeccompFilter::new(rules, SeccompAction::Allow, matched, machine);
+    filter.and_then(BpfProgram::try_from).map_err(io::Error::other)
 }
 
 /// Matches when the argument is none of the values.
@@ -284,30 +317,73 @@ fn condition(argument: u8, operator: SeccompCmpOp, value: u64) -> io::Result<Sec
 mod tests {
     use super::*;
 
+    /// What the kernel makes of filters that are installed one after the other: the strictest answer, of equals the latest.
+    fn stacked(filters: &[BpfProgram], call: u32, architecture: u32, arguments: [u64; 6]) -> u32 {
+        let answers = filters.iter().rev().map(|filter| search::tests::run(filter, call, architecture, arguments));
+        // The action is the upper half, and killing a process is negative.
+        answers.min_by_key(|answer| (answer & 0xffff_0000).cast_signed()).unwrap()
+    }
+
+    /// One filter for each layer, as the compiler makes them.
+    fn by_layers(purpose: Purpose) -> Vec<BpfProgram> {
+        let action = if purpose.announce { announce() } else { SeccompAction::KillProcess };
+        let mut filters = vec![compile(forbidden(purpose).unwrap(), action).unwrap()];
+        filters.extend(
+            refusals(purpose).unwrap().into_iter().rev().map(|(rules, action)| compile(rules, action).unwrap()),
+        );
+        let known = calls::GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
+        let mut known = compile(known, SeccompAction::Log).unwrap();
+        let (allow, log) = (u32::from(SeccompAction::Allow), u32::from(SeccompAction::Log));
+        for instruction in known.iter_mut().filter(|instruction| instruction.code == RETURN_CONSTANT) {
+            instruction.k = match instruction.k {
+                answer if answer == log => allow,
+                answer if answer == allow => SeccompAction::Errno(libc::ENOSYS as u32).into(),
+                other => other,
+            };
+        }
+        filters.push(known);
+        let placeholder = u32::from(announce());
+        for instruction in filters.iter_mut().flatten().filter(|instruction| instruction.k == placeholder) {
+            instruction.k = ACTION_ANNOUNCE;
+        }
+        filters
+    }
+
     #[test]
-    fn ranges_of_calls_answer_as_the_compiler_does() {
-        let lists: [BTreeSet<i64>; 4] = [
-            calls::GROUPS.into_iter().flatten().map(|(_, call)| *call).collect(),
-            calls::REFUSED.iter().chain(calls::REFUSED_OLD).map(|(_, call)| *call).collect(),
-            BTreeSet::from([0, 1, 2, 5, 7, 8, 1023]),
-            BTreeSet::new(),
-        ];
-        for list in lists {
-            for (inside, outside) in
-                [(SeccompAction::Allow, SeccompAction::Errno(38)), (SeccompAction::Errno(1), SeccompAction::Allow)]
-            {
-                let rules: Rules = list.iter().map(|call| (*call, Vec::new())).collect();
-                let (ours, compiled) = (
-                    set(list.clone(), inside.clone(), outside.clone()).unwrap(),
-                    compile(rules, outside, inside).unwrap(),
-                );
-                let native = compiled[1].k;
-                let numbers = (0..1200).chain((0..1200).map(|call| call | 0x4000_0000)).chain([u32::MAX, 1 << 31]);
-                for call in numbers {
-                    for architecture in [native, 0x4000_0003, 0] {
-                        let answer = |program: &BpfProgram| sets::tests::run(program, call, architecture, [0; 6]);
-                        assert_eq!(answer(&ours), answer(&compiled), "call {call:#x} of {architecture:#x}");
-                    }
+    fn the_search_answers_as_the_layers_do() {
+        let entrance = |announce: bool| (!announce).then_some(99);
+        let cases =
+            [(false, true, true), (false, false, true), (true, true, true), (true, true, false), (true, false, false)];
+        for (tools, announce, own_user) in cases {
+            let own_process = (!tools).then_some(77);
+            let purpose = Purpose { tools, announce, own_process, entrance: entrance(announce), own_user };
+            let (ours, layers) = (filters(purpose).unwrap(), by_layers(purpose));
+            assert!(ours.len() <= 2 && ours.iter().all(|filter| filter.len() < 4096));
+            let native = layers[0][1].k;
+            let mut words: Vec<u64> =
+                NAMESPACE_FLAGS.into_iter().chain(HARMLESS_COMMANDS).chain(LOCK_COMMANDS).collect();
+            words.extend(HARMLESS_REQUESTS.iter().chain(&HARMLESS_OPTIONS.map(|option| option as u64)));
+            words.extend([0, 1, 2, 3, 77, 99, 1 << 32, u64::MAX, u64::from(u32::MAX)]);
+            words.extend([libc::CLONE_THREAD, libc::CLONE_THREAD | libc::CLONE_FILES].map(|flags| flags as u64));
+            words.extend([libc::O_TRUNC, libc::O_TRUNC | libc::O_RDWR, libc::MAP_HUGETLB].map(|flags| flags as u64));
+            words.extend(
+                [libc::MAP_ANONYMOUS | libc::MAP_SHARED, libc::MAP_SHARED, libc::O_ASYNC].map(|flags| flags as u64),
+            );
+            // x32 numbers, and the largest.
+            let strange = (0..600).map(|call| call | 0x4000_0000).chain([u32::MAX, 1 << 31]);
+            for call in (0..500).chain(strange) {
+                let agree = |architecture, arguments| {
+                    let (ours, theirs) = (
+                        stacked(&ours, call, architecture, arguments),
+                        stacked(&layers, call, architecture, arguments),
+                    );
+                    assert_eq!(ours, theirs, "call {call:#x} of {architecture:#x} with {arguments:x?}, {purpose:?}");
+                };
+                [0x4000_0003, 0].into_iter().for_each(|architecture| agree(architecture, [0; 6]));
+                let words: &[u64] = if call < 500 { &words } else { &[0] };
+                for word in words {
+                    agree(native, [*word; 6]);
+                    agree(native, [*word, libc::F_SETFL as u64, *word, *word, *word, 0]);
                 }
             }
         }
@@ -321,7 +397,7 @@ mod tests {
                     .unwrap();
             let returns = |k: u32| filters[0].iter().any(|i| i.code == RETURN_CONSTANT && i.k == k);
             assert!(returns(ACTION_ANNOUNCE));
-            assert!(filters.iter().flatten().all(|i| i.k != ACTION_TRACE | u32::from(ANNOUNCE_PLACEHOLDER)));
+            assert!(filters.iter().flatten().all(|i| i.k != u32::from(announce())));
         }
     }
 
@@ -335,6 +411,7 @@ mod tests {
             own_user: true,
         })
         .unwrap();
+        assert_eq!(filters.len(), 1);
         assert!(filters.iter().flatten().all(|instruction| instruction.k != ACTION_ANNOUNCE));
         assert!(
             filters[0].iter().any(|instruction| instruction.code == RETURN_CONSTANT && instruction.k == 0x8000_0000)

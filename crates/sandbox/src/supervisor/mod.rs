@@ -9,14 +9,16 @@ mod filter;
 mod folder;
 mod group;
 mod holdings;
+mod keeper;
 mod locks;
 mod modes;
 mod namespaces;
 pub(super) mod orphans;
+mod prepared;
 mod probe;
 pub(super) mod processes;
 mod run;
-mod sets;
+mod search;
 mod slot;
 mod streams;
 mod view;
@@ -32,6 +34,8 @@ use super::wire::SUPERVISOR_ARGUMENT;
 
 /// Asks for a run.
 pub(super) const MODE_RUN: &str = "run";
+/// Asks for runs of one submission.
+pub(super) const MODE_KEEP: &str = "keep";
 /// Asks which walls hold.
 pub(super) const MODE_PROBE: &str = "probe";
 
@@ -47,6 +51,7 @@ pub fn supervisor_main(arguments: impl IntoIterator<Item = OsString>) -> Option<
     let mode = arguments.next().unwrap_or_default();
     Some(match mode.to_str() {
         Some(MODE_RUN) => run::main(),
+        Some(MODE_KEEP) => keeper::main(),
         Some(MODE_PROBE) => probe::main(),
         _ => ExitCode::from(2),
     })

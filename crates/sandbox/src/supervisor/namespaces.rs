@@ -4,6 +4,9 @@
 //! whatever the reason, the kernel ends everything below it at once. What stays outside, the *guardian*, only waits.
 //! Root needs no user namespace; an ordinary user gets one in which it is itself, with rights over nothing but the new
 //! namespaces. These rights end with the execution of the program.
+//!
+//! A supervisor that serves many runs ([`keeper`](super::keeper)) moves in once, and gives each run a process namespace, mounts and
+//! messages of its own within.
 
 use std::io;
 
@@ -27,6 +30,24 @@ pub(super) enum Side {
 /// The step that failed. The process is then somewhere between the worlds and must end.
 pub(super) fn enter(order: &Order) -> Result<Side, Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+    match leave()? {
+        Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),
+        Fork::Child => {
+            let rest = libc::CLONE_NEWNS | libc::CLONE_NEWNET | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
+            mounts::unshare(rest).map_err(stage("make namespaces"))?;
+            view::build(order)?;
+            Ok(Side::Inside)
+        }
+    }
+}
+
+/// Forks into a new process namespace, an ordinary user's with a user namespace around it. The child dies with the guardian.
+///
+/// # Errors
+///
+/// As for [`enter`].
+pub(super) fn leave() -> Result<Fork, Failure> {
+    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     let (user, group) = (sys::user(), sys::group());
     if user == 0 {
         mounts::unshare(libc::CLONE_NEWPID).map_err(stage("make a process namespace"))?;
@@ -41,14 +62,9 @@ pub(super) fn enter(order: &Order) -> Result<Side, Failure> {
             std::fs::write(file, text).map_err(stage("name the user in its namespace"))?;
         }
     }
-    match sys::fork().map_err(stage("fork"))? {
-        Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),
-        Fork::Child => {
-            sys::die_with_parent().map_err(stage("bind the supervisor's life to its guardian's"))?;
-            let rest = libc::CLONE_NEWNS | libc::CLONE_NEWNET | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
-            mounts::unshare(rest).map_err(stage("make namespaces"))?;
-            view::build(order)?;
-            Ok(Side::Inside)
-        }
+    let side = sys::fork().map_err(stage("fork"))?;
+    if matches!(side, Fork::Child) {
+        sys::die_with_parent().map_err(stage("bind the supervisor's life to its guardian's"))?;
     }
+    Ok(side)
 }

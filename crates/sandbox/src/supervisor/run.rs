@@ -12,8 +12,9 @@ use super::child::{self, Opened, Plan};
 use super::folder::{self, Contents};
 use super::group::Group;
 use super::namespaces::{self, Side};
+use super::prepared::{Held, Prepared};
 use super::streams::Capture;
-use super::{calls, filter, holdings, locks, modes, processes, slot, walls};
+use super::{calls, filter, holdings, locks, modes, processes, slot};
 use crate::job::Limits;
 use crate::sys::{self, Fork, Readiness};
 use crate::wire::{self, Cause, Event, Failure, Order, Report};
@@ -29,23 +30,27 @@ pub(super) fn main() -> ExitCode {
         Ok((io::stdin().as_fd().try_clone_to_owned()?.into(), io::stdout().as_fd().try_clone_to_owned()?.into()))
     };
     let Ok((mut control, mut answers)) = streams() else { return ExitCode::from(2) };
-    let result = wire::receive::<Order>(&mut control)
+    let settled = wire::receive::<Order>(&mut control)
         .map_err(|error| Failure::new("read the order", &error))
-        .and_then(|order| settle(order, control))
-        .and_then(|settled| match settled {
-            Settled::Here(run) => run.finish(&mut answers).map(Ok),
-            Settled::Elsewhere(code) => Ok(Err(code)),
-        });
-    let sent = match result {
-        Ok(Ok(Some((report, stdout, stderr)))) => wire::send(&mut answers, &Event::Done(report))
+        .and_then(|order| settle(order, control));
+    ExitCode::from(match settled {
+        Ok(Settled::Here(run)) => tell(run.finish(&mut answers), &mut answers),
+        // What was inside has told everything.
+        Ok(Settled::Elsewhere(code)) => code,
+        Err(failure) => tell(Err(failure), &mut answers),
+    })
+}
+
+/// Says how it ended. The answer is the supervisor's exit code: 0 when the grader has heard it.
+pub(super) fn tell(finished: Result<Option<Finished>, Failure>, answers: &mut File) -> u8 {
+    let sent = match finished {
+        Ok(Some((report, stdout, stderr))) => wire::send(&mut *answers, &Event::Done(report))
             .and_then(|()| answers.write_all(&stdout))
             .and_then(|()| answers.write_all(&stderr)),
-        Ok(Ok(None)) => return ExitCode::from(1),
-        // What was inside has told everything.
-        Ok(Err(code)) => return ExitCode::from(code),
-        Err(failure) => wire::send(&mut answers, &Event::Failed(failure)),
+        Ok(None) => return 1,
+        Err(failure) => wire::send(answers, &Event::Failed(failure)),
     };
-    if sent.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(1) }
+    u8::from(sent.is_err())
 }
 
 /// A run that has begun, or the word that all is over.
@@ -60,27 +65,20 @@ fn settle(order: Order, control: File) -> Result<Settled, Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
     sys::new_session().map_err(stage("start the supervisor's session"))?;
-    let slot = match order.walls.own_user {
-        true => Some(slot::take().map_err(|error| Failure::new(format!("take a user of its own ({error})"), &error))?),
-        false => None,
-    };
-    let group = match order.walls.group {
-        true => Some(Group::make(&order).map_err(stage("make a control group"))?),
-        false => None,
-    };
+    let held = Held::take(&order)?;
     if order.walls.namespaces
         && let Side::Outside(code) = namespaces::enter(&order)?
     {
         return Ok(Settled::Elsewhere(code));
     }
-    Run::start(order, control, slot, group).map(|run| Settled::Here(Box::new(run)))
+    Run::start(order, control, held, &Prepared::default()).map(|run| Settled::Here(Box::new(run)))
 }
 
 /// The report, standard output and standard error.
-type Finished = (Report, Vec<u8>, Vec<u8>);
+pub(super) type Finished = (Report, Vec<u8>, Vec<u8>);
 
 /// A program at work, seen from its supervisor.
-struct Run {
+pub(super) struct Run {
     order: Order,
     control: File,
     folder: OwnedFd,
@@ -110,7 +108,8 @@ struct Run {
 
 impl Run {
     /// Prepares everything and forks.
-    fn start(order: Order, control: File, slot: Option<slot::Slot>, group: Option<Group>) -> Result<Self, Failure> {
+    pub(super) fn start(order: Order, control: File, held: Held, prepared: &Prepared) -> Result<Self, Failure> {
+        let Held { slot, group } = held;
         let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
@@ -155,16 +154,14 @@ impl Run {
         } else {
             None
         };
-        let rules = match order.walls.landlock {
-            true => Some(walls::rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?),
-            false => None,
-        };
+        let rules = prepared.rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?;
         let plan = Plan {
             supervisor: std::process::id(),
             folder: folder.try_clone().map_err(stage("open the working folder"))?,
             opened: Some(opened),
             entrance,
             rules,
+            filters: prepared.filters.clone(),
             groups: group.as_ref().map_or(Ok(Vec::new()), Group::entrances).map_err(stage("open the control group"))?,
             user: slot.as_ref().map(|(slot, _)| slot.user),
             input: File::open("/dev/null").map_err(stage("open /dev/null"))?.into(),
@@ -206,7 +203,7 @@ impl Run {
     }
 
     /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader is gone.
-    fn finish(mut self, answers: &mut File) -> Result<Option<Finished>, Failure> {
+    pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<Finished>, Failure> {
         let user = self.slot.as_ref().map(|(slot, _)| slot.user);
         // A grader that is gone shows as the end of the control pipe, too.
         let walls = self.order.walls;

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use std::ffi::{CString, OsString};
 use std::fs::File;
 use std::io;
-use std::os::fd::AsFd;
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::symlink;
 use std::path::{Component, Path, PathBuf};
@@ -22,6 +22,8 @@ use crate::wire::{self, Failure, Order};
 const SITE: &str = "/proc";
 /// The old root's name beneath the new one, for as long as it is needed.
 const HOST: &str = "/.host";
+/// Where an ordinary user's prepared root shows processes, so that its copies may.
+const WITNESS: &str = "/.processes";
 /// As many links as the kernel follows.
 const MOST_LINKS: u32 = 40;
 /// Room for the folders, links and empty files that mounts lie on.
@@ -41,10 +43,61 @@ enum Access {
 ///
 /// The step that failed. The process then has half a root and must end.
 pub(super) fn build(order: &Order) -> Result<(), Failure> {
-    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
-    // The sample may be graded where it lies, to show that all works.
-    let program = wire::path(&order.program).canonicalize().map_err(stage("look at the program"))?;
-    let own = order.own.iter().map(wire::path).filter(|path| *path != program);
+    let view = begin(order)?;
+    let folder = wire::path(&order.folder);
+    if order.volatile {
+        let laid = view.resolve(&folder).and_then(|real| {
+            let real = real.ok_or(io::ErrorKind::NotFound)?;
+            lay_out(&real, &on_host(&real), order)
+        });
+        laid.map_err(stage("lay the working folder out in memory"))?;
+    }
+    hide_own(order, Path::new("/"))?;
+    add_processes()?;
+    leave_host()?;
+    close_root()
+}
+
+/// The same without what is a run's own, its working folder and its processes: [`complete`] adds them to a copy.
+///
+/// # Errors
+///
+/// As for [`build`].
+pub(super) fn prepare(order: &Order) -> Result<(), Failure> {
+    begin(order)?;
+    hide_own(order, Path::new("/"))?;
+    if sys::user() != 0 {
+        // The kernel lets an ordinary user show processes only where others are in sight.
+        std::fs::create_dir(WITNESS).map_err(stage("make /proc"))?;
+        mounts::mount(c"proc", &text(Path::new(WITNESS))?, c"").map_err(stage("mount /proc"))?;
+    }
+    leave_host()
+}
+
+/// Adds a run's own to a copy of a root that was prepared: a working folder with what lies in the open one, and its processes. The
+/// place of the folder is there.
+///
+/// # Errors
+///
+/// As for [`build`].
+pub(super) fn complete(order: &Order, folder: BorrowedFd<'_>) -> Result<(), Failure> {
+    add_processes()?;
+    if sys::user() != 0 {
+        mounts::detach(&text(Path::new(WITNESS))?).map_err(stage("leave other processes"))?;
+    }
+    let real = wire::path(&order.folder);
+    let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
+    lay_out(&real, &from, order).map_err(stage("lay the working folder out in memory"))?;
+    hide_own(order, &real)?;
+    close_root()
+}
+
+fn stage(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
+    move |error| Failure::new(name, &error)
+}
+
+/// A new root with all that lies outside the working folder, and that folder where it does not lie in memory.
+fn begin(order: &Order) -> Result<View, Failure> {
     sys::file_mask(0o022);
     mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
     mounts::mount(c"tmpfs", &text(Path::new(SITE))?, &text(Path::new(ROOM))?).map_err(stage("make a root folder"))?;
@@ -54,35 +107,70 @@ pub(super) fn build(order: &Order) -> Result<(), Failure> {
     let mut view = View { placed: Vec::new() };
     let mut readable = walls::readable(order);
     readable.sort_by_key(|path| path.as_os_str().len());
-    let folder = wire::path(&order.folder);
     for (path, access) in readable
         .into_iter()
         .map(|path| (path, Access::Read))
         .chain(walls::DEVICES.map(|path| (path.into(), Access::Device)))
-        .chain((!order.volatile).then(|| (folder.clone(), Access::Write)))
+        .chain((!order.volatile).then(|| (wire::path(&order.folder), Access::Write)))
     {
         view.place(&path, access)
             .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
-    }
-    if order.volatile {
-        view.lay_out(&folder, order).map_err(stage("lay the working folder out in memory"))?;
     }
     for raw in &order.named {
         let path = wire::path(raw);
         // Only the links on the way: what they lead to is among the executable files, or was exchanged meanwhile.
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
-    for path in own {
-        view.hide(&path).map_err(stage("hide the grader's own files"))?;
-    }
     for (name, number) in [("/dev/fd", ""), ("/dev/stdin", "/0"), ("/dev/stdout", "/1"), ("/dev/stderr", "/2")] {
         symlink(format!("/proc/self/fd{number}"), name).map_err(stage("make /dev"))?;
     }
     std::fs::create_dir_all("/proc").map_err(stage("make /proc"))?;
-    mounts::mount(c"proc", c"/proc", c"").map_err(stage("mount /proc"))?;
+    Ok(view)
+}
+
+/// Lays nothing over the grader's own files beneath a folder, as far as they are in sight.
+fn hide_own(order: &Order, beneath: &Path) -> Result<(), Failure> {
+    let own: Vec<PathBuf> = order.own.iter().map(wire::path).filter(|path| path.starts_with(beneath)).collect();
+    if own.is_empty() {
+        return Ok(());
+    }
+    // The sample may be graded where it lies, to show that all works.
+    let program = wire::path(&order.program).canonicalize().map_err(stage("look at the program"))?;
+    for path in own.iter().filter(|path| **path != program) {
+        hide(path).map_err(stage("hide the grader's own files"))?;
+    }
+    Ok(())
+}
+
+/// Lays nothing over a file that is in sight.
+fn hide(path: &Path) -> io::Result<()> {
+    if path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    let nothing = mounts::copy_of(c"/dev/null")?;
+    mounts::restrict(nothing.as_fd(), READ_ONLY | NO_SET_USER | NO_DEVICES)?;
+    mounts::attach(nothing.as_fd(), &c_string(path)?)
+}
+
+fn add_processes() -> Result<(), Failure> {
+    mounts::mount(c"proc", c"/proc", c"").map_err(stage("mount /proc"))
+}
+
+fn leave_host() -> Result<(), Failure> {
     mounts::detach(&text(Path::new(HOST))?).map_err(stage("leave the host's files"))?;
-    std::fs::remove_dir(HOST).map_err(stage("leave the host's files"))?;
+    std::fs::remove_dir(HOST).map_err(stage("leave the host's files"))
+}
+
+fn close_root() -> Result<(), Failure> {
     mounts::restrict_at(c"/", READ_ONLY).map_err(stage("close the root folder"))
+}
+
+/// Puts a file system in memory at the path, with a copy of what lies in another folder.
+fn lay_out(folder: &Path, from: &Path, order: &Order) -> io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    let options = CString::new(volatile::options(order)).map_err(io::Error::other)?;
+    mounts::mount_folder(&c_string(folder)?, &options, order.tools)?;
+    volatile::copy(from, folder)
 }
 
 fn text(path: &Path) -> Result<CString, Failure> {
@@ -136,25 +224,6 @@ impl View {
         mounts::attach(tree.as_fd(), &c_string(&real)?)?;
         self.placed.push((real, access));
         Ok(())
-    }
-
-    /// Puts a file system in memory in the place of the working folder, with a copy of what lies there.
-    fn lay_out(&self, folder: &Path, order: &Order) -> io::Result<()> {
-        let real = self.resolve(folder)?.ok_or(io::ErrorKind::NotFound)?;
-        std::fs::create_dir_all(&real)?;
-        let options = CString::new(volatile::options(order)).map_err(io::Error::other)?;
-        mounts::mount_folder(&c_string(&real)?, &options, order.tools)?;
-        volatile::copy(&on_host(&real), &real)
-    }
-
-    /// Lays nothing over a file that is in sight.
-    fn hide(&self, path: &Path) -> io::Result<()> {
-        if path.symlink_metadata().is_err() {
-            return Ok(());
-        }
-        let nothing = mounts::copy_of(&c_string(&on_host(Path::new("/dev/null")))?)?;
-        mounts::restrict(nothing.as_fd(), READ_ONLY | NO_SET_USER | NO_DEVICES)?;
-        mounts::attach(nothing.as_fd(), &c_string(path)?)
     }
 
     /// Whether the path is in sight already, with the same access.

@@ -3,16 +3,19 @@
 //! Rules name open descriptors, so that they are made while we still are who we are, and come into force in the child
 //! after it has become another user.
 
+use std::fs::File;
 use std::io;
-use std::os::fd::{AsFd, BorrowedFd};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
 use landlock::{
-    ABI, Access, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible, PathBeneath, PathFd, Ruleset, RulesetAttr,
+    ABI, Access, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible, PathBeneath, Ruleset, RulesetAttr,
     RulesetCreated, RulesetCreatedAttr, RulesetError, RulesetStatus, Scope,
 };
 
 use crate::own::{self, Allowed};
+use crate::sys;
 use crate::wire::{self, Order};
 
 /// The newest rules we know and have tried; older kernels enforce what they can, [`LayerReport`] says what.
@@ -59,35 +62,79 @@ pub(super) fn readable(order: &Order) -> Vec<PathBuf> {
     fixed.chain(named).chain(tools.concat().into_iter().map(PathBuf::from)).collect()
 }
 
-/// Prepares the rules for an order whose working folder is open as `folder`. Paths that this host lacks are left out.
-pub(super) fn rules(order: &Order, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
-    let read = AccessFs::ReadFile | AccessFs::ReadDir;
-    let execute = read | AccessFs::Execute;
-    let own: Vec<PathBuf> = order.own.iter().map(wire::path).collect();
-    let own = own.as_slice();
+/// The places outside the working folder that the program may reach, open, with what it may do there.
+pub(super) struct Places(Vec<(OwnedFd, BitFlags<AccessFs>)>);
+
+impl Places {
+    /// Opens those of an order. Paths that this host lacks are left out.
+    pub(super) fn of(order: &Order) -> Self {
+        let read = AccessFs::ReadFile | AccessFs::ReadDir;
+        let execute = read | AccessFs::Execute;
+        let own: Vec<PathBuf> = order.own.iter().map(wire::path).collect();
+        let own = own.as_slice();
+        let mut places = Self(Vec::new());
+        for path in LIBRARIES.iter().chain(&MACHINE) {
+            places.add_around(Path::new(path), read, own);
+        }
+        for path in DEVICES {
+            // What is written to shared mappings of /dev/zero would be memory that no counter shows.
+            let access = if path == "/dev/zero" { BitFlags::EMPTY } else { AccessFs::WriteFile.into() };
+            places.add(Path::new(path), access | AccessFs::ReadFile);
+        }
+        for raw in &order.readable {
+            places.add_around(&wire::path(raw), read, own);
+        }
+        for raw in order.executable.iter().chain([&order.program]) {
+            places.add(&wire::path(raw), execute);
+        }
+        if order.tools {
+            for path in TOOLS {
+                places.add_around(Path::new(path), execute, own);
+            }
+            for path in SETTINGS {
+                places.add(Path::new(path), read);
+            }
+        }
+        places
+    }
+
+    /// The same under numbers that no program may have, so that they do not count for the limit of a child. `None` where this
+    /// process itself may not have so many.
+    pub(super) fn out_of_the_way(self) -> Option<Self> {
+        const FIRST: u32 = 800;
+        let moved =
+            self.0.into_iter().map(|(opened, access)| Some((sys::duplicate_from(opened.as_fd(), FIRST).ok()?, access)));
+        moved.collect::<Option<_>>().map(Self)
+    }
+
+    fn add(&mut self, path: &Path, access: BitFlags<AccessFs>) {
+        self.0.extend(place(path, access));
+    }
+
+    /// Like [`Places::add`], but without the grader's own files beneath the path.
+    fn add_around(&mut self, path: &Path, access: BitFlags<AccessFs>, own: &[PathBuf]) {
+        for allowed in own::around(path, own) {
+            match allowed {
+                Allowed::Whole(path) => self.add(&path, access),
+                Allowed::Listing(path) => self.add(&path, access & AccessFs::ReadDir),
+            }
+        }
+    }
+}
+
+/// The open place, with as much of the access as makes sense there.
+fn place(path: &Path, access: BitFlags<AccessFs>) -> Option<(OwnedFd, BitFlags<AccessFs>)> {
+    let opened = File::options().read(true).custom_flags(libc::O_PATH).open(path).ok()?.into();
+    let is_folder = path.metadata().is_ok_and(|metadata| metadata.is_dir());
+    Some((opened, if is_folder { access } else { access & AccessFs::from_file(NEWEST) }))
+}
+
+/// Prepares the rules for an order whose working folder is open as `folder`.
+pub(super) fn rules(order: &Order, places: &Places, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
     let version = version(order.walls.landlock_version);
     let mut ruleset = handled(order.walls.scopes, version)?;
-    for path in LIBRARIES.iter().chain(&MACHINE) {
-        ruleset = add_around(ruleset, Path::new(path), read, own)?;
-    }
-    for path in DEVICES {
-        // What is written to shared mappings of /dev/zero would be memory that no counter shows.
-        let access = if path == "/dev/zero" { BitFlags::EMPTY } else { AccessFs::WriteFile.into() };
-        ruleset = add(ruleset, Path::new(path), access | AccessFs::ReadFile)?;
-    }
-    for raw in &order.readable {
-        ruleset = add_around(ruleset, &wire::path(raw), read, own)?;
-    }
-    for raw in order.executable.iter().chain([&order.program]) {
-        ruleset = add(ruleset, &wire::path(raw), execute)?;
-    }
-    if order.tools {
-        for path in TOOLS {
-            ruleset = add_around(ruleset, Path::new(path), execute, own)?;
-        }
-        for path in SETTINGS {
-            ruleset = add(ruleset, Path::new(path), read)?;
-        }
+    for (opened, access) in &places.0 {
+        ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), *access)).map_err(refused)?;
     }
     let inside = in_folder(order.tools) & AccessFs::from_all(version);
     ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(refused)
@@ -157,27 +204,11 @@ fn in_folder(tools: bool) -> BitFlags<AccessFs> {
     if tools { submission | AccessFs::Execute | AccessFs::MakeSym | AccessFs::Refer } else { submission }
 }
 
-/// Like [`add`], but without the grader's own files beneath the path.
-fn add_around(
-    mut ruleset: RulesetCreated,
-    path: &Path,
-    access: BitFlags<AccessFs>,
-    own: &[PathBuf],
-) -> io::Result<RulesetCreated> {
-    for allowed in own::around(path, own) {
-        ruleset = match allowed {
-            Allowed::Whole(path) => add(ruleset, &path, access)?,
-            Allowed::Listing(path) => add(ruleset, &path, access & AccessFs::ReadDir)?,
-        };
-    }
-    Ok(ruleset)
-}
-
 fn add(ruleset: RulesetCreated, path: &Path, access: BitFlags<AccessFs>) -> io::Result<RulesetCreated> {
-    let Ok(opened) = PathFd::new(path) else { return Ok(ruleset) };
-    let is_folder = path.metadata().is_ok_and(|metadata| metadata.is_dir());
-    let access = if is_folder { access } else { access & AccessFs::from_file(NEWEST) };
-    ruleset.add_rule(PathBeneath::new(opened.as_fd(), access)).map_err(refused)
+    match place(path, access) {
+        Some((opened, access)) => ruleset.add_rule(PathBeneath::new(opened.as_fd(), access)).map_err(refused),
+        None => Ok(ruleset),
+    }
 }
 
 fn refused(error: RulesetError) -> io::Error {

@@ -1,0 +1,219 @@
+//! Supervisors that serve several runs of one submission, as the grader sees them.
+
+use std::fs::File;
+use std::io;
+use std::net::Shutdown;
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::fs::MetadataExt;
+use std::os::unix::net::UnixStream;
+use std::path::Path;
+use std::process::Child;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::fault::{SandboxError, lost};
+use super::job::Identity;
+use super::sys;
+use super::wire::{self, Order, Report};
+
+/// What runs must have in common to be served by one keeper: all of the order but arguments, environment and working folder, and the
+/// very files that it names.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Kind {
+    order: Order,
+    program: Option<Identity>,
+    files: Vec<Option<(u64, u64)>>,
+}
+
+impl Kind {
+    /// The kind of this order; `None` when its supervisor can serve no other run: where there are no namespaces, which end with
+    /// the run, or processes that nobody counts.
+    pub(super) fn of(order: &Order) -> Option<Self> {
+        if !order.volatile || order.tools || !order.walls.namespaces || !order.walls.seccomp {
+            return None;
+        }
+        let common =
+            Order { folder: Vec::new(), arguments: Vec::new(), environment: Vec::new(), pipe: None, ..order.clone() };
+        let named = order.readable.iter().chain(&order.executable).chain(&order.named);
+        let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
+        let files = named.map(|path| identity(&wire::path(path))).collect();
+        Some(Self { order: common, program: Identity::of(&wire::path(&order.program)), files })
+    }
+}
+
+/// A keeper. Dropped, it ends, and the drop waits until it has.
+#[derive(Debug)]
+pub(super) struct Keeper {
+    kind: Kind,
+    child: Option<Child>,
+    socket: UnixStream,
+}
+
+impl Keeper {
+    pub(super) fn new(kind: Kind, child: Child, socket: UnixStream) -> Self {
+        Self { kind, child: Some(child), socket }
+    }
+
+    /// Asks for a run of an order of its kind; the answer is the way to its supervisor, and what that says.
+    pub(super) fn ask(&self, order: &Order) -> io::Result<(UnixStream, File)> {
+        let folder = File::open(wire::path(&order.folder))?;
+        let (control, theirs) = UnixStream::pair()?;
+        let (answers, told) = io::pipe()?;
+        sys::send_descriptor(&self.socket, wire::CONTROL, theirs.as_fd())?;
+        sys::send_descriptor(&self.socket, wire::ANSWERS, told.as_fd())?;
+        sys::send_descriptor(&self.socket, wire::FOLDER, folder.as_fd())?;
+        wire::send(&self.socket, order)?;
+        Ok((control, OwnedFd::from(answers).into()))
+    }
+
+    fn dismiss(&self) {
+        // One that has ended hears nothing.
+        let _ = self.socket.shutdown(Shutdown::Both);
+    }
+}
+
+impl Drop for Keeper {
+    fn drop(&mut self) {
+        self.dismiss();
+        if let Some(child) = &mut self.child {
+            // How it ends no longer matters.
+            let _ = child.wait();
+        }
+    }
+}
+
+/// The keepers of a backend that have no run now. There are never more keepers than there were runs at one time.
+#[derive(Debug, Default)]
+pub(super) struct Pool {
+    idle: Mutex<Vec<Keeper>>,
+}
+
+impl Pool {
+    /// A keeper for runs of this kind. Without one, one of another kind makes room for it.
+    pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
+        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let fits = idle.iter().rposition(|keeper| keeper.kind == *kind);
+        let taken = match fits {
+            Some(index) => Some(idle.swap_remove(index)),
+            None => idle.pop(),
+        };
+        drop(idle);
+        // Dropped here, where nobody waits for the lock.
+        taken.filter(|_| fits.is_some())
+    }
+
+    fn put(&self, keeper: Keeper) {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(keeper);
+    }
+}
+
+/// What supervises a run.
+#[derive(Debug)]
+pub(super) enum Host {
+    /// A process of its own.
+    Own(Child),
+    /// A keeper, and where it goes afterwards.
+    Kept(Box<Keeper>, Arc<Pool>),
+}
+
+impl Host {
+    /// What is known about a supervisor that ended without a word. The way to it must be closed.
+    pub(super) fn lost(self) -> SandboxError {
+        match self {
+            Self::Own(child) => lost(child),
+            Self::Kept(mut keeper, _) => {
+                keeper.dismiss();
+                keeper.child.take().map_or_else(|| SandboxError::Lost { how: "it was waited for".into() }, lost)
+            }
+        }
+    }
+
+    /// Ends it, whatever it does.
+    pub(super) fn kill(&mut self) {
+        let child = match self {
+            Self::Own(child) => Some(child),
+            Self::Kept(keeper, _) => keeper.child.as_mut(),
+        };
+        // One that has ended needs no end.
+        let _ = child.map(Child::kill);
+    }
+
+    /// The run is over, and this is its report, if there is one. Only a keeper whose run has simply ended serves others, and only
+    /// if the run's folder is `gone`.
+    pub(super) fn rest(self, report: Option<&Report>, gone: bool) {
+        match self {
+            Self::Own(mut child) => {
+                // It ends by itself after its report; how, no longer matters.
+                let _ = child.wait();
+            }
+            Self::Kept(keeper, pool) if gone && report.is_some_and(has_simply_ended) => pool.put(*keeper),
+            Self::Kept(..) => {}
+        }
+    }
+}
+
+/// Whether the program ended by itself, within its limits and with an exit code.
+fn has_simply_ended(report: &Report) -> bool {
+    let calm = report.cause.is_none() && report.exec_errno.is_none() && report.survivors == 0 && !report.folder_over;
+    calm && libc::WIFEXITED(report.status)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::{Cause, Walls};
+
+    fn order() -> Order {
+        let walls = Walls { namespaces: true, seccomp: true, ..Walls::default() };
+        Order { program: b"/bin/sh".to_vec(), volatile: true, walls, ..Order::default() }
+    }
+
+    #[test]
+    fn runs_of_one_submission_are_of_one_kind() {
+        let kind = Kind::of(&order()).unwrap();
+        let same =
+            Order { folder: b"/x".to_vec(), arguments: vec![b"-s".to_vec()], pipe: Some(b"t".to_vec()), ..order() };
+        assert_eq!(Kind::of(&same).unwrap(), kind);
+        for other in [
+            Order { program: b"/bin/ls".to_vec(), ..order() },
+            Order { memory: 7, ..order() },
+            Order { readable: vec![b"/etc/hostname".to_vec()], ..order() },
+        ] {
+            assert_ne!(Kind::of(&other).unwrap(), kind);
+        }
+    }
+
+    #[test]
+    fn a_program_that_was_exchanged_is_of_another_kind() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = folder.path().join("program");
+        let kind = || Kind::of(&Order { program: wire::raw(&program), ..order() }).unwrap();
+        std::fs::write(&program, "one").unwrap();
+        let before = kind();
+        assert_eq!(kind(), before);
+        std::fs::write(folder.path().join("other"), "two").unwrap();
+        std::fs::rename(folder.path().join("other"), &program).unwrap();
+        assert_ne!(kind(), before);
+    }
+
+    #[test]
+    fn tools_and_runs_without_namespaces_have_supervisors_of_their_own() {
+        assert!(Kind::of(&Order { tools: true, ..order() }).is_none());
+        assert!(Kind::of(&Order { volatile: false, ..order() }).is_none());
+        assert!(Kind::of(&Order { walls: Walls::default(), ..order() }).is_none());
+    }
+
+    #[test]
+    fn only_a_run_that_simply_ended_leaves_its_keeper_to_others() {
+        let exited = Report { status: 7 << 8, ..Report::default() };
+        assert!(has_simply_ended(&exited));
+        for report in [
+            Report { cause: Some(Cause::Wall), ..exited.clone() },
+            Report { status: libc::SIGKILL, ..exited.clone() },
+            Report { survivors: 1, ..exited.clone() },
+            Report { folder_over: true, ..exited.clone() },
+            Report { exec_errno: Some(libc::ENOEXEC), ..exited },
+        ] {
+            assert!(!has_simply_ended(&report), "{report:?}");
+        }
+    }
+}

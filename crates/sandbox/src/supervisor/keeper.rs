@@ -1,0 +1,158 @@
+//! A supervisor for all runs of one submission, one after the other.
+//!
+//! What does not differ between them is made once: the start of this program, a user and a control group, a root folder with what
+//! every run may see, the network namespace that has no network, Landlock's places and the filters. For each run the keeper forks
+//! into new namespaces of processes, mounts and messages; that child is the run's supervisor and the first process of its
+//! world, with a copy of the prepared mounts, a working folder in memory and a `/proc` of its own. All that a run could leave
+//! goes away with these; the prepared root it sees read-only, and no filter lets it make a socket. The next run begins when the kernel has ended
+//! the last process of the one before. A keeper whose run did anything but end by itself serves no other (the grader sees to that).
+//!
+//! The guardian outside holds user and control group until the keeper has ended; the keeper dies with it, and every run with the
+//! keeper.
+
+use std::fs::File;
+use std::io;
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use super::prepared::{Held, Prepared};
+use super::run::{self, Run};
+use super::{namespaces, view};
+use crate::mounts;
+use crate::sys::{self, Fork, Readiness, SingleThread};
+use crate::wire::{self, Event, Failure, Order};
+
+/// A keeper without orders goes after this time, so that its user is there for others.
+const IDLE: Duration = Duration::from_secs(2);
+/// The number of a program in its process namespace, where the supervisor is the first.
+const PROGRAM: i32 = 2;
+
+/// Serves the requests that come on standard input, a socket.
+pub(super) fn main() -> ExitCode {
+    let Ok(socket) = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from) else { return ExitCode::from(2) };
+    let Ok(Some(mut first)) = Request::next(&socket) else { return ExitCode::from(2) };
+    ExitCode::from(match settle(&first.order) {
+        Ok(Side::Guardian { keeper, held }) => {
+            // What the grader listens to must end with the run.
+            drop((first, socket));
+            let code = sys::wait_for(keeper).unwrap_or(1);
+            drop(held);
+            code
+        }
+        Ok(Side::Keeper(keeper)) => keeper.serve(first, &socket),
+        Err(failure) => {
+            // A grader that is gone needs no word.
+            let _ = wire::send(&mut first.answers, &Event::Failed(failure));
+            1
+        }
+    })
+}
+
+/// One run: what to do, the way to and from the grader, and the working folder on the disk.
+struct Request {
+    order: Order,
+    control: File,
+    answers: File,
+    folder: OwnedFd,
+}
+
+impl Request {
+    /// The next one; `None` when the grader has no more.
+    fn next(socket: &UnixStream) -> io::Result<Option<Self>> {
+        let descriptor = |word: u8| -> io::Result<Option<OwnedFd>> {
+            let mut byte = [0];
+            match sys::receive_descriptor(socket, &mut byte)? {
+                (0, _) => Ok(None),
+                (_, Some(fd)) if byte[0] == word => Ok(Some(fd)),
+                _ => Err(io::ErrorKind::InvalidData.into()),
+            }
+        };
+        let Some(control) = descriptor(wire::CONTROL)? else { return Ok(None) };
+        let answers = descriptor(wire::ANSWERS)?.ok_or(io::ErrorKind::UnexpectedEof)?;
+        let folder = descriptor(wire::FOLDER)?.ok_or(io::ErrorKind::UnexpectedEof)?;
+        let order = wire::receive(socket)?;
+        Ok(Some(Self { order, control: control.into(), answers: answers.into(), folder }))
+    }
+}
+
+enum Side {
+    /// Outside: nothing to do but to wait for the keeper.
+    Guardian {
+        keeper: i32,
+        held: Held,
+    },
+    Keeper(Keeper),
+}
+
+/// Takes what runs have to themselves, and prepares their world in a child.
+fn settle(order: &Order) -> Result<Side, Failure> {
+    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
+    sys::new_session().map_err(stage("start the supervisor's session"))?;
+    let alone = sys::single_thread().map_err(stage("fork"))?;
+    let held = Held::take(order)?;
+    if let Fork::Parent(keeper) = namespaces::leave()? {
+        return Ok(Side::Guardian { keeper, held });
+    }
+    mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(stage("make namespaces"))?;
+    view::prepare(order)?;
+    let prepared = Prepared::of(order, PROGRAM)?;
+    Ok(Side::Keeper(Keeper { held: Some(held), prepared, alone }))
+}
+
+struct Keeper {
+    /// Every run takes it, in its own copy of this.
+    held: Option<Held>,
+    prepared: Prepared,
+    alone: SingleThread,
+}
+
+impl Keeper {
+    /// Serves one request after the other, until there are no more or one ends otherwise than it should.
+    fn serve(mut self, first: Request, socket: &UnixStream) -> u8 {
+        let mut next = Some(first);
+        while let Some(request) = next {
+            match self.run(request) {
+                0 => {}
+                code => return code,
+            }
+            next = match sys::poll([Some(socket.as_fd())], IDLE) {
+                Ok([Readiness::Ready]) => Request::next(socket).ok().flatten(),
+                _ => None,
+            };
+        }
+        0
+    }
+
+    fn run(&mut self, mut request: Request) -> u8 {
+        let folder = wire::path(&request.order.folder);
+        let namespaces = libc::CLONE_NEWPID | libc::CLONE_NEWNS | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
+        // The place for the folder is there only as long as its run.
+        let forked = std::fs::create_dir_all(&folder).and_then(|()| mounts::fork_into(&self.alone, namespaces));
+        match forked {
+            Ok(Fork::Child) => sys::exit_now(self.supervise(request).into()),
+            Ok(Fork::Parent(supervisor)) => {
+                drop(request);
+                let code = sys::wait_for(supervisor).unwrap_or(1);
+                // Where it was in sight before, it is not ours to remove.
+                let _ = std::fs::remove_dir(folder);
+                code
+            }
+            Err(error) => run::tell(Err(Failure::new("make namespaces", &error)), &mut request.answers).max(1),
+        }
+    }
+
+    /// What the run's supervisor does; the answer is its exit code.
+    fn supervise(&mut self, request: Request) -> u8 {
+        let Request { order, control, mut answers, folder } = request;
+        let Some(held) = self.held.take() else { return 1 };
+        let bound =
+            sys::die_with_parent().map_err(|error| Failure::new("bind the supervisor's life to its keeper's", &error));
+        let finished = bound
+            .and_then(|()| view::complete(&order, folder.as_fd()))
+            .and_then(|()| Run::start(order, control, held, &self.prepared))
+            .and_then(|run| run.finish(&mut answers));
+        run::tell(finished, &mut answers)
+    }
+}

@@ -1,0 +1,56 @@
+//! What is there before a run begins: what it has to itself on this machine, and what was made ready for it.
+
+use std::io;
+use std::os::fd::BorrowedFd;
+
+use landlock::RulesetCreated;
+
+use super::group::Group;
+use super::{child, filter, slot, walls};
+use crate::wire::{Failure, Order};
+
+/// What a run has to itself on this machine, for as long as this is held.
+pub(super) struct Held {
+    /// A user of its own.
+    pub(super) slot: Option<slot::Slot>,
+    /// A control group.
+    pub(super) group: Option<Group>,
+}
+
+impl Held {
+    /// Takes what the order asks for.
+    pub(super) fn take(order: &Order) -> Result<Self, Failure> {
+        let taken = |error: io::Error| Failure::new(format!("take a user of its own ({error})"), &error);
+        let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
+        let group = order.walls.group.then(|| Group::make(order)).transpose();
+        Ok(Self { slot, group: group.map_err(|error| Failure::new("make a control group", &error))? })
+    }
+}
+
+/// What can be made ready before there is a program, and serves all runs that differ in scene and folder only.
+#[derive(Default)]
+pub(super) struct Prepared {
+    places: Option<walls::Places>,
+    pub(super) filters: Option<child::Filters>,
+}
+
+impl Prepared {
+    /// For orders like this one, whose programs have this number.
+    pub(super) fn of(order: &Order, number: i32) -> Result<Self, Failure> {
+        let open = || walls::Places::of(order).out_of_the_way();
+        let purpose = child::purpose(order, order.walls.own_user, None, number);
+        let filters =
+            filter::filters(purpose).map_err(|error| Failure::new("compile the system call filter", &error))?;
+        let places = order.walls.landlock.then(open).flatten();
+        Ok(Self { places, filters: Some(child::Filters::new((purpose, filters))) })
+    }
+
+    /// The file rules of an order, if there are to be any.
+    pub(super) fn rules(&self, order: &Order, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
+        match &self.places {
+            _ if !order.walls.landlock => Ok(None),
+            Some(places) => walls::rules(order, places, folder).map(Some),
+            None => walls::rules(order, &walls::Places::of(order), folder).map(Some),
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Runs of one submission have a supervisor in common, and nothing else.
+use crate::folder_in_memory::with_namespaces;
+use crate::sandbox::deaths::{eventually, kill, process};
+use crate::sandbox::small;
+use fosssim_oracle::sandbox::{Backend, Ended, Job, Limits, Running, Supervisor};
+use std::{fs, io, os::unix::fs::PermissionsExt, path::Path};
+
+/// Fills the trace pipe and waits until somebody reads, so that it can be looked at; then it ends by itself. Every test has
+/// blocks of another size, by which its program is known.
+struct Bench {
+    words: [String; 5],
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new(block: u32) -> Self {
+        let words = ["/bin/dd", "if=/dev/zero", "of=trace.bin", &format!("bs={block}"), "count=2"].map(str::to_owned);
+        Self { words, folder: tempfile::tempdir().unwrap() }
+    }
+
+    fn start(&self, backend: &Backend, limits: Limits) -> Running {
+        let job = Job::new(&self.words[0], self.folder.path()).arguments(&self.words[1..]);
+        let limits = Limits { trace_bytes: 8 << 20, ..limits };
+        backend.start(&job.trace_pipe("trace.bin").folder_in_memory().limits(limits)).expect("a run")
+    }
+
+    fn process(&self) -> Option<(i32, i32)> {
+        process(&self.words.each_ref().map(String::as_str))
+    }
+
+    /// The program at work, the run's supervisor and the keeper.
+    fn family(&self) -> [i32; 3] {
+        let (program, supervisor) = eventually(|| self.process());
+        let status = fs::read_to_string(format!("/proc/{supervisor}/status")).expect("the supervisor");
+        let keeper = status.lines().find_map(|line| line.strip_prefix("PPid:")?.trim().parse().ok());
+        [program, supervisor, keeper.expect("the supervisor's parent")]
+    }
+}
+
+fn finish(mut running: Running) -> Ended {
+    io::copy(&mut running.trace().expect("a trace"), &mut io::sink()).expect("a trace within the limit");
+    running.wait().expect("an outcome").ended
+}
+
+/// A backend whose keepers no other test has.
+fn alone() -> Option<Backend> {
+    with_namespaces()?;
+    Some(Backend::best(Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle"))).expect("as for all tests"))
+}
+
+#[test]
+fn runs_of_one_submission_share_a_keeper_until_one_is_stopped() {
+    let Some(backend) = alone() else { return };
+    let bench = Bench::new(1_048_577);
+    let run = |limits: Limits| {
+        let running = bench.start(&backend, limits);
+        (bench.family(), running)
+    };
+    let ([first, supervisor, keeper], running) = run(small());
+    assert_eq!(finish(running), Ended::Exited(0));
+    let ([second, another, same], running) = run(small());
+    assert!(same == keeper && another != supervisor && second != first, "a fresh supervisor under the same keeper");
+    assert_eq!(finish(running), Ended::Exited(0));
+    let others = || Limits { processes: 17, ..small() };
+    let ([.., with_other_limits], running) = run(others());
+    assert_ne!(with_other_limits, keeper);
+    running.canceller().cancel();
+    assert_eq!(running.wait().unwrap().ended, Ended::Cancelled);
+    let ([.., after_a_stop], running) = run(others());
+    assert_ne!(after_a_stop, with_other_limits);
+    assert_eq!(finish(running), Ended::Exited(0));
+    drop(backend);
+    assert!(!Path::new(&format!("/proc/{after_a_stop}")).exists(), "it goes with its backend");
+}
+
+#[test]
+fn a_run_finds_nothing_of_the_one_before_it() {
+    let Some(backend) = with_namespaces() else { return };
+    let submission = tempfile::tempdir().unwrap();
+    let program = submission.path().join("program");
+    let script = "#!/bin/sh\necho $PPID $$ * /proc/[0-9]* /tmp/* /dev/* /* /.[a-z]*\n\
+                  for place in . /tmp /dev /proc /run /var/tmp / \"$1\"; do true > $place/left; done\n";
+    fs::write(&program, script).unwrap();
+    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::set_permissions(submission.path(), fs::Permissions::from_mode(0o755)).unwrap();
+    let seen: Vec<(Ended, String, String)> = (0..3)
+        .map(|number| {
+            let folder = tempfile::tempdir().unwrap();
+            fs::write(folder.path().join("scene.xml"), number.to_string()).unwrap();
+            let job = Job::new(&program, folder.path()).arguments([submission.path()]).folder_in_memory();
+            let outcome = backend.start(&job.limits(small())).unwrap().wait().unwrap();
+            let name = folder.path().file_name().unwrap().to_string_lossy().into_owned();
+            let shown = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace(&name, "FOLDER");
+            (outcome.ended.clone(), shown(&outcome.stdout.bytes), shown(&outcome.stderr.bytes))
+        })
+        .collect();
+    assert!(seen[0].1.contains(" scene.xml "), "{seen:?}");
+    assert!(!seen[0].1.contains("left"), "{seen:?}");
+    assert!(seen.iter().all(|run| *run == seen[0]), "{seen:?}");
+}
+
+#[test]
+fn who_loses_a_keeper_or_a_supervisor_says_so_and_the_next_run_has_others() {
+    let Some(backend) = alone() else { return };
+    let bench = Bench::new(1_048_579);
+    for victim in [1, 2] {
+        let mut running = bench.start(&backend, small());
+        kill(bench.family()[victim]);
+        drop(io::copy(&mut running.trace().expect("a trace"), &mut io::sink()));
+        let error = running.wait().expect_err("a loss").to_string();
+        assert!(error.contains("lost"), "{error}");
+        eventually(|| bench.process().is_none().then_some(()));
+        assert_eq!(finish(bench.start(&backend, small())), Ended::Exited(0));
+    }
+}
