@@ -100,6 +100,26 @@ fn a_run_finds_nothing_of_the_one_before_it() {
 }
 
 #[test]
+fn a_run_is_told_its_own_processor_time_alone() {
+    let Some(backend) = alone() else { return };
+    let submission = tempfile::tempdir().unwrap();
+    let program = submission.path().join("program");
+    let script = "#!/bin/sh\n[ \"$1\" = long ] || exit 0\ni=0; while [ $i -lt 300000 ]; do i=$((i+1)); done\n";
+    fs::write(&program, script).unwrap();
+    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::set_permissions(submission.path(), fs::Permissions::from_mode(0o755)).unwrap();
+    let cpu = |word: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let job = Job::new(&program, folder.path()).arguments([word]).folder_in_memory().limits(small());
+        let outcome = backend.start(&job).unwrap().wait().unwrap();
+        assert_eq!(outcome.ended, Ended::Exited(0));
+        outcome.cpu
+    };
+    let (long, short) = (cpu("long"), cpu("short"));
+    assert!(4 * short < long, "{short:?} after a run of {long:?}");
+}
+
+#[test]
 fn who_loses_a_keeper_or_a_supervisor_says_so_and_the_next_run_has_others() {
     let Some(backend) = alone() else { return };
     let bench = Bench::new(1_048_579);

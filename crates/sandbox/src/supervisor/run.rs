@@ -96,6 +96,8 @@ pub(super) struct Run {
     stdout: Capture,
     stderr: Capture,
     began: Instant,
+    /// What the control group had counted before.
+    cpu_before: Duration,
     stalled: Stalled,
     folder_before: Contents,
     main_status: Option<i32>,
@@ -170,6 +172,7 @@ impl Run {
             status: child_status,
             order: order.clone(),
         };
+        let cpu_before = group.as_ref().map_or(Duration::ZERO, Group::cpu);
         let began = Instant::now();
         let child = match sys::fork().map_err(stage("fork"))? {
             Fork::Child => child::become_program(plan),
@@ -193,6 +196,7 @@ impl Run {
             told: Vec::new(),
             listener: None,
             began,
+            cpu_before,
             folder_before,
             main_status: None,
             cause: None,
@@ -438,8 +442,9 @@ impl Run {
         self.began.elapsed().saturating_sub(self.stalled.total.min(patience))
     }
 
+    /// Processor time that the group has counted for this run: the keeper's earlier ones were in it, too.
     fn group_cpu(&self) -> Duration {
-        self.group.as_ref().map_or(Duration::ZERO, Group::cpu)
+        self.group.as_ref().map_or(Duration::ZERO, Group::cpu).saturating_sub(self.cpu_before)
     }
 
     /// Looks at the working folder, at removed files that are still in use, and at memory that is resident for nobody.
