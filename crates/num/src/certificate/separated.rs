@@ -5,34 +5,33 @@
 //! relative change of the coefficients could make of it (to first order, carried along with each coefficient).
 use super::super::tolerances::DISCRIMINANT_MARGIN;
 
-/// A coefficient, and how much it changes per relative change of the polynomial's coefficients, at most.
-#[derive(Clone, Copy, Default)]
-struct Entry {
-    value: f64,
-    change: f64,
+/// The coefficients of a polynomial of lower degree or this one, and 0 behind the last.
+#[derive(Clone, Copy)]
+struct Entries<const LENGTH: usize> {
+    values: [f64; LENGTH],
+    /// How much each changes per relative change of the first polynomial's coefficients, at most.
+    changes: [f64; LENGTH],
 }
 
-impl Entry {
-    /// `self - factor * other`.
+impl<const LENGTH: usize> Entries<LENGTH> {
+    /// Whether the leading one stays clear of zero. NaN does not.
     #[inline(always)]
-    fn less(self, factor: Self, other: Self) -> Self {
-        Self {
-            value: self.value - factor.value * other.value,
-            change: self.change + factor.value.abs() * other.change + factor.change * other.value.abs(),
+    fn is_clear(&self) -> bool {
+        self.values[0].abs() > DISCRIMINANT_MARGIN * self.changes[0]
+    }
+
+    /// One step of the division: less so many times the divisor that the leading one vanishes, and up by one place. All
+    /// places are computed, since those behind the last ones stay 0 and what has no branches is done for several at once.
+    #[inline(always)]
+    fn less(&mut self, divisor: &Self, reciprocal: f64) {
+        let Self { values, changes } = self;
+        let factor = values[0] * reciprocal;
+        let change = (changes[0] + factor.abs() * divisor.changes[0]) * reciprocal.abs();
+        for i in 1..LENGTH {
+            values[i - 1] = values[i] - factor * divisor.values[i];
+            changes[i - 1] = changes[i] + factor.abs() * divisor.changes[i] + change * divisor.values[i].abs();
         }
-    }
-
-    /// `self / other`, where `reciprocal` is that of the other's value.
-    #[inline(always)]
-    fn over(self, other: Self, reciprocal: f64) -> Self {
-        let value = self.value * reciprocal;
-        Self { value, change: (self.change + value.abs() * other.change) * reciprocal.abs() }
-    }
-
-    /// Whether it stays clear of zero. NaN does not.
-    #[inline(always)]
-    fn is_clear(self) -> bool {
-        self.value.abs() > DISCRIMINANT_MARGIN * self.change
+        (values[LENGTH - 1], changes[LENGTH - 1]) = (0.0, 0.0);
     }
 }
 
@@ -40,33 +39,21 @@ impl Entry {
 /// zeros coincide. `false` also where an intermediate remainder is of lower degree than usual.
 #[inline]
 pub(super) fn zeros_are_separated<const LENGTH: usize>(coefficients: &[f64; LENGTH]) -> bool {
-    let mut dividend = [Entry::default(); LENGTH];
-    let mut divisor = [Entry::default(); LENGTH];
+    let mut dividend = Entries { values: *coefficients, changes: coefficients.map(f64::abs) };
     #[expect(clippy::cast_precision_loss, reason = "degrees up to five")]
-    for i in 0..LENGTH {
-        let value = coefficients[i];
-        dividend[i] = Entry { value, change: value.abs() };
-        let value = value * (LENGTH - 1 - i) as f64;
-        divisor[i] = Entry { value, change: value.abs() };
-    }
-    for degree in (2..LENGTH).rev() {
-        let leading = divisor[0];
-        if !leading.is_clear() {
+    let values = std::array::from_fn(|i| coefficients[i] * (LENGTH - 1 - i) as f64);
+    let mut divisor = Entries { values, changes: values.map(f64::abs) };
+    for _ in 2..LENGTH {
+        if !divisor.is_clear() {
             return false;
         }
-        // Two steps of the division leave a remainder of degree `degree - 2`.
-        let reciprocal = 1.0 / leading.value;
-        for _ in 0..2 {
-            let factor = dividend[0].over(leading, reciprocal);
-            for i in 1..=degree {
-                let other = if i < degree { divisor[i] } else { Entry::default() };
-                dividend[i - 1] = dividend[i].less(factor, other);
-            }
-            dividend[degree] = Entry::default();
-        }
-        std::mem::swap(&mut dividend, &mut divisor);
+        // Two steps of the division leave a remainder that is shorter by two than the dividend.
+        let reciprocal = 1.0 / divisor.values[0];
+        dividend.less(&divisor, reciprocal);
+        dividend.less(&divisor, reciprocal);
+        (dividend, divisor) = (divisor, dividend);
     }
-    divisor[0].is_clear()
+    divisor.is_clear()
 }
 
 #[cfg(test)]
