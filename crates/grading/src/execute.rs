@@ -15,7 +15,8 @@ use super::{
 use fosssim_evidence::StepRulings;
 use fosssim_judge::{
     Outcome, Rules,
-    parity::{self, Options, Progress, Remark},
+    kept::Keeper,
+    parity::{Options, Progress, Remark},
     recorded::{self, RecordingError},
 };
 use fosssim_mistakes::diagnose;
@@ -33,8 +34,8 @@ const TRACE_FILE: &str = "trace.bin";
 /// A fault of ours or of the machine is tried so often before it is reported.
 const ATTEMPTS: u32 = 2;
 
-/// So much of a trace is kept in memory until it is judged, in bytes: should it be wrong, its beginning is explained, and
-/// should the grader fail on it, it is put aside. The course's largest trace has 18 MB.
+/// So much of a trace is kept in memory while it is judged, in bytes, where it differs from the reference's: should it be wrong, it
+/// is explained, and should the grader fail on it, it is put aside. The course's largest trace has 18 MB.
 const KEPT_TRACE: usize = 24 << 20;
 
 /// How scenes are run.
@@ -96,27 +97,30 @@ impl Runner<'_> {
         let (mut running, _folder) = self.start(&program.program, program.identity, task)?;
         let _registered = self.cancellation.register(running.canceller());
         let bytes = AtomicU64::new(0);
-        let mut kept = Vec::new();
+        // Not within the judging, which may panic: its trace is put aside then.
+        let keeper = Keeper::new(&task.scene, KEPT_TRACE);
         let options =
             Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
         let mut watch = Watch { on_step };
         let mut rulings = StepRulings::new(&mut watch);
         let judged = match running.trace() {
             Some(inner) => {
-                let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep: KEPT_TRACE };
+                let mut trace = Counted { inner, bytes: &bytes };
                 let judged = guarded(|| {
                     fault::injected(Activity::Judging, &program.program);
-                    self.judge(task, &mut trace, &options, &mut rulings)
+                    self.judge(task, &keeper, &mut trace, &options, &mut rulings)
                 });
                 // What the judge did not want is read all the same, within the limit: a program must not die of our
                 // closing the pipe. An error here ends the program as well, and its outcome says so.
-                let _ = io::copy(&mut trace, &mut io::sink());
+                let _ = io::copy(&mut keeper.reader(trace), &mut io::sink());
                 judged
             }
-            None => guarded(|| self.judge(task, io::empty(), &options, &mut rulings)),
+            None => guarded(|| self.judge(task, &keeper, io::empty(), &options, &mut rulings)),
         };
         let outcome = running.wait()?;
-        let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, &kept);
+        let kept = keeper.into_kept();
+        let beginning = || kept.bytes(KEPT_TRACE);
+        let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, &beginning());
         let judged = match judged {
             Ok(judged) => judged?,
             Err(fault) => return Ok(failed(Activity::Judging, &fault)),
@@ -132,7 +136,7 @@ impl Runner<'_> {
         };
         let mut explaining = guarded(|| fault::injected(Activity::Explaining, &program.program)).err();
         let explain = || {
-            guarded(|| diagnose::explain(&task.scene, &kept)).unwrap_or_else(|fault| {
+            guarded(|| diagnose::explain_kept(&kept)).unwrap_or_else(|fault| {
                 explaining = Some(fault);
                 Vec::new()
             })
@@ -147,14 +151,14 @@ impl Runner<'_> {
         if let Some(cards) = self.cards
             && !(result.verdict.is_accepted() && result.differs.is_none())
         {
-            let trace_bytes = bytes.load(Ordering::Relaxed);
+            let trace = beginning();
             let judged = Judged {
                 task,
                 result: &result,
                 outcome: &judged,
                 rulings: &rulings.into_steps(&judged),
-                trace: &kept,
-                is_cut: trace_bytes > kept.len() as u64,
+                trace: &trace,
+                is_cut: bytes.load(Ordering::Relaxed) > trace.len() as u64,
                 rules: self.rules,
                 hints: self.hints,
             };
@@ -166,7 +170,7 @@ impl Runner<'_> {
         if let Some(path) = self.traces.map(|path| path(task))
             && !result.verdict.is_accepted()
         {
-            fault::write(&path, &kept).map_err(ExecuteError::Folder)?;
+            fault::write(&path, &beginning()).map_err(ExecuteError::Folder)?;
         }
         match guarded(|| (self.rehearse)(&result)) {
             Ok(()) => Ok(result),
@@ -186,10 +190,10 @@ impl Runner<'_> {
     ) -> Result<(Vec<u8>, sandbox::RunOutcome), String> {
         let (mut running, _folder) = self.start(program, None, task).map_err(|error| error.to_string())?;
         let _registered = self.cancellation.register(running.canceller());
-        let (bytes, mut kept) = (AtomicU64::new(0), Vec::new());
-        if let Some(inner) = running.trace() {
-            let mut trace = Counted { inner, bytes: &bytes, kept: &mut kept, keep };
+        let mut kept = Vec::new();
+        if let Some(mut trace) = running.trace() {
             // An error here ends the program as well, and its outcome says so.
+            let _ = trace.by_ref().take(keep as u64).read_to_end(&mut kept);
             let _ = io::copy(&mut trace, &mut io::sink());
         }
         let outcome = running.wait().map_err(|error| error.to_string())?;
@@ -220,16 +224,17 @@ impl Runner<'_> {
     fn judge(
         &self,
         task: &SceneTask,
+        keeper: &Keeper<'_>,
         trace: impl Read + Send,
         options: &Options,
         watch: &mut dyn Progress,
     ) -> Result<Outcome, ExecuteError> {
         if !self.recorded {
-            return Ok(parity::judge(&task.scene, trace, options, watch));
+            return Ok(keeper.judge(trace, options, watch));
         }
         let packed = task.recording.ok_or_else(|| ExecuteError::NoRecording(task.name.clone()))?;
         let recording = zstd::Decoder::with_buffer(packed).map_err(ExecuteError::Recording)?;
-        Ok(recorded::judge(&task.scene, trace, recording, watch)?)
+        Ok(recorded::judge(&task.scene, keeper.reader(trace), recording, watch)?)
     }
 
     fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
@@ -275,21 +280,16 @@ enum ExecuteError {
     Sandbox(#[from] SandboxError),
 }
 
-/// Counts the bytes that arrive, and keeps the first ones.
+/// Counts the bytes that arrive.
 struct Counted<'a, R> {
     inner: R,
     bytes: &'a AtomicU64,
-    kept: &'a mut Vec<u8>,
-    /// So many are kept.
-    keep: usize,
 }
 
 impl<R: Read> Read for Counted<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
         self.bytes.fetch_add(count as u64, Ordering::Relaxed);
-        let room = self.keep - self.kept.len();
-        self.kept.extend_from_slice(&buffer[..count.min(room)]);
         Ok(count)
     }
 }

@@ -12,6 +12,7 @@ mod differing;
 pub mod fair;
 mod finding;
 mod identical;
+pub mod kept;
 mod options;
 mod outcome;
 pub mod parity;

@@ -1,7 +1,7 @@
 //! The original's rule book: lock-step comparison (oracle-behaviour.md 4 to 6).
 pub use super::{
     options::Options,
-    progress::{Progress, Remark, StepFindings, WrongStep},
+    progress::{Progress, Remark, StepFindings, StepPlace, WrongStep},
 };
 
 use super::outcome::Outcome;

@@ -12,7 +12,7 @@ use super::{
     identical::Identical,
     options::Options,
     outcome::{Damage, Outcome, Stop},
-    progress::{Progress, StepFindings, WrongStep},
+    progress::{Progress, StepFindings, StepPlace, WrongStep},
     rules::Book,
     tally::{self, StepResult},
 };
@@ -44,8 +44,12 @@ struct Slot {
     /// The mid record; without its lists, unless the fair rules want them.
     mid: LenientFrame,
     end: LenientFrame,
-    /// Byte offset of the end record.
+    /// Byte offsets of the step's first record, of its end record, and of what follows.
+    begin_at: u64,
     end_at: u64,
+    behind: u64,
+    /// Whether its bytes are the reference's.
+    is_own: bool,
     damage: Option<Damage>,
     result: StepResult,
     fair: StepJudgement,
@@ -62,6 +66,14 @@ struct Slot {
     work: u64,
     /// What was read, in bytes.
     bytes: usize,
+}
+
+impl Slot {
+    /// Where the step lies.
+    fn place(&self) -> StepPlace {
+        let &Self { step, before_at: before, begin_at: begin, end_at: last, behind: end, is_own, .. } = self;
+        StepPlace { step, before, begin, last, end, is_own }
+    }
 }
 
 /// Steps in a row; slots are reused from batch to batch.
@@ -273,11 +285,12 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.error = None;
         slot.beyond_limit = false;
         (slot.is_done, slot.work) = (false, 0);
-        if self.read_identical(slot) {
+        (slot.before_at, slot.begin_at) = (self.state_at, self.reader.offset());
+        slot.is_own = self.read_identical(slot);
+        if slot.is_own {
             return Ok(());
         }
         copy_state(&mut slot.before, &self.state);
-        slot.before_at = self.state_at;
         let mut damage = None;
         let mut read = Ok(());
         if self.shape.layout.polynomials {
@@ -298,7 +311,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         read?;
         copy_state(&mut self.state, &slot.end.state);
         self.state_at = self.reader.record_offset();
-        slot.end_at = self.state_at;
+        (slot.end_at, slot.behind) = (self.state_at, self.reader.offset());
         slot.bytes = memory(&slot.end).max(memory(&slot.mid)) + self.shape.layout.state_bytes();
         self.steps_read += 1;
         Ok(())
@@ -312,7 +325,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         };
         copy_state(&mut self.state, self.identical.state());
         self.state_at = self.reader.record_offset();
-        slot.end_at = self.state_at;
+        (slot.end_at, slot.behind) = (self.state_at, self.reader.offset());
         self.steps_read += 1;
         slot.result.set_identical();
         slot.fair = found.fair.unwrap_or_default();
@@ -386,6 +399,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 let fair = StepFindings { firsts: &slot.fair.findings, more: slot.fair.more };
                 progress.step_wrong(&WrongStep { step: slot.step, parity, fair });
             }
+            progress.step_passed(&slot.place());
             slot.mid.shrink();
             slot.end.shrink();
             let is_hopeless = match options.stop_by {

@@ -9,7 +9,7 @@ use crate::{
         console, exit, input,
         output::Output,
     },
-    diagnose,
+    diagnose::{Keep, examine},
     evidence::{self, StepRulings},
     judge::{
         Outcome, Overall, Rules, Stop, Unreadable, fair,
@@ -26,16 +26,7 @@ use crate::{
     suite::config::Hints,
 };
 use anyhow::{Result, bail};
-use std::{
-    io::{self, Read},
-    path::Path,
-};
-
-/// So much of a wrong trace is looked at for its explanation, in bytes.
-const EXPLAINED: u64 = 64 << 20;
-
-/// So much of a trace that comes only once is kept for it: the course's largest has 18 MB.
-const KEPT: usize = 24 << 20;
+use std::path::Path;
 
 pub(super) fn run(arguments: &Check) -> Result<u8> {
     if let Some(scenes) = &arguments.own {
@@ -73,12 +64,13 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let pictures = console::pictures().filter(|_| arguments.format == CheckFormat::Text && target.is_none());
     let pictures = pictures.filter(|_| arguments.step.is_empty());
     let draws = is_page || pictures.is_some();
-    let most = if lasting || !(explain || draws) { 0 } else { KEPT };
-    let mut reader = Kept { inner: &mut trace.reader, bytes: Vec::new(), most };
+    let most = if explain || (draws && !lasting) { Keep::EXPLAINED.most } else { 0 };
+    // Whoever writes a trace that comes once may write no more.
+    let keep = Keep { most, reads_on: lasting };
     let mut rulings = StepRulings::new(&mut heard);
-    let outcome = parity::judge(&scene.scene, &mut reader, &options, &mut rulings);
-    let kept = reader.bytes;
-    let rulings = if draws { rulings.into_steps(&outcome) } else { Vec::new() };
+    let examined = examine(&scene.scene, &mut trace.reader, keep, &options, &mut rulings);
+    let outcome = &examined.outcome;
+    let rulings = if draws { rulings.into_steps(outcome) } else { Vec::new() };
     let Heard { bar, wrong } = heard;
     drop(bar);
     match &outcome.stop {
@@ -99,27 +91,18 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
             }
         }
     }
-    let explains = explain && is_wrong(&outcome);
-    let bytes = if lasting && explains { again(name) } else { kept };
-    let explanations = if explains { diagnose::explain(&scene.scene, &bytes) } else { Vec::new() };
+    let explanations = if explain && is_wrong(outcome) { examined.explain() } else { Vec::new() };
     let content = &scene.scene;
     let (scene, trace) = (scene.name.as_str(), trace.name.as_str());
     let audit = arguments.audit;
-    let check = report::check::Check {
-        scene,
-        trace,
-        outcome: &outcome,
-        explanations: &explanations,
-        rules,
-        steps: &wrong,
-        audit,
-    };
+    let check =
+        report::check::Check { scene, trace, outcome, explanations: &explanations, rules, steps: &wrong, audit };
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let evidence = || {
-        let (fair, focus, budget) = (outcome.fair.is_some(), focus(&outcome), evidence::BUDGET);
+        let (fair, focus, budget) = (outcome.fair.is_some(), focus(outcome), evidence::BUDGET);
         match if lasting { input::trace(name).ok() } else { None } {
             Some(whole) => evidence::gather(content, whole.reader, &rulings, fair, &focus, budget),
-            None => evidence::gather(content, &bytes[..], &rulings, fair, &focus, budget),
+            None => evidence::gather(content, examined.trace.beginning(), &rulings, fair, &focus, budget),
         }
     };
     let text = match arguments.format {
@@ -135,6 +118,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         CheckFormat::Github => check.github(),
         CheckFormat::Html => {
             let evidence = evidence();
+            let bytes = examined.trace.bytes(Keep::EXPLAINED.most);
             let what_if = explanations.first().and_then(|first| what_if(content, first, &bytes, &evidence));
             let hints = Hints::Full;
             let case = page::Case {
@@ -187,29 +171,4 @@ fn is_wrong(outcome: &Outcome) -> bool {
 /// Whether a trace can be read a second time: then it need not be kept while it is judged.
 fn is_lasting(name: &Path) -> bool {
     name != Path::new("-") && !std::fs::metadata(name).is_ok_and(|data| !data.is_file())
-}
-
-/// The beginning of a trace that has been read before. What can't be read on has been reported by now.
-fn again(name: &Path) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    if let Ok(trace) = input::trace(name) {
-        let _ = trace.reader.take(EXPLAINED).read_to_end(&mut bytes);
-    }
-    bytes
-}
-
-/// A reader whose first bytes are kept, because they come only once.
-struct Kept<R> {
-    inner: R,
-    bytes: Vec<u8>,
-    most: usize,
-}
-
-impl<R: Read> Read for Kept<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.inner.read(buffer)?;
-        let room = self.most - self.bytes.len();
-        self.bytes.extend_from_slice(&buffer[..count.min(room)]);
-        Ok(count)
-    }
 }

@@ -10,13 +10,9 @@ use crate::{
         console, exit, input,
         output::Output,
     },
-    diagnose::{self, Explanation},
+    diagnose::{self, Explanation, Keep, examine},
     evidence::StepRulings,
-    judge::{
-        Rules,
-        fair::FairVerdict,
-        parity::{self, Options},
-    },
+    judge::{Rules, fair::FairVerdict, parity::Options},
     report::{
         check::stopped,
         diagnosis::{Case, Diagnosis},
@@ -29,12 +25,12 @@ use crate::{
 };
 use anyhow::{Context, Result, bail};
 use std::{
-    io::Read,
+    io::{self, Read},
     path::{Path, PathBuf},
 };
 
 /// So much of a trace is looked at, in bytes.
-const LONGEST: usize = 64 << 20;
+const LONGEST: usize = Keep::EXPLAINED.most;
 
 /// So often a program may take too long; then it is not run any more.
 const PATIENCE: usize = 2;
@@ -69,12 +65,13 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
 fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Case, Option<Card>)> {
     let scene = input::scene(scene)?;
     let mut trace = input::trace(trace)?;
-    let mut bytes = Vec::new();
-    (&mut trace.reader).take(LONGEST as u64).read_to_end(&mut bytes).ok();
+    let explained = case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);
+    // What follows the last step is of interest only where it can't be read.
+    let _ = io::copy(&mut (&mut trace.reader).take(LONGEST as u64), &mut io::sink());
     if let Some(message) = trace.failure() {
         bail!("cannot read the trace {}: {message}", trace.name);
     }
-    Ok(case((scene.name, trace.name), true, &scene.scene, &bytes, None, arguments))
+    Ok(explained)
 }
 
 /// Judges a trace by the fair rules, and explains it if they reject it; for a page it is drawn as well.
@@ -82,7 +79,7 @@ fn case(
     (name, trace): (String, String),
     has_trace: bool,
     scene: &Scene,
-    bytes: &[u8],
+    bytes: impl Read + Send,
     note: Option<String>,
     arguments: &Explain,
 ) -> (Case, Option<Card>) {
@@ -90,29 +87,31 @@ fn case(
     let options = Options { fair: true, ..Options::default() };
     let mut nobody = ();
     let mut rulings = StepRulings::new(&mut nobody);
-    let outcome = parity::judge(scene, bytes, &options, &mut rulings);
-    let rulings = rulings.into_steps(&outcome);
+    let examined = examine(scene, bytes, Keep::EXPLAINED, &options, &mut rulings);
+    let outcome = &examined.outcome;
+    let rulings = rulings.into_steps(outcome);
     // How the program ended tells more than how its trace did.
-    let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, &outcome)));
+    let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
-    let explanations = if fair.verdict == FairVerdict::Accepted { Vec::new() } else { diagnose::explain(scene, bytes) };
+    let explanations = if fair.verdict == FairVerdict::Accepted { Vec::new() } else { examined.explain() };
     let first = fair.first_divergence.as_ref().and_then(|first| hints.finding(first));
     let explanations = hints.cut(explanations);
     let draws = arguments.format == ExplainFormat::Html && !accepted;
-    let source = Source {
-        scene,
-        trace: bytes,
-        outcome: &outcome,
-        rulings: &rulings,
-        explanations: &explanations,
-        rules: Rules::Fair,
-        hints,
-        names: (&name, has_trace.then_some(trace.as_str())),
-        depth: 2,
-    };
-    let card = if draws { pages::card(&source) } else { None };
-    (Case { scene: name, trace, accepted, note, first, explanations }, card)
+    let card = draws.then(|| {
+        pages::card(&Source {
+            scene,
+            trace: &examined.trace.bytes(LONGEST),
+            outcome,
+            rulings: &rulings,
+            explanations: &explanations,
+            rules: Rules::Fair,
+            hints,
+            names: (&name, has_trace.then_some(trace.as_str())),
+            depth: 2,
+        })
+    });
+    (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten())
 }
 
 /// Runs a program on scenes that make every term of every formula visible, and on those that are named. Nothing when it
@@ -163,7 +162,7 @@ fn program_on_probes(
         late += usize::from(matches!(outcome.ended, Ended::CpuLimit | Ended::WallLimit));
         let note = (!matches!(outcome.ended, Ended::Exited(0))).then(|| format!("the program {}", outcome.ended));
         let shown = program.display().to_string();
-        let (case, card) = case((task.name.clone(), shown), false, &task.scene, &trace, note, arguments);
+        let (case, card) = case((task.name.clone(), shown), false, &task.scene, &trace[..], note, arguments);
         cases.push(case);
         cards.push(card);
     }

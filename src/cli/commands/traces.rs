@@ -7,9 +7,9 @@ use super::{
 };
 use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
-    diagnose,
+    diagnose::{self, Keep, examine},
     evidence::StepRulings,
-    judge::parity::{self, Options},
+    judge::parity::Options,
     report::grade::{Format, Text, TextDetail, rehearse},
     sandbox::{self, Ended},
     suite::{
@@ -135,7 +135,8 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
         Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
     let mut quiet = ();
     let mut rulings = StepRulings::new(&mut quiet);
-    let outcome = parity::judge(&task.scene, &trace[..], &options, &mut rulings);
+    let examined = examine(&task.scene, &trace[..], Keep::EXPLAINED, &options, &mut rulings);
+    let outcome = &examined.outcome;
     // As if a program had ended well after it wrote this.
     let program = sandbox::RunOutcome {
         ended: Ended::Exited(0),
@@ -150,13 +151,13 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
     let run = Run {
         scene: &task.name,
         program: &program,
-        judged: &outcome,
+        judged: outcome,
         trace_bytes: trace.len() as u64,
         rules: plan.rules,
         hints: plan.hints,
         limits: &plan.limits,
     };
-    let explained = conclude(&run, || diagnose::explain(&task.scene, &trace));
+    let explained = conclude(&run, || examined.explain());
     let mut result = SceneResult { ended: None, memory: None, ..explained };
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())
@@ -164,8 +165,8 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
         let judged = Judged {
             task,
             result: &result,
-            outcome: &outcome,
-            rulings: &rulings.into_steps(&outcome),
+            outcome,
+            rulings: &rulings.into_steps(outcome),
             trace: &trace,
             is_cut: false,
             rules: plan.rules,

@@ -4,7 +4,9 @@ use super::{
     about::About,
     fault::StepStage,
     known::{is_empty_stage, known_or_open, shows},
-    polynomial, samples, stages,
+    polynomial, samples,
+    source::Source,
+    stages,
 };
 use crate::student::{Area, CATALOGUE, Row, find};
 use fosssim_model::scene::Scene;
@@ -20,11 +22,16 @@ use std::collections::BTreeMap;
 /// A trace of another scene yields nothing but that question ([`Explanation::is_other_scene`]).
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    let (mut known, open) = known_or_open(scene, &mut &trace[..]);
+    explain_source(scene, &|| Source::whole(trace))
+}
+
+/// As [`explain`], whatever the trace's records are read from, more than once.
+pub(super) fn explain_source<'a>(scene: &Scene, source: &dyn Fn() -> Source<'a>) -> Vec<Explanation> {
+    let (mut known, open) = known_or_open(scene, source());
     if known.iter().any(Explanation::is_other_scene) {
         return known;
     }
-    let mut polynomials = polynomial::explain(&samples::samples(scene, &mut &trace[..]));
+    let mut polynomials = polynomial::explain(&samples::samples(scene, source()));
     if known.iter().any(|one| find(&one.key).is_some_and(is_empty_stage)) {
         polynomials.retain(|one| !one.is_of_missing());
     }

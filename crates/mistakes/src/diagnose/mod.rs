@@ -7,6 +7,7 @@
 
 mod about;
 mod detail;
+mod examine;
 mod example;
 mod explain;
 mod explanation;
@@ -16,11 +17,13 @@ mod known;
 pub mod outside;
 pub mod polynomial;
 mod samples;
+mod source;
 mod stages;
 
 pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use about::{About, OfPolynomials};
 pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Stand, Weight};
+pub use examine::{Examined, Keep, examine, explain_kept};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use explain::{common, explain, refuted, several};
 pub use explanation::Explanation;

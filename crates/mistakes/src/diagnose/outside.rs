@@ -1,13 +1,10 @@
 //! What is told of programs whose mistake the catalogue does not have: the measure of explanations where they can't know.
-use super::{About, Explanation, explain, probe_scenes, refuted, several};
+use super::{About, Explanation, Keep, examine, probe_scenes, refuted, several};
 use crate::student::{
     self, Area, Student,
     mutants::{Mutant, mutants},
 };
-use fosssim_judge::{
-    fair::FairVerdict,
-    parity::{Options, judge},
-};
+use fosssim_judge::{fair::FairVerdict, parity::Options};
 use fosssim_model::{assignments::Assignment, scene::Scene};
 use rayon::prelude::*;
 
@@ -44,9 +41,10 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
     let (mut explained, mut right): (Vec<Vec<Explanation>>, Vec<Scene>) = (Vec::new(), Vec::new());
     for (_, scene) in probe_scenes(Assignment::DEFAULT) {
         let trace = student::trace(&scene, student).unwrap_or_else(|(bytes, _)| bytes);
-        match judge(&scene, &trace[..], &options, &mut ()).fair {
-            Some(fair) if fair.verdict == FairVerdict::Accepted => right.push(scene),
-            _ => explained.push(explain(&scene, &trace)),
+        let examined = examine(&scene, &trace[..], Keep::EXPLAINED, &options, &mut ());
+        match &examined.outcome.fair {
+            Some(fair) if fair.verdict == FairVerdict::Accepted => right.push(scene.clone()),
+            _ => explained.push(examined.explain()),
         }
     }
     let traces: Vec<&[Explanation]> = explained.iter().map(Vec::as_slice).collect();

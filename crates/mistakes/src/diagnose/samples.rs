@@ -4,10 +4,14 @@
 //! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end is
 //! what the integrator makes of it, before any response. So the first pass of each step is looked at, and in hybrid scenes the
 //! first pass of the geometric part, which starts from the mid record.
-use super::polynomial::Sample;
+use super::{
+    polynomial::Sample,
+    source::{Source, StepFrames, read},
+};
 use fosssim_judge::{
     budget::Budget,
     fair::{compare::compare, formulas},
+    kept::LONGEST,
 };
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -18,46 +22,48 @@ use fosssim_model::{
     trace::{Layout, Lenient, LenientFrame, LoggedImpulse, PolynomialLog, record_memory},
 };
 use fosssim_num::polynomial::Polynomial;
-use std::io::Read;
 
-/// What follows this many bytes of the trace is not looked at.
-const LONGEST: u64 = 64 << 20;
 /// Of each kind of pair so many wrong and so many right detections are kept.
 const MOST_WRONG: usize = 400;
 const MOST_RIGHT: usize = 200;
 
 /// The samples of a trace; empty for scenes without polynomials. A trace that breaks off or goes wild yields what it
 /// holds up to there.
-pub(super) fn samples(scene: &Scene, trace: &mut dyn Read) -> Vec<Sample> {
+pub(super) fn samples(scene: &Scene, source: Source<'_>) -> Vec<Sample> {
     let layout = Layout::of(scene);
     if !layout.polynomials {
         return Vec::new();
     }
-    let mut reader = Lenient::new(trace.take(LONGEST), layout).with_limit(record_memory(scene));
-    let (mut before, mut mid, mut end) = (LenientFrame::default(), LenientFrame::default(), LenientFrame::default());
+    let mut reader = Lenient::new(source.beginning, layout).with_limit(record_memory(scene));
+    let mut frames = StepFrames::default();
     let mut gathered = Gathered::default();
-    if !read(&mut reader, &mut before) {
+    if !read(&mut reader, &mut frames.before) {
         return Vec::new();
     }
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut budget = Budget::new(scene, false);
-    for step in 1..=layout.steps {
-        if gathered.is_full() || !read(&mut reader, &mut mid) || !read(&mut reader, &mut end) {
-            break;
-        }
-        simulation.state_mut().clone_from(&before.state);
+    let mut look = |step: u32, frames: &StepFrames, gathered: &mut Gathered| {
+        simulation.state_mut().clone_from(&frames.before.state);
         simulation.set_steps_done(step - 1);
-        let mut gatherer = Gatherer::new(scene, step, &mid, &end.polynomials, &mut gathered);
+        let mut gatherer = Gatherer::new(scene, step, &frames.mid, &frames.end.polynomials, gathered);
         // A step without result is a trace gone wild; what was gathered stays.
         let _ = budget.step(&mut simulation, &mut gatherer);
+    };
+    for step in 1..=layout.steps {
+        let is_far = reader.offset() > LONGEST;
+        if is_far || gathered.is_full() || !read(&mut reader, &mut frames.mid) || !read(&mut reader, &mut frames.end) {
+            break;
+        }
+        look(step, &frames, &mut gathered);
+        let StepFrames { before, end, .. } = &mut frames;
         before.state.clone_from(&end.state);
     }
+    for late in source.late {
+        if let Some(frames) = StepFrames::of_late(scene, late).filter(|_| !gathered.is_full()) {
+            look(late.step, &frames, &mut gathered);
+        }
+    }
     gathered.kinds.into_values().flat_map(|kind| kind.samples).collect()
-}
-
-/// Reads a record. False at the end of what is sound: nobody is to blame for what is left of a damaged record.
-fn read<R: Read>(reader: &mut Lenient<R>, frame: &mut LenientFrame) -> bool {
-    reader.next(frame).is_ok() && frame.note.is_none()
 }
 
 #[derive(Default)]

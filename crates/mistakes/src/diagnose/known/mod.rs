@@ -26,7 +26,7 @@ pub use refute::shows;
 pub(super) use scan::Sample;
 pub(super) use several::is_empty_stage;
 
-use super::{Detail, Explanation, about::About};
+use super::{Detail, Explanation, about::About, source::Source};
 use crate::student::{Mistake, Row, RowKind, find};
 use candidates::{Candidates, Score};
 use fosssim_model::{scene::Scene, trace::Layout};
@@ -48,13 +48,13 @@ use std::io::Read;
 /// over. A trace whose first record is another scene's yields nothing but the question whether it is of this scene
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
-pub fn known(scene: &Scene, mut trace: impl Read) -> Vec<Explanation> {
-    known_or_open(scene, &mut trace).0
+pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
+    known_or_open(scene, Source::whole(trace)).0
 }
 
 /// The same, with the kept steps where no mistake explains all of them.
-pub(super) fn known_or_open(scene: &Scene, trace: &mut dyn Read) -> (Vec<Explanation>, Option<Scan>) {
-    let mut scan = scan::scan(scene, trace);
+pub(super) fn known_or_open(scene: &Scene, source: Source<'_>) -> (Vec<Explanation>, Option<Scan>) {
+    let mut scan = scan::scan(scene, source);
     if let Some(missing) = alignment::missing_record(scene, &scan) {
         return (vec![missing], None);
     }

@@ -4,8 +4,11 @@ use super::{
     compare::{Difference, Logged, ROUND_OFF, SINGLE_PRECISION, StepRecords, first_difference, same_polynomial},
     resimulate::{Correct, resimulate},
 };
-use crate::student::{StepLog, World};
-use fosssim_judge::budget::Budget;
+use crate::{
+    diagnose::source::{Source, StepFrames},
+    student::{StepLog, World},
+};
+use fosssim_judge::{budget::Budget, kept::LONGEST};
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation, State},
@@ -14,8 +17,6 @@ use fosssim_model::{
 use fosssim_num::tolerances::FIRST_RECORD;
 use std::{collections::BTreeMap, io::Read};
 
-/// What follows this many bytes of the trace is not looked at.
-const LONGEST: u64 = 64 << 20;
 /// Steps that are kept, wrong and right.
 const MOST_WRONG: usize = 200;
 const MOST_RIGHT: usize = 40;
@@ -104,9 +105,17 @@ impl Scan {
 const SPARE: usize = 10_000;
 
 /// Reads the trace and re-simulates its steps without a mistake.
-pub(super) fn scan(scene: &Scene, trace: &mut dyn Read) -> Scan {
-    let mut scanner = Scanner::new(scene, trace);
+pub(super) fn scan(scene: &Scene, source: Source<'_>) -> Scan {
+    let mut scanner = Scanner::new(scene, source.beginning);
     scanner.run();
+    if !source.is_whole {
+        scanner.scan.records = None;
+    }
+    for late in source.late {
+        let Some(StepFrames { before, mid, end }) = StepFrames::of_late(scene, late) else { continue };
+        scanner.previous = before;
+        scanner.step(late.step, &mid, &end);
+    }
     scanner.scan
 }
 

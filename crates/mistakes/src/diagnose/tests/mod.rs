@@ -1,6 +1,7 @@
 //! Programs with several mistakes, asked about on the probe scenes.
-use super::{About, Explanation, explain, outside::told_of, probe_scenes, several};
+use super::{About, Explanation, Keep, examine, explain, outside::told_of, probe_scenes, several};
 use crate::student::{self, Area, CATALOGUE, Row, RowKind, Student};
+use fosssim_judge::parity::Options;
 use fosssim_model::{assignments::Assignment, sim::PairKind};
 use rayon::prelude::*;
 
@@ -125,4 +126,33 @@ fn a_mistake_beside_another_is_told_once() {
     let mut keys: Vec<&str> = told.iter().map(|one| one.key.as_str()).collect();
     keys.sort_unstable();
     assert_eq!(keys, ["failsafe-empty", "pe-radii-squared-apart"], "{told:#?}");
+}
+
+/// Reads no more at a time than a record has.
+struct Slowly<'a>(&'a [u8]);
+
+impl std::io::Read for Slowly<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = buffer.len().min(64);
+        self.0.read(&mut buffer[..count])
+    }
+}
+
+/// Where a trace is too long to be kept, its wrong steps are, and are explained.
+#[test]
+fn mistakes_beyond_what_is_kept_are_explained() {
+    let row = student::find("pe-radius-not-squared").expect("it is known");
+    let (_, scene) =
+        probe_scenes(Assignment::T2M2).into_iter().find(|(name, _)| name == "edges-struck").expect("a probe scene");
+    let trace = student::trace(&scene, Student::new(Some(row.mistake))).expect("it comes to an end");
+    let options = Options { threads: 1, fair: true, ..Options::default() };
+    for most in [trace.len() / 4, Keep::EXPLAINED.most] {
+        let keep = Keep { most, ..Keep::EXPLAINED };
+        let examined = examine(&scene, Slowly(&trace), keep, &options, &mut ());
+        assert_eq!(examined.trace.is_whole(), most > trace.len());
+        let told = examined.explain();
+        assert_eq!(told.first().map(|one| one.key.as_str()), Some(row.id), "{told:#?}");
+    }
+    let nothing = examine(&scene, &trace[..], Keep::NOTHING, &options, &mut ());
+    assert!(nothing.explain().is_empty());
 }
