@@ -1,6 +1,10 @@
 //! Under what a result is found again: a digest of everything that it depends on.
 use serde::{Deserialize, Serialize};
-use std::{fs::File, sync::OnceLock};
+use std::{
+    fs::File,
+    io::{self, Read, Seek},
+    sync::OnceLock,
+};
 
 /// What a result depends on, digested.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -28,19 +32,65 @@ impl Key {
 }
 
 /// The digest of this very program: two builds of one version may judge differently. Its version where that can't be read.
+///
+/// The linker's own digest of all that it wrote (the GNU build ID) stands for the bytes where there is one: to read a program of
+/// this size takes as long as to judge ten small scenes.
 #[must_use]
 pub fn this_build() -> &'static str {
     static BUILD: OnceLock<String> = OnceLock::new();
     BUILD.get_or_init(|| {
-        let mut hasher = blake3::Hasher::new();
-        let digested = File::open("/proc/self/exe").and_then(|file| hasher.update_reader(file).map(|_| ()));
-        digested.map_or_else(|_| env!("CARGO_PKG_VERSION").to_owned(), |()| hasher.finalize().to_hex().to_string())
+        let digest = |mut file: File| -> io::Result<blake3::Hash> {
+            if let Some(id) = build_id(&mut file) {
+                return Ok(blake3::hash(&id));
+            }
+            file.rewind()?;
+            let mut hasher = blake3::Hasher::new();
+            hasher.update_reader(file)?;
+            Ok(hasher.finalize())
+        };
+        let digest = File::open("/proc/self/exe").and_then(digest);
+        digest.map_or_else(|_| env!("CARGO_PKG_VERSION").to_owned(), |digest| digest.to_hex().to_string())
     })
+}
+
+/// The build ID of a 64-bit ELF file, if it has one of a digest's length among its first bytes, where linkers put it.
+fn build_id(file: &mut File) -> Option<Vec<u8>> {
+    const NOTES: u32 = 4;
+    const BUILD_ID: u32 = 3;
+    const LOOKED_AT: u64 = 1 << 14;
+    const OWNER: &[u8] = b"GNU\0";
+    const LEAST: usize = 16;
+    let mut start = Vec::new();
+    file.take(LOOKED_AT).read_to_end(&mut start).ok()?;
+    let word = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+    let long =
+        |bytes: &[u8], at: usize| usize::try_from(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?)).ok();
+    // ELF, 64 bits, least byte first.
+    if !start.starts_with(b"\x7fELF\x02\x01") {
+        return None;
+    }
+    let headers = start.get(long(&start, 32)?..)?;
+    let count = usize::from(u16::from_le_bytes(start.get(56..58)?.try_into().ok()?));
+    for header in headers.chunks_exact(56).take(count).filter(|header| word(header, 0) == Some(NOTES)) {
+        let (from, length) = (long(header, 8)?, long(header, 32)?);
+        let mut notes = start.get(from..from.checked_add(length)?)?;
+        while let (Some(owner), Some(length), Some(kind)) = (word(notes, 0), word(notes, 4), word(notes, 8)) {
+            let (owner, length) = (usize::try_from(owner).ok()?, usize::try_from(length).ok()?);
+            let body = 12 + owner.next_multiple_of(4);
+            let id = notes.get(body..body.checked_add(length)?)?;
+            if kind == BUILD_ID && notes.get(12..12 + owner) == Some(OWNER) && length >= LEAST {
+                return Some(id.to_vec());
+            }
+            notes = notes.get(body + length.next_multiple_of(4)..)?;
+        }
+    }
+    None
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
 
     #[test]
     fn keys_differ_when_anything_differs() {
@@ -52,5 +102,28 @@ mod tests {
         assert_ne!(Key::by("one build", &program, b"scene", &[]), Key::by("another", &program, b"scene", &[]));
         assert_eq!(Key::by(this_build(), &program, b"scene", &[]), Key::of(&program, b"scene", &[]));
         assert_eq!(this_build().len(), 64, "a digest, and no version");
+    }
+
+    #[test]
+    fn the_linkers_digest_of_a_program_is_found_and_nothing_that_only_looks_like_one() {
+        let read = |bytes: &[u8]| {
+            let mut file = tempfile::tempfile().expect("a file");
+            file.write_all(bytes).and_then(|()| file.rewind()).expect("written");
+            build_id(&mut file)
+        };
+        let mut program = b"\x7fELF\x02\x01".to_vec();
+        program.resize(64 + 56, 0);
+        (program[32], program[56], program[64]) = (64, 1, 4);
+        (program[64 + 8], program[64 + 32]) = (120, 20 + 36);
+        // A note of somebody else's, then the build ID.
+        program.extend([5, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0].iter().chain(b"none\0\0\0\0"));
+        program.extend([4, 0, 0, 0, 20, 0, 0, 0, 3, 0, 0, 0].iter().chain(b"GNU\0").chain(&[7; 20]));
+        assert_eq!(read(&program), Some(vec![7; 20]));
+        for length in [0, 10, 60, 100, 130, 150, program.len() - 1] {
+            assert_eq!(read(&program[..length]), None, "cut at {length}");
+        }
+        program[64 + 32] = 255;
+        assert_eq!(read(&program), None, "notes that end behind the file");
+        assert_eq!(read(b"#!/bin/sh\n"), None);
     }
 }

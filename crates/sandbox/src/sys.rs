@@ -224,12 +224,14 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
     check(i64::from(unsafe { libc::kill(pid, signal) })).map(drop)
 }
 
-/// Kills everybody in this process namespace if this process is the namespace's first; nothing otherwise.
-pub(super) fn kill_everybody_inside() {
-    if std::process::id() == 1 {
+/// Kills everybody in this process namespace if this process is the namespace's first, which is the answer; nothing otherwise.
+pub(super) fn kill_everybody_inside() -> bool {
+    let is_first = std::process::id() == 1;
+    if is_first {
         // SAFETY: integers only. For the first process of a namespace -1 means everybody else in it, and nobody outside.
         unsafe { libc::kill(-1, libc::SIGKILL) };
     }
+    is_first
 }
 
 /// A process that has ended.

@@ -120,27 +120,36 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
     let start = Instant::now();
     loop {
         if alone {
-            // One word ends all, whatever they look like.
-            sys::kill_everybody_inside();
+            // One word ends all, whatever they look like, and where no child is left then, there is nobody.
+            if sys::kill_everybody_inside() && reap_all(&mut reaped) {
+                return Left::default();
+            }
         }
         let victims = stop_then_kill(|| {
             let mut victims: Vec<i32> = descendants().iter().map(|stat| stat.pid).collect();
             victims.extend(user.into_iter().flat_map(of_user));
             victims
         });
-        loop {
-            match sys::reap() {
-                Ok(Some(process)) => reaped(process),
-                // No child is left: whoever is alive by name only is gone, too.
-                Err(_) if user.is_none_or(|user| of_user(user).is_empty()) => return Left::default(),
-                _ => break,
-            }
+        // No child is left: whoever is alive by name only is gone, too.
+        if reap_all(&mut reaped) && user.is_none_or(|user| of_user(user).is_empty()) {
+            return Left::default();
         }
         if start.elapsed() > PATIENCE {
             let held = victims.iter().filter_map(|pid| read(*pid)).all(|stat| stat.state == b'D');
             return Left { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), held };
         }
         std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Reaps whoever has ended; whether no child is left.
+fn reap_all(reaped: &mut impl FnMut(sys::Reaped)) -> bool {
+    loop {
+        match sys::reap() {
+            Ok(Some(process)) => reaped(process),
+            Ok(None) => return false,
+            Err(_) => return true,
+        }
     }
 }
 

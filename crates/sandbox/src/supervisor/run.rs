@@ -96,8 +96,6 @@ pub(super) struct Run {
     stdout: Capture,
     stderr: Capture,
     began: Instant,
-    /// What the control group had counted before.
-    cpu_before: Duration,
     stalled: Stalled,
     folder_before: Contents,
     main_status: Option<i32>,
@@ -172,7 +170,6 @@ impl Run {
             status: child_status,
             order: order.clone(),
         };
-        let cpu_before = group.as_ref().map_or(Duration::ZERO, Group::cpu);
         let began = Instant::now();
         let child = match sys::fork().map_err(stage("fork"))? {
             Fork::Child => child::become_program(plan),
@@ -196,7 +193,6 @@ impl Run {
             told: Vec::new(),
             listener: None,
             began,
-            cpu_before,
             folder_before,
             main_status: None,
             cause: None,
@@ -242,7 +238,9 @@ impl Run {
         if self.orphaned {
             return Ok(None);
         }
-        let failure: Option<Failure> = serde_json::from_slice(&self.told).ok();
+        // Most say nothing, and to find no message there costs more than it seems: questions to the processor.
+        let told = Some(&self.told[..]).filter(|told| !told.is_empty());
+        let failure: Option<Failure> = told.and_then(|told| serde_json::from_slice(told).ok());
         let exec_errno = match failure {
             Some(failure) if failure.stage == child::EXECUTE => Some(failure.errno),
             Some(failure) => return Err(failure),
@@ -257,7 +255,7 @@ impl Run {
             cause: self.cause.take(),
             status: main_status.unwrap_or(0),
             exec_errno,
-            cpu_micros: micros(cpu.max(self.group_cpu())),
+            cpu_micros: micros(cpu.max(self.uncounted_cpu())),
             wall_micros: micros(wall),
             peak_memory: largest.max(self.peak_memory),
             folder_growth: after.bytes.saturating_sub(self.folder_before.bytes),
@@ -273,7 +271,7 @@ impl Run {
 
     /// Until the main process has ended or there is a cause to end it.
     fn watch(&mut self) -> io::Result<()> {
-        let (mut next_look, mut next_folder) = (Instant::now(), Instant::now());
+        let (mut next_look, mut next_folder) = (Instant::now() + TICK, Instant::now() + TICK);
         while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
             let found = sys::poll(
                 [
@@ -427,9 +425,7 @@ impl Run {
         self.peak_memory = self.peak_memory.max(memory);
         self.blame_if(memory > self.order.memory, Cause::Memory);
         self.blame_if(usage.threads > u64::from(self.order.processes), Cause::Processes);
-        // One process's own count is whole; only those that nobody reaps are missing from it.
-        let counted = if self.has_children() { self.group_cpu() } else { Duration::ZERO };
-        let cpu = (usage.cpu + reaped).max(counted);
+        let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
         self.blame_if(micros(cpu) > self.order.cpu_micros, Cause::Cpu);
         let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
         self.stalled.look(full, Instant::now());
@@ -442,9 +438,10 @@ impl Run {
         self.began.elapsed().saturating_sub(self.stalled.total.min(patience))
     }
 
-    /// Processor time that the group has counted for this run: the keeper's earlier ones were in it, too.
-    fn group_cpu(&self) -> Duration {
-        self.group.as_ref().map_or(Duration::ZERO, Group::cpu).saturating_sub(self.cpu_before)
+    /// The group's processor time, where there may be processes that nobody reaps. One process's own count is whole, and its group
+    /// may have served earlier runs.
+    fn uncounted_cpu(&self) -> Duration {
+        self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
 
     /// Looks at the working folder, at removed files that are still in use, and at memory that is resident for nobody.
