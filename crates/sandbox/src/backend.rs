@@ -321,7 +321,7 @@ impl Backend {
         {
             return Err(SandboxError::Changed { program: job.program.display().to_string() });
         }
-        let examined = match program::examine(&job.program, &supervisor.own_files()) {
+        let examined = match keepers.examined(job, || program::examine(&job.program, &supervisor.own_files())) {
             Ok(examined) => examined,
             Err(problem) => return Ok(FakeRun::could_not_start(problem).into_running(job, self.layers.clone())),
         };

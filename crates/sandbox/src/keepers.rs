@@ -6,12 +6,14 @@ use std::net::Shutdown;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::fs::MetadataExt;
 use std::os::unix::net::UnixStream;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Child;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::fault::{SandboxError, lost};
-use super::job::Identity;
+use super::job::{Identity, Job};
+use super::outcome::StartProblem;
+use super::program::Program;
 use super::sys;
 use super::wire::{self, Order, Report};
 
@@ -85,9 +87,30 @@ impl Drop for Keeper {
 #[derive(Debug, Default)]
 pub(super) struct Pool {
     idle: Mutex<Vec<Keeper>>,
+    /// What was found out last about a copy of ours.
+    known: Mutex<Option<(PathBuf, Identity, Program)>>,
 }
 
 impl Pool {
+    /// What is found out about the job's program, or what is known of it: a copy of ours that is still the same file needs no
+    /// second look.
+    pub(super) fn examined(
+        &self,
+        job: &Job,
+        examine: impl FnOnce() -> Result<Program, StartProblem>,
+    ) -> Result<Program, StartProblem> {
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(identity) = job.staged else { return examine() };
+        if let Some((path, same, program)) = &*known()
+            && (path, *same) == (&job.program, identity)
+        {
+            return Ok(program.clone());
+        }
+        let program = examine()?;
+        *known() = Some((job.program.clone(), identity, program.clone()));
+        Ok(program)
+    }
+
     /// A keeper for runs of this kind. Without one, one of another kind makes room for it.
     pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,15 +1,31 @@
 //! How much memory the machine can spare for working folders.
 
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Whether a folder of so many bytes may lie in memory: as many as there can be runs at one time, and as much again for the
 /// programs, must leave the machine and our own control groups room.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
     static RUNS: OnceLock<u64> = OnceLock::new();
     let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
+    left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
+}
+
+/// What the machine and our groups have left, as it was at most a moment ago: to add it up takes the kernel longer than to start a
+/// small program.
+fn left() -> Option<u64> {
+    const MOMENT: Duration = Duration::from_millis(500);
+    static LAST: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);
+    let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((when, left)) = *last
+        && when.elapsed() < MOMENT
+    {
+        return left;
+    }
     let left = std::iter::once(available()).chain(groups().iter().map(Limited::left)).flatten().min();
-    left.is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
+    *last = Some((Instant::now(), left));
+    left
 }
 
 /// What the kernel could give to programs.

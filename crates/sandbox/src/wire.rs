@@ -19,6 +19,8 @@ pub(super) const COMMAND_CANCEL: u8 = b'c';
 pub(super) const COMMAND_TRACE_LIMIT: u8 = b't';
 /// What the trace pipe holds: the larger, the fewer switches between the program and the grader.
 pub(super) const PIPE_BYTES: i32 = 1 << 20;
+/// Few messages are longer than this.
+const USUAL_MESSAGE: u64 = 4 << 10;
 /// No message is longer than this; a longer one means that the streams are out of step.
 const LONGEST_MESSAGE: u64 = 64 << 20;
 
@@ -204,8 +206,8 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     if length > LONGEST_MESSAGE {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "a message of the supervisor is out of step"));
     }
-    // The length is a claim: memory grows as bytes arrive.
-    let mut body = Vec::new();
+    // The length is a claim: beyond what a message usually has, memory grows as bytes arrive.
+    let mut body = Vec::with_capacity(length.min(USUAL_MESSAGE) as usize + 1);
     if from.take(length).read_to_end(&mut body)? as u64 != length {
         return Err(io::ErrorKind::UnexpectedEof.into());
     }

@@ -148,7 +148,10 @@ fn joined(calls: impl Iterator<Item = i64>, layers: &[Layer]) -> io::Result<BTre
                     at_last = action.clone();
                     break;
                 }
-                Some(rules) => asked.push(compile(Rules::from([(call, rules.clone())]), action.clone())?),
+                Some(rules) => {
+                    let program = compile(Rules::from([(call, rules.clone())]), action.clone())?;
+                    asked.push(search::without_number(program, &frame()?));
+                }
             }
         }
         let at_last = u32::from(at_last);

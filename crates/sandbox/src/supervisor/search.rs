@@ -10,6 +10,7 @@ use std::io;
 use seccompiler::{BpfProgram, SeccompAction, sock_filter};
 
 const JUMP: u16 = 0x05;
+const JUMP_IF_EQUAL: u16 = 0x15;
 const JUMP_IF_GREATER_OR_EQUAL: u16 = 0x35;
 const LOAD_ABSOLUTE: u16 = 0x20;
 const RETURN_CONSTANT: u16 = 0x06;
@@ -130,6 +131,22 @@ fn jump(over: usize) -> sock_filter {
     sock_filter { code: JUMP, jt: 0, jf: 0, k: over as u32 }
 }
 
+/// A filter for one call without its beginning, which asks for the architecture, as the frame does, and for the number: two jumps
+/// follow, on into the rules and past them. One that begins otherwise is left as it is.
+pub(super) fn without_number(mut program: BpfProgram, frame: &[sock_filter]) -> BpfProgram {
+    let head = frame.len() - 1;
+    let begins = program.get(..head) == frame.get(..head);
+    if let Some([load, compare, into, past]) = program.get(head..head + 4)
+        && begins
+        && (load.code, load.k) == (LOAD_ABSOLUTE, 0)
+        && (compare.code, compare.jt, compare.jf) == (JUMP_IF_EQUAL, 0, 1)
+        && (into, past.code) == (&jump(1), JUMP)
+    {
+        program.drain(..head + 4);
+    }
+    program
+}
+
 /// Ends the filter with this answer.
 pub(super) fn answer(word: u32) -> sock_filter {
     sock_filter { code: RETURN_CONSTANT, jt: 0, jf: 0, k: word }
@@ -140,7 +157,6 @@ pub(super) mod tests {
     use super::*;
 
     const AND: u16 = 0x54;
-    const JUMP_IF_EQUAL: u16 = 0x15;
     const JUMP_IF_GREATER: u16 = 0x25;
 
     /// What a filter answers: the kernel's rules for these instructions, on its description of a call.
