@@ -326,8 +326,21 @@ impl<S: Simd> Mask<S> {
     /// 1 where it says yes, 0 elsewhere.
     #[inline(always)]
     pub fn as_numbers(self) -> Lanes<S> {
-        let (one, zero) = (self.simd.splat_f64s(1.0), self.simd.splat_f64s(0.0));
-        Lanes { simd: self.simd, values: self.simd.select_f64s(self.lanes, one, zero) }
+        self.or_zero(1.0)
+    }
+
+    /// A number where it says yes, 0 elsewhere.
+    #[inline(always)]
+    pub fn or_zero(self, number: f64) -> Lanes<S> {
+        let simd = self.simd;
+        let mask = if Lanes::<S>::COUNT > 1 {
+            // All bits of a lane or none: that is what a mask of several is. As the choice below it would be tested once more.
+            pulp::bytemuck::pod_read_unaligned(pulp::bytemuck::bytes_of(&self.lanes))
+        } else {
+            simd.select_u64s(self.lanes, simd.splat_u64s(u64::MAX), simd.splat_u64s(0))
+        };
+        let bits = simd.and_u64s(mask, simd.splat_u64s(number.to_bits()));
+        Lanes { simd, values: simd.transmute_f64s_u64s(bits) }
     }
 
     /// The one number of each lane where it says yes, the other one elsewhere.
@@ -377,37 +390,6 @@ impl<S: Simd> Not for Mask<S> {
     }
 }
 
-/// Some bits per lane.
-#[derive(Debug, Clone, Copy)]
-pub struct Bits<S: Simd> {
-    simd: S,
-    values: S::u64s,
-}
-
-impl<S: Simd> Bits<S> {
-    /// None at all.
-    #[inline(always)]
-    pub fn none(simd: S) -> Self {
-        Self { simd, values: simd.splat_u64s(0) }
-    }
-
-    /// All bits one place higher, and below them a bit that is set where the mask says yes.
-    #[inline(always)]
-    #[must_use]
-    pub fn above(self, mask: Mask<S>) -> Self {
-        let simd = self.simd;
-        // All bits of a lane that says yes are set, so it is -1.
-        let mask = simd.select_u64s(mask.lanes, simd.splat_u64s(u64::MAX), simd.splat_u64s(0));
-        Self { simd, values: simd.sub_u64s(simd.add_u64s(self.values, self.values), mask) }
-    }
-
-    /// The numbers whose [bits](f64::to_bits) these are, to be stored beside others.
-    #[inline(always)]
-    pub fn as_lanes(self) -> Lanes<S> {
-        Lanes { simd: self.simd, values: self.simd.transmute_f64s_u64s(self.values) }
-    }
-}
-
 /// Writes numbers as little-endian bytes, in one copy where the machine has them so.
 ///
 /// # Panics
@@ -438,8 +420,8 @@ mod tests {
                 let values: [f64; MOST_LANES] = std::array::from_fn(|lane| f64::from(first) + 0.125 * lane as f64);
                 Lanes::load(simd, &values)
             };
-            let bits = Bits::none(simd).above(from(4).at_least(4.125)).above(from(0).below(0.25));
-            let numbers = [[from(0), from(1), from(2), from(3)], [bits.as_lanes(), from(5), from(6), from(7)]];
+            let sum = from(4).at_least(4.125).or_zero(-2.5) + from(0).below(0.25).as_numbers();
+            let numbers = [[from(0), from(1), from(2), from(3)], [sum, from(5), from(6), from(7)]];
             let mut rows = vec![-1.0; 9 * Lanes::<S>::COUNT];
             Lanes::store_by_lane(&numbers, 9, &mut rows);
             (Lanes::<S>::COUNT, rows)
@@ -459,10 +441,9 @@ mod tests {
             let (count, rows) = instructions.run(Rows);
             assert_eq!(rows.len(), 9 * count);
             for (lane, row) in rows.chunks(9).enumerate() {
+                let sum = [1.0, -1.5, -2.5][lane.min(2)];
                 let value = |number: u32| f64::from(number) + 0.125 * lane as f64;
-                let bits = [1, 3, 2][lane.min(2)];
-                let expected =
-                    [value(0), value(1), value(2), value(3), f64::from_bits(bits), value(5), value(6), value(7), -1.0];
+                let expected = [value(0), value(1), value(2), value(3), sum, value(5), value(6), value(7), -1.0];
                 assert_eq!(row, expected);
             }
         }

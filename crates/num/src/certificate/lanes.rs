@@ -92,6 +92,19 @@ pub fn excludes_edge<S: Simd>(
     before_second: [Lanes<S>; 3],
     approach: [Lanes<S>; 6],
 ) -> Mask<S> {
+    let ends = search_ends(&distance) & search_ends(&approach);
+    excludes_edge_that_ends(ends, distance, beyond_first, before_second, approach)
+}
+
+/// The same, where it is known where the searches of the first and the last polynomial end.
+#[inline(always)]
+pub fn excludes_edge_that_ends<S: Simd>(
+    ends: Mask<S>,
+    distance: [Lanes<S>; 5],
+    beyond_first: [Lanes<S>; 3],
+    before_second: [Lanes<S>; 3],
+    approach: [Lanes<S>; 6],
+) -> Mask<S> {
     let [o0, o1, o2, o3, o4] = distance;
     let [f0, f1, f2] = beyond_first;
     let [s0, s1, s2] = before_second;
@@ -108,7 +121,7 @@ pub fn excludes_edge<S: Simd>(
             excluded = excluded | (is_parabola & never_positive(a3, a4, a5));
         }
     }
-    excluded & search_ends(&distance) & search_ends(&approach)
+    excluded & ends
 }
 
 /// Where all coefficients are of a size with which a search is known to end.

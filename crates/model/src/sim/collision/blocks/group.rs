@@ -6,15 +6,15 @@ use super::{
 };
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
-    certificate::lanes::{excludes_edge, excludes_two, is_small},
-    lanes::{Bits, Lanes, Mask, Plane, Simd},
+    certificate::lanes::{excludes_edge_that_ends, excludes_two, is_small, search_ends},
+    lanes::{Lanes, Plane, Simd},
     vector::Vec2,
 };
 use std::ops::Range;
 
 crate::drops_leading!();
 
-/// Numbers of a pair with an edge: its coefficients, what is [known] about it, and room.
+/// Numbers of a pair with an edge: its coefficients, what is known about it ([`OPEN`]), and room.
 pub(super) const EDGE_ROW: usize = 20;
 
 /// Where what is known about it stands.
@@ -33,12 +33,13 @@ pub(super) const LINE: usize = 4;
 /// So many numbers behind a row may be read, too, whatever they are: as many as a polynomial has coefficients, and two more.
 pub(super) const BEHIND: usize = 8;
 
-/// What is known about a pair, in bits: the lowest ones say which of its coefficients are so small that they are dropped when
-/// they lead; the next one, that the certificate has to be asked whether there is an impact.
-pub(super) const EDGE_OPEN: u64 = 1 << 17;
+/// What is known about a pair, in the bits of a number: the lowest one is this where the certificate has to be asked whether there
+/// is an impact; the next ones say which of its coefficients are so small that they are dropped when they lead; the highest
+/// ones say nothing.
+pub(super) const OPEN: u64 = 1;
 
-/// The same of another pair.
-pub(super) const TWO_OPEN: u64 = 1 << 5;
+/// The lowest bits of this number plus a sum of small powers of two are that sum.
+const NOTHING: f64 = (1_u64 << 52) as f64;
 
 /// The pairs of a group of particles with edges and half-planes: rows of numbers.
 #[derive(Debug, Clone, Default)]
@@ -76,15 +77,19 @@ impl Group {
             let [f0, f1, f2] = pair.beyond_first;
             let [s0, s1, s2] = pair.before_second;
             let [a0, a1, a2, a3, a4, a5] = pair.approach;
+            // What needs all of them comes before what has branches, across which few numbers can be kept at hand.
             let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5];
-            let excluded = excludes_edge(pair.distance, pair.beyond_first, pair.before_second, pair.approach);
-            let known = known(simd, excluded, &all);
+            let small = small(simd, &all);
             for lanes in &all {
                 largest = largest.max(lanes.abs());
             }
-            let numbers =
-                [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4], [a5, known, known, known]];
-            Lanes::store_by_lane(&numbers, EDGE_ROW, rows);
+            let ends = search_ends(&pair.distance) & search_ends(&pair.approach);
+            let fours = [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4]];
+            Lanes::store_by_lane(&fours, EDGE_ROW, rows);
+            let excluded =
+                excludes_edge_that_ends(ends, pair.distance, pair.beyond_first, pair.before_second, pair.approach);
+            let known = small + (!excluded).as_numbers();
+            Lanes::store_by_lane(&[[a5, known, known, known]], EDGE_ROW, &mut rows[16..]);
         }
         for (half_plane, rows) in self.half_planes.chunks_exact_mut(TWO_ROW * width).enumerate() {
             let point = all(simd, bodies.points[half_plane]);
@@ -130,7 +135,7 @@ fn store<S: Simd>(
     let excluded = excludes_two(overlap, approach);
     let ([a, b, c], [d, e]) = (overlap, approach);
     let all = [a, b, c, d, e];
-    let known = known(simd, excluded, &all);
+    let known = small(simd, &all) + (!excluded).as_numbers();
     for lanes in &all {
         largest = largest.max(lanes.abs());
     }
@@ -138,12 +143,12 @@ fn store<S: Simd>(
     largest
 }
 
-/// What is known about pairs, see [`EDGE_OPEN`].
+/// Which coefficients are small: see [`OPEN`].
 #[inline(always)]
-fn known<S: Simd, const COEFFICIENTS: usize>(simd: S, excluded: Mask<S>, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
-    let mut bits = Bits::none(simd).above(!excluded);
-    for coefficient in all.iter().rev() {
-        bits = bits.above(is_small(*coefficient));
+fn small<S: Simd, const COEFFICIENTS: usize>(simd: S, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
+    let mut known = Lanes::all(simd, NOTHING);
+    for (number, coefficient) in all.iter().enumerate() {
+        known = known + is_small(*coefficient).or_zero(f64::from(2_u32 << number));
     }
-    bits.as_lanes()
+    known
 }

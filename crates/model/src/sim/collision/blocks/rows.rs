@@ -1,7 +1,7 @@
 //! Goes through all pairs in the order of the trace, particle by particle.
 use super::{
     Group, Lists, Setting,
-    group::{BEHIND, EDGE_KNOWN, EDGE_OPEN, EDGE_ROW, TWO_KNOWN, TWO_OPEN, TWO_ROW, of_particles},
+    group::{BEHIND, EDGE_KNOWN, EDGE_ROW, OPEN, TWO_KNOWN, TWO_ROW, of_particles},
     settle::{EDGE_BYTES, Output, TWO_BYTES, decide_edge, decide_two},
 };
 use crate::sim::{
@@ -156,11 +156,11 @@ fn of_edge(
     output: &mut Output<'_>,
 ) -> bool {
     let known = row[EDGE_KNOWN].to_bits();
-    let ends = known >= EDGE_OPEN && output.takes(decide_edge(with.0, with.1, pair, row), pair, place);
-    if known < EDGE_OPEN {
+    let ends = known & OPEN != 0 && output.takes(decide_edge(with.0, with.1, pair, row), pair, place);
+    if known & OPEN == 0 {
         output.excluded += 1;
     }
-    output.write_edge(row, known);
+    output.write_edge(row, known >> 1);
     ends
 }
 
@@ -174,10 +174,10 @@ fn of_two(
     output: &mut Output<'_>,
 ) -> bool {
     let known = row[TWO_KNOWN].to_bits();
-    let ends = known >= TWO_OPEN && output.takes(decide_two(with.0, with.1, pair, row), pair, place);
-    if known < TWO_OPEN {
+    let ends = known & OPEN != 0 && output.takes(decide_two(with.0, with.1, pair, row), pair, place);
+    if known & OPEN == 0 {
         output.excluded += 1;
     }
-    output.write_two(row, known);
+    output.write_two(row, known >> 1);
     ends
 }
