@@ -9,7 +9,7 @@ use super::{
     result::{Activity, Failure, Reason, SceneResult},
     staging::Staged,
     task::SceneTask,
-    temporary::Temporary,
+    temporary::{Folders, Temporary},
     verdict::Verdict,
 };
 use fosssim_evidence::StepRulings;
@@ -53,6 +53,8 @@ pub struct Runner<'a> {
     pub hints: Hints,
     /// Whether traces are judged against the recordings instead of the reference simulator.
     pub recorded: bool,
+    /// Where its runs' working folders come from.
+    pub folders: &'a Folders,
     /// Stops everything from outside.
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader itself failed; made when it is needed.
@@ -94,7 +96,8 @@ impl Runner<'_> {
         task: &SceneTask,
         on_step: &mut dyn FnMut(u32),
     ) -> Result<SceneResult, ExecuteError> {
-        let (mut running, _folder) = self.start(&program.program, program.identity, task)?;
+        let (mut running, folder) = self.start(&program.program, program.identity, task)?;
+        let is_untouched = running.is_in_memory();
         let _registered = self.cancellation.register(running.canceller());
         let bytes = AtomicU64::new(0);
         // Not within the judging, which may panic: its trace is put aside then.
@@ -118,6 +121,10 @@ impl Runner<'_> {
             None => guarded(|| self.judge(task, &keeper, io::empty(), &options, &mut rulings)),
         };
         let outcome = running.wait()?;
+        match is_untouched {
+            true => self.folders.keep(folder),
+            false => drop(folder),
+        }
         let kept = keeper.into_kept();
         let beginning = || kept.bytes(KEPT_TRACE);
         let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, &beginning());
@@ -207,7 +214,7 @@ impl Runner<'_> {
         identity: Option<Identity>,
         task: &SceneTask,
     ) -> Result<(Running, Temporary), ExecuteError> {
-        let folder = Temporary::make("run").map_err(ExecuteError::Folder)?;
+        let folder = self.folders.take().map_err(ExecuteError::Folder)?;
         let scene_file = folder.path().join(SCENE_FILE);
         std::fs::write(&scene_file, &task.xml).map_err(ExecuteError::Folder)?;
         let job = Job::new(program, folder.path())

@@ -15,6 +15,7 @@ use super::{
     results::{KeepError, Results},
     staging::{self, Staged, StagingError},
     task::SceneTask,
+    temporary::Folders,
     verdict::Verdict,
 };
 use fosssim_judge::Rules;
@@ -101,6 +102,7 @@ impl Grader<'_> {
 pub(super) struct Shared<'a> {
     cancellation: &'a Cancellation,
     results: Option<&'a dyn Results>,
+    folders: Folders,
     /// What keys hold besides program and scene.
     words: Vec<String>,
     /// Kept by this very grading: equal programs of two submissions are both run, whatever the number of jobs.
@@ -111,7 +113,8 @@ pub(super) struct Shared<'a> {
 
 impl<'a> Shared<'a> {
     pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
-        Self { cancellation, results, words: grader.words(), kept: Mutex::default(), full: OnceLock::new() }
+        let (folders, kept, full) = (Folders::default(), Mutex::default(), OnceLock::new());
+        Self { cancellation, results, folders, words: grader.words(), kept, full }
     }
 
     /// Why results could no longer be kept.
@@ -294,6 +297,7 @@ impl<'a> Grading<'a> {
             rules: grader.effective_rules(),
             hints: grader.plan.hints,
             recorded: grader.options.recorded,
+            folders: &self.shared.folders,
             cancellation: self.shared.cancellation,
             faults: grader.faults,
             traces,

@@ -46,4 +46,5 @@ pub use guard::{Fault, guarded};
 pub use key::{Key, this_build};
 pub use result::{Reason, SceneResult};
 pub use task::SceneTask;
+pub use temporary::Folders;
 pub use verdict::Verdict;

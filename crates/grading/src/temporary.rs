@@ -49,6 +49,23 @@ impl Drop for Temporary {
     }
 }
 
+/// Working folders that no program has touched, for further runs: a new folder costs some file systems as much as a small run.
+#[derive(Debug, Default)]
+pub struct Folders(Mutex<Vec<Temporary>>);
+
+impl Folders {
+    /// A folder with nothing in it but what the grader left in one that was [kept](Self::keep).
+    pub(super) fn take(&self) -> io::Result<Temporary> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        kept.map_or_else(|| Temporary::make("run"), Ok)
+    }
+
+    /// Keeps a folder in which nobody but the grader has changed anything.
+    pub(super) fn keep(&self, folder: Temporary) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(folder);
+    }
+}
+
 /// The folder of all temporary folders of this process, for as long as there are any.
 #[derive(Debug)]
 struct Grader {
@@ -201,6 +218,20 @@ mod tests {
             }
             done.store(true, std::sync::atomic::Ordering::Relaxed);
         });
+    }
+
+    #[test]
+    fn a_folder_that_was_kept_is_taken_again_and_goes_with_the_others() {
+        let folders = Folders::default();
+        let first = folders.take().unwrap();
+        let path = first.path().to_path_buf();
+        let second = folders.take().unwrap();
+        assert_ne!(second.path(), path);
+        folders.keep(first);
+        assert_eq!(folders.take().unwrap().path(), path);
+        folders.keep(second);
+        drop(folders);
+        assert!(!path.exists());
     }
 
     #[test]

@@ -103,6 +103,12 @@ impl Running {
         self.trace.take()
     }
 
+    /// Whether the program works in a copy of its working folder, and the folder itself stays as it is.
+    #[must_use]
+    pub fn is_in_memory(&self) -> bool {
+        self.folder.is_some()
+    }
+
     /// A handle that stops the program, for other threads and for Ctrl-C.
     #[must_use]
     pub fn canceller(&self) -> Canceller {

@@ -21,7 +21,7 @@ use crate::{
     },
     sandbox::Ended,
     scene::{self, Scene},
-    suite::{Runner, SceneTask, config::Hints, plan},
+    suite::{Folders, Runner, SceneTask, config::Hints, plan},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -126,7 +126,9 @@ fn program_on_probes(
     let cancellation = cancelled_by_signals();
     let backend = backend(arguments.unsafe_no_sandbox)?;
     let plan = plan::find(Assignment::DEFAULT.key())?;
+    let folders = Folders::default();
     let runner = Runner {
+        folders: &folders,
         backend: &backend,
         run: &plan.run,
         limits: &plan.limits,
