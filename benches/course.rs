@@ -3,7 +3,7 @@
 //! `cargo bench` prints Markdown. The comparison with the original needs the ground-truth corpus (scenes, and the
 //! original's own figures in `baseline.json`, taken on a 2.5 GHz Xeon); without it that part is skipped.
 use fosssim_oracle::{
-    judge::parity::{self, Options},
+    judge::replay::{self, Options},
     scene::{self, Scene},
     sim::{RootSearch, Simulation},
     suite::library,
@@ -117,7 +117,7 @@ fn parts() {
     println!("- Recording with certificates: {:.1} times faster than without.", ratio(without, with));
     let judged = |threads| {
         let options = Options { threads, ..Options::default() };
-        time(|| scenes.iter().for_each(|(scene, trace)| drop(parity::judge(scene, &trace[..], &options, &mut ()))))
+        time(|| scenes.iter().for_each(|(scene, trace)| drop(replay::judge(scene, &trace[..], &options, &mut ()))))
     };
     println!("- Judging on two threads: {:.1} times faster than on one.", ratio(judged(1), judged(2)));
     println!("- Judging on one thread takes {:.2} of the time of recording.", ratio(judged(1), with));
@@ -126,7 +126,7 @@ fn parts() {
         let options = Options { threads: 1, fair: true, ..Options::default() };
         time(|| {
             for ((scene, _), trace) in scenes.iter().zip(traces) {
-                drop(parity::judge(scene, *trace, &options, &mut ()));
+                drop(replay::judge(scene, *trace, &options, &mut ()));
             }
         })
     };

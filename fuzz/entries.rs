@@ -1,7 +1,7 @@
 //! What the fuzz targets do with their bytes; the ordinary tests replay the seeds through the same functions.
 use fosssim_oracle::{
     diagnose,
-    judge::{Book, Ruling, parity},
+    judge::{Book, Ruling, replay},
     sandbox,
     scene::{Collision, Scene, original},
     sim::{RootSearch, Simulation},
@@ -97,9 +97,9 @@ pub fn trace(bytes: &[u8]) {
     let comparison = compare(Reader::of_slice(trace, layout), Reader::new(trace, layout));
     assert_eq!((comparison.differing, comparison.same()), (0, strict.is_ok()));
 
-    let options = parity::Options { threads: 1, ..parity::Options::default() };
-    let outcome = parity::judge(&scene, trace, &options, &mut ());
-    assert_eq!(outcome.overall == fosssim_oracle::judge::Overall::None, outcome.stop.is_some());
+    let options = replay::Options { threads: 1, ..replay::Options::default() };
+    let outcome = replay::judge(&scene, trace, &options, &mut ());
+    assert_eq!(outcome.parity.overall == fosssim_oracle::judge::Overall::None, outcome.stop.is_some());
 }
 
 /// The numbers at which arithmetic overflows, underflows, or has left the numbers: seeds of [`judge`].
@@ -143,8 +143,8 @@ pub fn explain(bytes: &[u8]) {
 /// Judges a whole trace by both rule books.
 pub fn judge(bytes: &[u8]) {
     let Some((scene, trace, _)) = whole(bytes) else { return };
-    let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
-    let outcome = parity::judge(&scene, &trace[..], &options, &mut ());
+    let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
+    let outcome = replay::judge(&scene, &trace[..], &options, &mut ());
     for book in [Book::Parity, Book::Fair] {
         let account = outcome.findings_by(book);
         let is_accepted = outcome.ruling(book) == Ruling::Accepted;

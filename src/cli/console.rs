@@ -7,7 +7,7 @@ use super::{
     values::TextOrJson,
 };
 use crate::{
-    judge::parity::{Progress, Remark},
+    judge::replay::{Progress, Remark},
     report::{style::Style, wrap},
 };
 use anyhow::{Context, Result};

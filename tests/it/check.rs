@@ -1,7 +1,7 @@
 //! `check`: reports on right, wrong and damaged traces.
 use super::workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace, finish, trace_of};
 use fosssim_oracle::{
-    judge::{Rules, parity},
+    judge::{Rules, replay},
     report::{
         check::{Check, WrongSteps},
         style::Style,
@@ -152,7 +152,7 @@ fn a_state_that_leads_nowhere_ends_with_a_report() {
 fn colours_only_decorate() {
     let scene = scene::read("scene", BOUNCE.as_bytes()).unwrap().scene;
     let trace = changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0));
-    let outcome = parity::judge(&scene, &trace[..], &parity::Options::default(), &mut ());
+    let outcome = replay::judge(&scene, &trace[..], &replay::Options::default(), &mut ());
     let steps = &WrongSteps::default();
     let (explanations, rules) = (&[][..], Rules::Both);
     let check = Check { scene: "s", trace: "t", outcome: &outcome, explanations, rules, steps, audit: true };

@@ -5,7 +5,7 @@ use super::{
 };
 use fosssim_oracle::{
     diagnose::{ExamplePlace, Explanation, common, explain, formula_in, known},
-    judge::{fair::FairVerdict, parity},
+    judge::{fair::FairVerdict, replay},
     scene::Scene,
     sim::PairKind,
     student::{self, KNOWN_ACCUSED, Row, RowKind},
@@ -42,11 +42,11 @@ fn suite() -> Vec<(String, Scene)> {
 
 /// What is said of the row's traces that the fair rules reject; after the first two only which known mistake it is.
 fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
-    let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
+    let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
     let mut found = Vec::new();
     for (_, scene) in scenes {
         let Some(trace) = simulated(scene, Some(row)) else { continue };
-        let fair = parity::judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
+        let fair = replay::judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
         if fair.verdict == FairVerdict::Rejected {
             found.push(if found.len() < 2 { explain(scene, &trace) } else { known(scene, &trace[..]) });
         }

@@ -2,9 +2,9 @@
 use super::corpus;
 use fosssim_oracle::{
     judge::{
-        Kind, Overall,
+        FindingKind, Overall,
         fair::{FairVerdict, Form, Judgement},
-        parity::{Options, judge},
+        replay::{Options, judge},
     },
     scene::{Scene, original},
     student::{self, CATALOGUE, KNOWN_REFUSED, Row, Student},
@@ -41,7 +41,7 @@ pub fn rows(kind: student::RowKind) -> Vec<&'static Row> {
 
 fn judged(scene: &Scene, trace: &[u8], threads: usize) -> (Overall, Judgement) {
     let outcome = judge(scene, trace, &Options { threads, fair: true, ..Options::default() }, &mut ());
-    (outcome.overall, *outcome.fair.expect("the fair rules were asked"))
+    (outcome.parity.overall, *outcome.fair.expect("the fair rules were asked"))
 }
 
 pub fn simulated(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
@@ -81,8 +81,9 @@ fn every_correct_variant_passes_the_fair_rules() {
         .filter_map(|(row, (name, scene))| {
             let trace = simulated(scene, Some(row)).expect("correct variants come to an end");
             let fair = judged(scene, &trace, 1).1;
-            let loses = row.id == "scale-1e-6" && fair.counts.get(Kind::TrimmedDecision) == fair.counts.total();
-            let first = fair.first_divergence.map(|first| first.to_string());
+            let loses = row.id == "scale-1e-6"
+                && fair.findings.counts.get(FindingKind::TrimmedDecision) == fair.findings.counts.total();
+            let first = fair.findings.first_divergence.map(|first| first.to_string());
             let is_known = KNOWN_REFUSED.contains(&(row.id, name));
             let is_refused = fair.verdict != FairVerdict::Accepted && !loses;
             (is_refused != is_known).then(|| format!("{} on {name}: {first:?}, known: {is_known}", row.id))
@@ -126,8 +127,8 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
         number += 1;
     }
     let (_, fair) = judged(scene, &writer.finish().unwrap().0, 1);
-    assert_eq!(fair.counts.get(Kind::MixedForms), 1, "{fair:?}");
-    assert_eq!(fair.counts.total(), 1);
+    assert_eq!(fair.findings.counts.get(FindingKind::MixedForms), 1, "{fair:?}");
+    assert_eq!(fair.findings.counts.total(), 1);
 }
 
 /// What the fair rules find does not depend on how many threads look.

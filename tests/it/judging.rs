@@ -1,6 +1,6 @@
 //! Judging many steps and calls at a time: the outcome is that of judging them one by one.
 use fosssim_oracle::{
-    judge::parity::{self, Options},
+    judge::replay::{self, Options},
     scene::original,
     student::{self, CATALOGUE, Row, RowKind, Student},
     suite::library,
@@ -14,7 +14,7 @@ fn compare(row: &Row, name: &str) {
     let [one, other] = [false, true].map(|one_by_one| {
         let options = Options { threads: 1, fair: true, one_by_one, ..Options::default() };
         // As text, which compares NaN, too.
-        format!("{:?}", parity::judge(&scene, &trace[..], &options, &mut ()))
+        format!("{:?}", replay::judge(&scene, &trace[..], &options, &mut ()))
     });
     assert!(one == other, "{} {name}:\n{one}\n{other}", row.id);
 }

@@ -2,8 +2,8 @@
 use crate::corpus;
 use fosssim_oracle::{
     judge::{
-        Kind, Outcome, Overall,
-        parity::{self, Options, Progress, Remark},
+        FindingKind, Outcome, Overall,
+        replay::{self, Options, Progress, Remark},
     },
     scene,
     sim::RootSearch,
@@ -33,7 +33,7 @@ fn judge(
 ) -> (Outcome, String) {
     let mut heard = Heard::default();
     let options = Options { threads, root_search, stop_at_first: false, ..Options::default() };
-    let outcome = parity::judge(scene, trace, &options, &mut heard);
+    let outcome = replay::judge(scene, trace, &options, &mut heard);
     // NaN is not equal to itself, so what was heard is compared as text.
     (outcome, format!("{heard:?}"))
 }
@@ -42,14 +42,14 @@ fn told(outcome: &Outcome) -> String {
     let Outcome { searches: _, ref stop, .. } = *outcome;
     format!(
         "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {} {}",
-        outcome.overall,
-        outcome.residuals,
-        outcome.counts,
-        outcome.examples,
-        outcome.first_divergence,
+        outcome.parity.overall,
+        outcome.parity.residuals,
+        outcome.parity.findings.counts,
+        outcome.parity.findings.examples,
+        outcome.parity.findings.first_divergence,
         stop,
         outcome.damage,
-        outcome.wrong_steps,
+        outcome.parity.findings.wrong_steps,
         outcome.trailing_bytes,
     )
 }
@@ -72,14 +72,14 @@ fn verdicts_and_counts_are_those_of_the_original_on_any_number_of_threads() {
             "failed" => Overall::Failed,
             _ => Overall::None,
         };
-        assert_eq!(outcome.overall, expected, "{name}");
+        assert_eq!(outcome.parity.overall, expected, "{name}");
         if row["oracle_end"] == "exit 0" {
-            for kind in Kind::ALL {
+            for kind in FindingKind::ALL {
                 let Some(message) = kind.original_message() else { continue };
                 let count = row["messages"][message].as_u64().unwrap_or(0);
-                assert_eq!(outcome.counts.get(kind), count, "{name}: {message}");
+                assert_eq!(outcome.parity.findings.counts.get(kind), count, "{name}: {message}");
             }
-            assert_eq!(outcome.collisions_passed, Some(row["collisions_passed"] == "Yes"), "{name}");
+            assert_eq!(outcome.parity.collisions_passed, Some(row["collisions_passed"] == "Yes"), "{name}");
         }
         for (threads, root_search) in [(4, RootSearch::WhereNeeded), (2, RootSearch::Audit)] {
             let (other, other_heard) = judge(&scene, &trace, threads, root_search);

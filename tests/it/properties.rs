@@ -3,7 +3,7 @@ use crate::workspace::{embedded, simulate};
 use fosssim_oracle::{
     judge::{
         Outcome, Overall, Stop,
-        parity::{self, Options},
+        replay::{self, Options},
     },
     scene::Scene,
     sim::RootSearch,
@@ -14,7 +14,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 fn judge(scene: &Scene, trace: &[u8], threads: usize, root_search: RootSearch) -> Outcome {
-    parity::judge(scene, trace, &Options { threads, root_search, stop_at_first: false, ..Options::default() }, &mut ())
+    replay::judge(scene, trace, &Options { threads, root_search, stop_at_first: false, ..Options::default() }, &mut ())
 }
 
 #[test]
@@ -24,7 +24,13 @@ fn what_is_simulated_passes_and_the_audit_agrees() {
         let scene = embedded(name);
         let trace = simulate(&scene);
         let outcome = judge(&scene, &trace, 2, RootSearch::Audit);
-        assert_eq!(outcome.overall, Overall::Passed, "{name}: {:?} {:?}", outcome.first_divergence, outcome.stop);
+        assert_eq!(
+            outcome.parity.overall,
+            Overall::Passed,
+            "{name}: {:?} {:?}",
+            outcome.parity.findings.first_divergence,
+            outcome.stop
+        );
         assert_eq!(outcome.searches.disagreements, 0, "{name}");
         assert!(!outcome.trailing_bytes && outcome.damage.is_none());
         searched += outcome.searches.searched;
@@ -39,8 +45,11 @@ fn a_run_can_be_cut_short_at_its_first_wrong_step() {
     trace[..8].copy_from_slice(&1e3_f64.to_le_bytes());
     let options =
         Options { threads: 1, root_search: RootSearch::WhereNeeded, stop_at_first: true, ..Options::default() };
-    let outcome = parity::judge(&scene, &trace[..], &options, &mut ());
-    assert_eq!((outcome.steps_judged, outcome.wrong_steps, outcome.overall), (1, 1, Overall::Failed));
+    let outcome = replay::judge(&scene, &trace[..], &options, &mut ());
+    assert_eq!(
+        (outcome.steps_judged, outcome.parity.findings.wrong_steps, outcome.parity.overall),
+        (1, 1, Overall::Failed)
+    );
 }
 
 /// Everything that a report shows; NaN is compared as text.

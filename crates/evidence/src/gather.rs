@@ -4,7 +4,7 @@ use crate::{
     rulings::StepRuling,
     track::{Track, Window},
 };
-use fosssim_judge::{Detail, Finding, budget::Budget};
+use fosssim_judge::{Finding, FindingDetail, budget::Budget};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State},
@@ -75,16 +75,18 @@ pub struct Focus {
 impl From<&Finding> for Focus {
     fn from(finding: &Finding) -> Self {
         let (pass, pair) = match &finding.detail {
-            Detail::PassPositions { place }
-            | Detail::TrimmedDecision { place, .. }
-            | Detail::MixedForms { place }
-            | Detail::PolynomialDegree { place, .. }
-            | Detail::VanishingPolynomial { place, .. }
-            | Detail::Coefficient { place, .. } => (Some(place.pass), Some(place.pair)),
-            Detail::MissedCollision { expected }
-            | Detail::WrongNormal { expected, .. }
-            | Detail::ContactTime { expected, .. } => (None, Some(expected.pair)),
-            Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => (None, actual.pair()),
+            FindingDetail::PassPositions { place }
+            | FindingDetail::TrimmedDecision { place, .. }
+            | FindingDetail::MixedForms { place }
+            | FindingDetail::PolynomialDegree { place, .. }
+            | FindingDetail::VanishingPolynomial { place, .. }
+            | FindingDetail::Coefficient { place, .. } => (Some(place.pass), Some(place.pair)),
+            FindingDetail::MissedCollision { expected }
+            | FindingDetail::WrongNormal { expected, .. }
+            | FindingDetail::ContactTime { expected, .. } => (None, Some(expected.pair)),
+            FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
+                (None, actual.pair())
+            }
             _ => (None, None),
         };
         Self { step: finding.step, pass, pair }

@@ -1,7 +1,7 @@
 //! Which steps are wrong, as the judge says while it judges.
 use fosssim_judge::{
     Outcome,
-    parity::{Progress, Remark, WrongStep},
+    replay::{Progress, Remark, WrongStep},
 };
 
 /// What the rule books say of one step.

@@ -1,5 +1,5 @@
 use super::*;
-use fosssim_judge::{Book, Outcome, parity};
+use fosssim_judge::{Book, Outcome, replay};
 use fosssim_mistakes::student::{self, Student};
 use fosssim_model::{
     scene::{Scene, original},
@@ -14,10 +14,10 @@ fn asset(name: &str) -> Scene {
 }
 
 fn judged(scene: &Scene, trace: &[u8]) -> (Outcome, Evidence) {
-    let options = parity::Options { fair: true, ..Default::default() };
+    let options = replay::Options { fair: true, ..Default::default() };
     let mut nobody = ();
     let mut rulings = StepRulings::new(&mut nobody);
-    let outcome = parity::judge(scene, trace, &options, &mut rulings);
+    let outcome = replay::judge(scene, trace, &options, &mut rulings);
     let focus: Vec<Focus> = outcome.findings_by(Book::Fair).examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, trace, &rulings.into_steps(&outcome), true, &focus, BUDGET);
     (outcome, evidence)
@@ -48,8 +48,8 @@ fn own_errors_are_told_from_inherited_ones() {
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "failsafe-angular-overwritten"));
     let fair = outcome.fair.expect("asked");
     let strip: String = evidence.steps.iter().map(|step| step.class.letter()).collect();
-    assert_eq!(strip.matches('w').count() as u64, fair.wrong_steps, "{strip}");
-    let first = fair.first_divergence.expect("wrong").step;
+    assert_eq!(strip.matches('w').count() as u64, fair.findings.wrong_steps, "{strip}");
+    let first = fair.findings.first_divergence.expect("wrong").step;
     assert_eq!(strip.find('w'), Some(first as usize - 1));
     assert!(!strip[..first as usize].contains('i'), "{strip}");
     // Before the first wrong step both motions are the same.
@@ -69,7 +69,7 @@ fn a_finding_about_a_polynomial_has_its_call() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "pe-linear-one-ab"));
     let first = outcome.findings_by(Book::Fair).first_divergence.expect("wrong");
-    let fosssim_judge::Detail::Coefficient { place, .. } = &first.detail else { panic!("{first}") };
+    let fosssim_judge::FindingDetail::Coefficient { place, .. } = &first.detail else { panic!("{first}") };
     let close = evidence.inspected.iter().find(|up| up.step == first.step).expect("looked at");
     let call = close.calls.iter().find(|call| call.pair == place.pair && call.pass == place.pass).expect("the call");
     let study = call.study.as_ref().expect("an answer");

@@ -92,7 +92,7 @@ fn file(folder: &Path, name: &str) -> PathBuf {
 mod tests {
     use super::*;
     use crate::{Verdict, result::Reason};
-    use fosssim_judge::parity;
+    use fosssim_judge::replay;
     use fosssim_model::scene::original;
 
     #[test]
@@ -100,7 +100,7 @@ mod tests {
         let xml = b"<scene><duration time=\"0\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
         let scene = original::read(xml).expect("a scene").scene;
         let task = SceneTask { name: "a/b".to_owned(), xml: xml.to_vec(), scene, recording: None };
-        let outcome = parity::judge(&task.scene, &[][..], &parity::Options::default(), &mut ());
+        let outcome = replay::judge(&task.scene, &[][..], &replay::Options::default(), &mut ());
         let result = SceneResult::without_run("a/b", 0, Verdict::WrongAnswer, Reason::Right);
         let judged = Judged {
             task: &task,

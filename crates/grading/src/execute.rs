@@ -16,8 +16,8 @@ use fosssim_evidence::StepRulings;
 use fosssim_judge::{
     Outcome, Rules,
     kept::Keeper,
-    parity::{Options, Progress, Remark},
     recorded::{self, RecordingError},
+    replay::{Options, Progress, Remark},
 };
 use fosssim_mistakes::diagnose;
 use fosssim_sandbox::{self as sandbox, Backend, Identity, Job, Limits, Policy, Running, SandboxError};

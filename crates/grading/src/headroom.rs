@@ -7,7 +7,7 @@
 use super::recording::{self, CannotRecord};
 use fosssim_judge::{
     Finding, Overall,
-    parity::{self, Options},
+    replay::{self, Options},
 };
 use fosssim_model::{
     scene::Scene,
@@ -81,9 +81,9 @@ pub fn headroom(scene: &Scene) -> Result<Headroom, CannotRecord> {
     for doublings in 0..=MOST_DOUBLINGS {
         let scaled = scene.scaled(doublings.cast_signed());
         let trace = recording::trace(&scaled)?;
-        let outcome = parity::judge(&scaled, &trace[..], &options, &mut ());
-        if outcome.overall != Overall::Passed {
-            let (findings, first) = (outcome.counts.total(), outcome.first_divergence);
+        let outcome = replay::judge(&scaled, &trace[..], &options, &mut ());
+        if outcome.parity.overall != Overall::Passed {
+            let (findings, first) = (outcome.parity.findings.counts.total(), outcome.parity.findings.first_divergence);
             failure = Some(FirstFailure { doublings, findings, first });
             break;
         }
@@ -104,7 +104,7 @@ impl Observer for Largest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fosssim_judge::Kind;
+    use fosssim_judge::FindingKind;
     use fosssim_model::scene;
 
     const FORCES: &str = r#"<scene>
@@ -157,7 +157,7 @@ mod tests {
         let (small, large) = (room(1.0), room(64.0));
         let doublings = |room: Headroom| room.failure.expect("a failure").doublings;
         assert!(doublings(small) > doublings(large) && small.room() > large.room(), "{small:?} {large:?}");
-        assert_eq!(small.failure.expect("a failure").first.expect("a finding").kind(), Kind::Coefficient);
+        assert_eq!(small.failure.expect("a failure").first.expect("a finding").kind(), FindingKind::Coefficient);
         assert!(small.is_fair() && !room(4096.0).is_fair());
     }
 

@@ -2,7 +2,7 @@
 //!
 //! What is not to be told is cut here, before a report or the journal sees it, so that no format can let it out.
 use super::told::{Told, ToldBook, ToldFinding, ToldPlace};
-use fosssim_judge::{Book, Detail, Finding, Outcome, Rules};
+use fosssim_judge::{Book, Finding, FindingDetail, Outcome, Rules};
 use fosssim_mistakes::{diagnose::Explanation, student::find};
 use serde::Deserialize;
 
@@ -58,7 +58,7 @@ impl Hints {
             official: rules.official(),
             parity: self.tell_book(judged, Book::Parity),
             fair: judged.fair.is_some().then(|| self.tell_book(judged, Book::Fair)),
-            residuals: (self == Self::Full).then_some(judged.residuals),
+            residuals: (self == Self::Full).then_some(judged.parity.residuals),
             damage: judged.damage.clone(),
             trailing_bytes: judged.trailing_bytes,
         })
@@ -69,8 +69,8 @@ impl Hints {
         ToldBook {
             ruling: judged.ruling(book),
             wrong_steps: found.wrong_steps,
-            counts: *found.counts,
-            first_divergence: found.first_divergence.and_then(|first| self.finding(first)),
+            counts: found.counts,
+            first_divergence: found.first_divergence.as_ref().and_then(|first| self.finding(first)),
             examples: found.examples.iter().filter_map(|example| self.finding(example)).collect(),
         }
     }
@@ -89,35 +89,35 @@ impl Hints {
 }
 
 /// Where in its step a finding lies.
-const fn place(detail: &Detail) -> ToldPlace {
+const fn place(detail: &FindingDetail) -> ToldPlace {
     match detail {
-        Detail::MissedCollision { expected }
-        | Detail::WrongNormal { expected, .. }
-        | Detail::ContactTime { expected, .. } => ToldPlace::Pair(expected.pair),
-        Detail::PolynomialDegree { place, .. }
-        | Detail::VanishingPolynomial { place, .. }
-        | Detail::Coefficient { place, .. }
-        | Detail::PassPositions { place }
-        | Detail::TrimmedDecision { place, .. }
-        | Detail::TrimmedTime { place, .. }
-        | Detail::MixedForms { place } => ToldPlace::Polynomial(*place),
-        Detail::Position { particle, .. }
-        | Detail::Velocity { particle, .. }
-        | Detail::BeyondReach { particle, .. } => ToldPlace::Particle(*particle),
-        Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
+        FindingDetail::MissedCollision { expected }
+        | FindingDetail::WrongNormal { expected, .. }
+        | FindingDetail::ContactTime { expected, .. } => ToldPlace::Pair(expected.pair),
+        FindingDetail::PolynomialDegree { place, .. }
+        | FindingDetail::VanishingPolynomial { place, .. }
+        | FindingDetail::Coefficient { place, .. }
+        | FindingDetail::PassPositions { place }
+        | FindingDetail::TrimmedDecision { place, .. }
+        | FindingDetail::TrimmedTime { place, .. }
+        | FindingDetail::MixedForms { place } => ToldPlace::Polynomial(*place),
+        FindingDetail::Position { particle, .. }
+        | FindingDetail::Velocity { particle, .. }
+        | FindingDetail::BeyondReach { particle, .. } => ToldPlace::Particle(*particle),
+        FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
             ToldPlace::Objects(actual.first, actual.second)
         }
-        Detail::PolynomialCount { .. }
-        | Detail::PassCount { .. }
-        | Detail::RecordsDiffer { .. }
-        | Detail::ImpossibleLog => ToldPlace::Step,
+        FindingDetail::PolynomialCount { .. }
+        | FindingDetail::PassCount { .. }
+        | FindingDetail::RecordsDiffer { .. }
+        | FindingDetail::ImpossibleLog => ToldPlace::Step,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fosssim_judge::parity;
+    use fosssim_judge::replay;
     use fosssim_mistakes::{
         diagnose::{self, About, Example, ExamplePlace},
         student::{self, CATALOGUE, RowKind, Student},
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn values_are_told_in_full_only() {
-        let detail = Detail::Position { particle: 2, expected: [1.5, 0.0], actual: [1.25, 0.0], residual: 0.25 };
+        let detail = FindingDetail::Position { particle: 2, expected: [1.5, 0.0], actual: [1.25, 0.0], residual: 0.25 };
         let finding = Finding { step: 4, frame: 8, detail };
         let place = ToldFinding::Place { step: 4, kind: finding.kind(), place: ToldPlace::Particle(2) };
         assert_eq!(Hints::None.finding(&finding), None);
@@ -169,8 +169,8 @@ mod tests {
         let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
         let row = CATALOGUE.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
         let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
-        let options = parity::Options { fair: true, ..parity::Options::default() };
-        let judged = parity::judge(&scene, &trace[..], &options, &mut ());
+        let options = replay::Options { fair: true, ..replay::Options::default() };
+        let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         assert_eq!(Hints::None.tell(&judged, Rules::Both), None);
         let told = |hints: Hints| hints.tell(&judged, Rules::Both).expect("something");
         assert_eq!(told(Hints::Where), told(Hints::What));

@@ -4,8 +4,8 @@
 //! field by field, and the compiler holds the mirrors to them. Numbers read back bit for bit: those that JSON can't write
 //! are texts. The version in [`form`](super::form) rises when anything here changes its meaning.
 use fosssim_judge::{
-    Book, Damage, Detail, Finding, FindingCounts, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role,
-    Rules, Ruling, Unreadable, fair::Cause,
+    Book, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Rescaled,
+    Residuals, Role, Rules, Ruling, Unreadable, fair::Cause,
 };
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
@@ -80,8 +80,8 @@ written_as!(
         fits.then(|| Polynomial::untrimmed(&coefficients))
     }
 );
-written_as!(kind, Kind, String, |kind| kind.key().to_owned(), |key| {
-    Kind::ALL.into_iter().find(|kind| kind.key() == key)
+written_as!(kind, FindingKind, String, |kind| kind.key().to_owned(), |key| {
+    FindingKind::ALL.into_iter().find(|kind| kind.key() == key)
 });
 written_as!(counts, FindingCounts, Vec<(String, u64)>, pairs_of_counts, counts_of_pairs);
 written_as!(cause, Option<Cause>, Option<String>, |cause| cause.map(|cause| cause.key().to_owned()), |key| {
@@ -94,14 +94,14 @@ written_as!(cause, Option<Cause>, Option<String>, |cause| cause.map(|cause| caus
 written_as!(rules, Rules, String, |rules| rules.name().to_owned(), |name| Rules::from_name(&name));
 
 fn pairs_of_counts(counts: &FindingCounts) -> Vec<(String, u64)> {
-    let found = Kind::ALL.into_iter().filter(|kind| counts.get(*kind) > 0);
+    let found = FindingKind::ALL.into_iter().filter(|kind| counts.get(*kind) > 0);
     found.map(|kind| (kind.key().to_owned(), counts.get(kind))).collect()
 }
 
 fn counts_of_pairs(pairs: Vec<(String, u64)>) -> Option<FindingCounts> {
     let mut counts = FindingCounts::default();
     for (key, count) in pairs {
-        let kind = Kind::ALL.into_iter().find(|kind| kind.key() == key)?;
+        let kind = FindingKind::ALL.into_iter().find(|kind| kind.key() == key)?;
         // A kind stands here once; what somebody has made larger than any count is damage.
         counts.add(kind, count.checked_sub(counts.get(kind))?);
     }
@@ -310,11 +310,11 @@ pub(crate) struct FindingForm {
     step: u32,
     frame: u64,
     #[serde(with = "DetailForm")]
-    detail: Detail,
+    detail: FindingDetail,
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(remote = "Detail")]
+#[serde(remote = "FindingDetail")]
 enum DetailForm {
     MissedCollision {
         #[serde(with = "ImpulseForm")]

@@ -1,6 +1,6 @@
 //! What happened on one scene, as values: renderers make the words of it (`fosssim_report::words`), scoring the points.
 use super::{mirror, told::Told, verdict::Verdict};
-use fosssim_judge::{Kind, Unreadable, fair::Cause};
+use fosssim_judge::{FindingKind, Unreadable, fair::Cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use serde::{Deserialize, Serialize};
@@ -101,7 +101,7 @@ pub enum Wrong {
     /// Hints tell nothing.
     Untold,
     /// In its first record alone.
-    FirstRecord(#[serde(with = "mirror::kind")] Kind),
+    FirstRecord(#[serde(with = "mirror::kind")] FindingKind),
     /// In steps.
     Steps {
         /// So many of them.
@@ -110,7 +110,7 @@ pub enum Wrong {
         first: u32,
         /// What is wrong there first.
         #[serde(with = "mirror::kind")]
-        kind: Kind,
+        kind: FindingKind,
     },
     /// Only in that its records are damaged.
     Damaged,

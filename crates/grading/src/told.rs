@@ -1,6 +1,6 @@
 //! What may be told of a judged trace: findings as values, cut to what the suite's hints let through ([`Hints`](crate::config::Hints)).
 use super::mirror;
-use fosssim_judge::{Book, Damage, Finding, FindingCounts, Kind, PolynomialPlace, Residuals, Ruling};
+use fosssim_judge::{Book, Damage, Finding, FindingCounts, FindingKind, PolynomialPlace, Residuals, Ruling};
 use fosssim_model::sim::Pair;
 use serde::{Deserialize, Serialize};
 
@@ -61,7 +61,7 @@ pub enum ToldFinding {
         step: u32,
         /// Its kind.
         #[serde(with = "mirror::kind")]
-        kind: Kind,
+        kind: FindingKind,
         /// Where in the step.
         place: ToldPlace,
     },
@@ -81,7 +81,7 @@ impl ToldFinding {
 
     /// Its kind.
     #[must_use]
-    pub const fn kind(&self) -> Kind {
+    pub const fn kind(&self) -> FindingKind {
         match self {
             Self::Place { kind, .. } => *kind,
             Self::Full(finding) => finding.kind(),

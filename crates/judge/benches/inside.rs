@@ -8,7 +8,7 @@
 //! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine changes, and
 //! shows them beside those of `instructions.txt`; with `store` behind it they are written there. `... -- growth` shows the cost
 //! of a pair and the memory from 10 to 3,000 particles.
-use fosssim_judge::parity::{self, Options};
+use fosssim_judge::replay::{self, Options};
 use fosssim_model::{
     scene::{Scene, original},
     sim::{RootSearch, Simulation},
@@ -112,7 +112,7 @@ fn record<W: std::io::Write>(scene: &Scene, target: W) -> W {
 
 fn judge(scene: &Scene, trace: &[u8], fair: bool) {
     let options = Options { threads: 1, fair, ..Options::default() };
-    black_box(parity::judge(scene, trace, &options, &mut ()));
+    black_box(replay::judge(scene, trace, &options, &mut ()));
 }
 
 /// The same trace with other coefficients.
@@ -176,7 +176,7 @@ fn growth() {
         let options = Options { threads: 1, fair: true, ..Options::default() };
         let graded = least(rounds, || {
             let file = std::fs::File::open(&trace).expect("the trace");
-            assert!(parity::judge(&scene, file, &options, &mut ()).fair.is_some());
+            assert!(replay::judge(&scene, file, &options, &mut ()).fair.is_some());
         });
         let size = std::fs::metadata(&trace).expect("the trace").len() as f64 / 1e6;
         std::fs::remove_file(&trace).expect("removed");

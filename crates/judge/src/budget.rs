@@ -99,7 +99,8 @@ mod tests {
     use super::*;
     use crate::{
         options::Options,
-        outcome::{Outcome, Overall, Stop},
+        outcome::{Outcome, Stop},
+        parity::Overall,
         replay::judge_within,
         samples::{changed, run, scene, written},
     };
@@ -143,7 +144,7 @@ mod tests {
         let scene = posts(100.0, 2_000_000_000);
         let trace = squeezed(&scene);
         let outcome = judged(FLOOR, &scene, &trace, fair, 1);
-        assert_eq!((given_up(&outcome), outcome.overall), (Some(2), Overall::None), "{:?}", outcome.stop);
+        assert_eq!((given_up(&outcome), outcome.parity.overall), (Some(2), Overall::None), "{:?}", outcome.stop);
         assert_eq!(outcome.steps_judged, 1);
     }
 
@@ -167,7 +168,10 @@ mod tests {
             assert!(step > 2, "{step}");
             for threads in [2, 5] {
                 let outcome = judged(floor, &scene, &trace, fair, threads);
-                assert_eq!((given_up(&outcome), outcome.wrong_steps), (Some(step), alone.wrong_steps));
+                assert_eq!(
+                    (given_up(&outcome), outcome.parity.findings.wrong_steps),
+                    (Some(step), alone.parity.findings.wrong_steps)
+                );
             }
         }
     }
@@ -179,7 +183,7 @@ mod tests {
         let floor = of_scene(&scene) / 2;
         for fair in [false, true] {
             let outcome = judged(floor, &scene, &trace, fair, 2);
-            assert_eq!((given_up(&outcome), outcome.overall), (None, Overall::Passed));
+            assert_eq!((given_up(&outcome), outcome.parity.overall), (None, Overall::Passed));
         }
     }
 }

@@ -1,26 +1,26 @@
 //! How often something was found.
-use super::finding::Kind;
+use super::finding::FindingKind;
 
 /// How often each kind of finding occurred.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct FindingCounts([u64; Kind::ALL.len()]);
+pub struct FindingCounts([u64; FindingKind::ALL.len()]);
 
 impl FindingCounts {
     /// The count of one kind.
     #[must_use]
-    pub fn get(&self, kind: Kind) -> u64 {
+    pub fn get(&self, kind: FindingKind) -> u64 {
         self.0[kind as usize]
     }
 
     /// Adds `count` findings of one kind.
-    pub fn add(&mut self, kind: Kind, count: u64) {
+    pub fn add(&mut self, kind: FindingKind, count: u64) {
         self.0[kind as usize] += count;
     }
 
     /// Findings that fail the original's collision verdict: collisions and polynomials.
     #[must_use]
     pub fn collisions(&self) -> u64 {
-        self.total() - self.get(Kind::Position) - self.get(Kind::Velocity)
+        self.total() - self.get(FindingKind::Position) - self.get(FindingKind::Velocity)
     }
 
     /// The sum over all kinds.

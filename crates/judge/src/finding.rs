@@ -7,7 +7,7 @@ use fosssim_num::polynomial::Polynomial;
 
 /// The kinds of findings, in the order in which reports list them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub enum FindingKind {
     /// A collision of the reference is not in the trace.
     MissedCollision,
     /// A collision of the trace is not in the reference.
@@ -42,7 +42,7 @@ pub enum Kind {
     MixedForms,
 }
 
-impl Kind {
+impl FindingKind {
     /// All kinds, in order.
     pub const ALL: [Self; 16] = [
         Self::MissedCollision,
@@ -119,37 +119,37 @@ pub struct Finding {
     /// The frame of the trace that holds what was compared, from 0 (the initial record).
     pub frame: u64,
     /// What is wrong.
-    pub detail: Detail,
+    pub detail: FindingDetail,
 }
 
 impl Finding {
     /// Its kind.
     #[must_use]
-    pub const fn kind(&self) -> Kind {
+    pub const fn kind(&self) -> FindingKind {
         match self.detail {
-            Detail::MissedCollision { .. } => Kind::MissedCollision,
-            Detail::SuperfluousCollision { .. } => Kind::SuperfluousCollision,
-            Detail::WrongNormal { .. } => Kind::WrongNormal,
-            Detail::PolynomialCount { .. } | Detail::PassCount { .. } => Kind::PolynomialCount,
-            Detail::PolynomialDegree { .. } => Kind::PolynomialDegree,
-            Detail::VanishingPolynomial { .. } => Kind::VanishingPolynomial,
-            Detail::Coefficient { .. } => Kind::Coefficient,
-            Detail::Position { .. } | Detail::BeyondReach { .. } => Kind::Position,
-            Detail::Velocity { .. } => Kind::Velocity,
-            Detail::ContactTime { .. } => Kind::ContactTime,
-            Detail::RepeatedCollision { .. } => Kind::RepeatedCollision,
-            Detail::PassPositions { .. } => Kind::PassPositions,
-            Detail::RecordsDiffer { .. } => Kind::RecordsDiffer,
-            Detail::ImpossibleLog => Kind::ImpossibleLog,
-            Detail::TrimmedDecision { .. } | Detail::TrimmedTime { .. } => Kind::TrimmedDecision,
-            Detail::MixedForms { .. } => Kind::MixedForms,
+            FindingDetail::MissedCollision { .. } => FindingKind::MissedCollision,
+            FindingDetail::SuperfluousCollision { .. } => FindingKind::SuperfluousCollision,
+            FindingDetail::WrongNormal { .. } => FindingKind::WrongNormal,
+            FindingDetail::PolynomialCount { .. } | FindingDetail::PassCount { .. } => FindingKind::PolynomialCount,
+            FindingDetail::PolynomialDegree { .. } => FindingKind::PolynomialDegree,
+            FindingDetail::VanishingPolynomial { .. } => FindingKind::VanishingPolynomial,
+            FindingDetail::Coefficient { .. } => FindingKind::Coefficient,
+            FindingDetail::Position { .. } | FindingDetail::BeyondReach { .. } => FindingKind::Position,
+            FindingDetail::Velocity { .. } => FindingKind::Velocity,
+            FindingDetail::ContactTime { .. } => FindingKind::ContactTime,
+            FindingDetail::RepeatedCollision { .. } => FindingKind::RepeatedCollision,
+            FindingDetail::PassPositions { .. } => FindingKind::PassPositions,
+            FindingDetail::RecordsDiffer { .. } => FindingKind::RecordsDiffer,
+            FindingDetail::ImpossibleLog => FindingKind::ImpossibleLog,
+            FindingDetail::TrimmedDecision { .. } | FindingDetail::TrimmedTime { .. } => FindingKind::TrimmedDecision,
+            FindingDetail::MixedForms { .. } => FindingKind::MixedForms,
         }
     }
 }
 
 /// What is wrong, with expected (reference) and actual (trace) values.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Detail {
+pub enum FindingDetail {
     /// The reference collides here, the trace does not.
     MissedCollision {
         /// The reference's collision.

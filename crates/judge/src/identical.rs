@@ -125,7 +125,7 @@ impl Identical {
 mod tests {
     use crate::{
         options::Options,
-        parity,
+        replay,
         samples::{BOUNCE, ZONES, changed, relog, scene},
     };
     use fosssim_model::{scene::Scene, trace::Frame};
@@ -142,7 +142,7 @@ mod tests {
     fn judged(scene: &Scene, trace: &[u8]) -> [String; 2] {
         [false, true].map(|one_by_one| {
             let options = Options { fair: true, threads: 1, one_by_one, ..Options::default() };
-            format!("{:?}", parity::judge(scene, trace, &options, &mut ()))
+            format!("{:?}", replay::judge(scene, trace, &options, &mut ()))
         })
     }
 
@@ -188,7 +188,7 @@ mod tests {
     fn what_the_original_rejects_of_itself_is_found() {
         let scene = scene(LARGE);
         let trace = changed(&scene, |_| {});
-        let outcome = parity::judge(&scene, &trace[..], &Options::default(), &mut ());
-        assert!(outcome.counts.total() > 0, "{outcome:?}");
+        let outcome = replay::judge(&scene, &trace[..], &Options::default(), &mut ());
+        assert!(outcome.parity.findings.counts.total() > 0, "{outcome:?}");
     }
 }

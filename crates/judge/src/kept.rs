@@ -6,8 +6,8 @@
 use super::{
     options::Options,
     outcome::Outcome,
-    parity,
     progress::{Progress, Remark, StepPlace, WrongStep},
+    replay,
 };
 use fosssim_model::{
     scene::Scene,
@@ -44,7 +44,7 @@ impl<'a> Keeper<'a> {
 
     /// Judges the trace, which is kept as it is read.
     pub fn judge<R: Read + Send>(&self, trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
-        parity::judge(self.scene, self.reader(trace), options, &mut Heard { keeper: self, inner: progress })
+        replay::judge(self.scene, self.reader(trace), options, &mut Heard { keeper: self, inner: progress })
     }
 
     /// The trace, which is kept as it is read.

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod book_findings;
 pub mod budget;
 mod contacts;
 mod counts;
@@ -18,7 +19,7 @@ mod outcome;
 pub mod parity;
 mod progress;
 pub mod recorded;
-mod replay;
+pub mod replay;
 mod rules;
 #[cfg(test)]
 mod samples;
@@ -27,10 +28,12 @@ pub mod study;
 mod tally;
 mod words;
 
+pub use book_findings::BookFindings;
 pub use counts::FindingCounts;
 pub use differing::{differing, factor};
-pub use finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Role};
+pub use finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Rescaled, Role};
 pub use fosssim_model::trace::Unreadable;
-pub use outcome::{Damage, Outcome, Overall, Residuals, Stop};
-pub use rules::{Book, BookFindings, Rules, Ruling};
+pub use outcome::{Damage, Outcome, Stop};
+pub use parity::{Overall, Residuals};
+pub use rules::{Book, Rules, Ruling};
 pub use words::{PairWords, PassWords, Power, passes};

@@ -1,52 +1,12 @@
 //! The verdict on one trace.
 use super::{
-    counts::FindingCounts,
-    fair::{FairRefusal, Judgement},
-    finding::Finding,
+    fair::{self, FairRefusal},
+    parity,
 };
 use fosssim_model::{
     sim::{SearchCounts, StepError},
     trace::Unreadable,
 };
-use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
-
-/// The original's overall verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Overall {
-    /// All five conditions hold.
-    Passed,
-    /// One of them does not.
-    Failed,
-    /// Grading did not come to its end; there is no verdict.
-    None,
-}
-
-/// The four residuals (oracle-behaviour.md 6.3), in scene units.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Residuals {
-    /// Sum of all position residuals.
-    pub accumulated_position: f64,
-    /// Sum of all velocity residuals.
-    pub accumulated_velocity: f64,
-    /// Largest position residual; NaN never raises it.
-    pub maximum_position: f64,
-    /// Largest velocity residual; NaN never raises it.
-    pub maximum_velocity: f64,
-}
-
-impl Residuals {
-    /// The residuals with their bounds, in the original's order: accumulated position and velocity, maximum position
-    /// and velocity. A residual passes when it is strictly below its bound; NaN fails.
-    #[must_use]
-    pub const fn with_bounds(&self) -> [(f64, f64); 4] {
-        [
-            (self.accumulated_position, PARITY_ACCUMULATED),
-            (self.accumulated_velocity, PARITY_ACCUMULATED),
-            (self.maximum_position, PARITY_MAXIMUM),
-            (self.maximum_velocity, PARITY_MAXIMUM),
-        ]
-    }
-}
 
 /// Why grading stopped before its end.
 #[derive(Debug)]
@@ -85,20 +45,10 @@ pub struct Damage {
 /// Everything that judging one trace yields.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The verdict.
-    pub overall: Overall,
-    /// The residuals, also of an incomplete run.
-    pub residuals: Residuals,
-    /// Whether collisions passed; polynomials count as collisions. `None` without a verdict.
-    pub collisions_passed: Option<bool>,
-    /// Counts per kind of finding.
-    pub counts: FindingCounts,
-    /// Steps with at least one finding.
-    pub wrong_steps: u64,
-    /// The first finding of each kind that occurred, in the order of [`Kind::ALL`](super::Kind::ALL).
-    pub examples: Vec<Finding>,
-    /// The very first finding.
-    pub first_divergence: Option<Finding>,
+    /// What the original's rules say.
+    pub parity: parity::Judgement,
+    /// What the fair rules say, if they were asked.
+    pub fair: Option<Box<fair::Judgement>>,
     /// Steps that were judged.
     pub steps_judged: u32,
     /// Steps of the scene.
@@ -116,21 +66,14 @@ pub struct Outcome {
     pub trailing_bytes: bool,
     /// Root searches of the reference.
     pub searches: SearchCounts,
-    /// What the fair rules say, if they were asked.
-    pub fair: Option<Box<Judgement>>,
 }
 
 impl Outcome {
     /// Nothing judged yet.
     pub(super) fn empty(steps: u32) -> Self {
         Self {
-            overall: Overall::None,
-            residuals: Residuals::default(),
-            collisions_passed: None,
-            counts: FindingCounts::default(),
-            wrong_steps: 0,
-            examples: Vec::new(),
-            first_divergence: None,
+            parity: parity::Judgement::default(),
+            fair: None,
             steps_judged: 0,
             steps,
             records_per_step: 1,
@@ -139,17 +82,6 @@ impl Outcome {
             damaged_steps: 0,
             trailing_bytes: false,
             searches: SearchCounts::default(),
-            fair: None,
-        }
-    }
-
-    /// Keeps a finding if it is the first, or the first of its kind.
-    pub(super) fn keep_first(&mut self, first: &Finding) {
-        if self.first_divergence.is_none() {
-            self.first_divergence = Some(*first);
-        }
-        if !self.examples.iter().any(|example| example.kind() == first.kind()) {
-            self.examples.push(*first);
         }
     }
 
@@ -167,18 +99,9 @@ impl Outcome {
         fair.conclude(refusal, self.steps_judged == self.steps);
     }
 
-    /// Draws the verdict, when nothing stopped judging (oracle-behaviour.md 6).
+    /// Draws the verdicts.
     pub(super) fn conclude(&mut self) {
         self.conclude_fair();
-        self.examples.sort_by_key(Finding::kind);
-        if self.stop.is_some() {
-            return;
-        }
-        let passed = self.counts.collisions() == 0;
-        self.collisions_passed = Some(passed);
-        // Strict, and NaN fails.
-        let residuals_pass = self.residuals.with_bounds().iter().all(|(residual, bound)| residual < bound);
-        let complete = self.steps_judged == self.steps;
-        self.overall = if passed && residuals_pass && complete { Overall::Passed } else { Overall::Failed };
+        self.parity.conclude(self.stop.is_some(), self.steps_judged == self.steps);
     }
 }

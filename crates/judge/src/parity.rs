@@ -1,20 +1,70 @@
-//! The original's rule book: lock-step comparison (oracle-behaviour.md 4 to 6).
-pub use super::{
-    options::Options,
-    progress::{Progress, Remark, StepFindings, StepPlace, WrongStep},
-};
+//! What the original's rule book says of a trace: lock-step comparison (oracle-behaviour.md 4 to 6).
+use super::book_findings::BookFindings;
+use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
 
-use super::outcome::Outcome;
-use fosssim_model::scene::Scene;
+/// The original's overall verdict.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Overall {
+    /// All five conditions hold.
+    Passed,
+    /// One of them does not.
+    Failed,
+    /// Grading did not come to its end; there is no verdict.
+    #[default]
+    None,
+}
 
-/// Judges a trace as the original does, in lock step with the reference: each step starts from the trace's own state,
-/// takes over its mid record, and is compared with its end record (oracle-behaviour.md 4 to 6). Memory does not depend
-/// on the trace's length. What follows the last record is not read, save for one byte that tells whether it is there.
-pub fn judge<R: std::io::Read + Send>(
-    scene: &Scene,
-    mut trace: R,
-    options: &Options,
-    progress: &mut dyn Progress,
-) -> Outcome {
-    super::replay::judge(scene, &mut trace, options, progress)
+/// The four residuals (oracle-behaviour.md 6.3), in scene units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Residuals {
+    /// Sum of all position residuals.
+    pub accumulated_position: f64,
+    /// Sum of all velocity residuals.
+    pub accumulated_velocity: f64,
+    /// Largest position residual; NaN never raises it.
+    pub maximum_position: f64,
+    /// Largest velocity residual; NaN never raises it.
+    pub maximum_velocity: f64,
+}
+
+impl Residuals {
+    /// The residuals with their bounds, in the original's order: accumulated position and velocity, maximum position
+    /// and velocity. A residual passes when it is strictly below its bound; NaN fails.
+    #[must_use]
+    pub const fn with_bounds(&self) -> [(f64, f64); 4] {
+        [
+            (self.accumulated_position, PARITY_ACCUMULATED),
+            (self.accumulated_velocity, PARITY_ACCUMULATED),
+            (self.maximum_position, PARITY_MAXIMUM),
+            (self.maximum_velocity, PARITY_MAXIMUM),
+        ]
+    }
+}
+
+/// Everything that the original's rules say about a trace.
+#[derive(Debug, Clone, Default)]
+pub struct Judgement {
+    /// The verdict.
+    pub overall: Overall,
+    /// The residuals, also of an incomplete run.
+    pub residuals: Residuals,
+    /// Whether collisions passed; polynomials count as collisions. `None` without a verdict.
+    pub collisions_passed: Option<bool>,
+    /// What was found.
+    pub findings: BookFindings,
+}
+
+impl Judgement {
+    /// Draws the verdict, when nothing stopped judging (oracle-behaviour.md 6).
+    pub(super) fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
+        self.findings.conclude();
+        if is_stopped {
+            return;
+        }
+        let passed = self.findings.counts.collisions() == 0;
+        self.collisions_passed = Some(passed);
+        // Strict, and NaN fails.
+        let residuals_pass = self.residuals.with_bounds().iter().all(|(residual, bound)| residual < bound);
+        self.overall = if passed && residuals_pass && is_complete { Overall::Passed } else { Overall::Failed };
+    }
 }

@@ -1,7 +1,7 @@
 //! What judging tells while it goes on.
 use super::{
     counts::FindingCounts,
-    finding::{Finding, Kind},
+    finding::{Finding, FindingKind},
 };
 use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
 
@@ -74,5 +74,5 @@ pub enum Remark {
         expected: Impulse,
     },
     /// So many findings of one kind about polynomials, one after the other.
-    Polynomials(Kind, u32),
+    Polynomials(FindingKind, u32),
 }

@@ -89,15 +89,15 @@ fn compare(
             tally.compare_polynomial(expected.polynomials.get(index), || places.at(index));
         }
         tally.finish(&expected.state, layout.impulses, layout.polynomials);
-        tally::accumulate(&mut outcome.residuals, &result.residuals);
-        outcome.counts += result.counts;
+        tally::accumulate(&mut outcome.parity.residuals, &result.residuals);
+        outcome.parity.findings.counts += result.counts;
         if !damaged {
-            result.firsts.iter().for_each(|first| outcome.keep_first(first));
+            result.firsts.iter().for_each(|first| outcome.parity.findings.keep_first(first));
         }
         // The initial record is no step.
         if result.counts.total() > 0 && step > 0 && wrong_step != Some(step) && !damaged {
             wrong_step = Some(step);
-            outcome.wrong_steps += 1;
+            outcome.parity.findings.wrong_steps += 1;
         }
         if is_end {
             outcome.steps_judged = step;

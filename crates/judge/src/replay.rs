@@ -6,13 +6,16 @@
 //! is reported, and in which order, does not depend on the number of threads.
 mod crew;
 
+pub use super::{
+    options::Options,
+    progress::{Progress, Remark, StepFindings, StepPlace, WrongStep},
+};
+
 use super::{
     budget::{Budget, FLOOR},
     fair::{self, Context, Reach, Records, StepJudgement},
     identical::Identical,
-    options::Options,
     outcome::{Damage, Outcome, Stop},
-    progress::{Progress, StepFindings, StepPlace, WrongStep},
     rules::Book,
     tally::{self, StepResult},
 };
@@ -84,13 +87,12 @@ struct Batch {
     bytes: usize,
 }
 
-/// Judges a trace (the body of [`super::parity::judge`]).
-pub(super) fn judge(
-    scene: &Scene,
-    trace: &mut (dyn Read + Send),
-    options: &Options,
-    progress: &mut dyn Progress,
-) -> Outcome {
+/// Judges a trace by both books, as the original does in lock step with the reference: each step starts from the trace's own state,
+/// takes over its mid record, and is compared with its end record (oracle-behaviour.md 4 to 6). Memory does not depend
+/// on the trace's length. What follows the last record is not read, save for one byte that tells whether it is there.
+pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
+    // Compiled once, whatever the trace comes from.
+    let trace: &mut (dyn Read + Send) = &mut trace;
     judge_within((record_memory(scene), FLOOR), scene, trace, options, progress)
 }
 
@@ -358,11 +360,11 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 outcome.stop = Some(beyond_limit(slot, self.shape.layout));
                 return true;
             }
-            tally::accumulate(&mut outcome.residuals, &slot.result.residuals);
-            outcome.counts += slot.result.counts;
+            tally::accumulate(&mut outcome.parity.residuals, &slot.result.residuals);
+            outcome.parity.findings.counts += slot.result.counts;
             // What is left of a damaged record counts for the original, but nobody is to blame for its numbers.
             if !self.damaged {
-                slot.result.firsts.iter().for_each(|first| outcome.keep_first(first));
+                slot.result.firsts.iter().for_each(|first| outcome.parity.findings.keep_first(first));
                 if let (Some(judgement), Some(context), Some(reach)) =
                     (&mut outcome.fair, &self.shape.fair, &mut self.reach)
                 {
@@ -391,7 +393,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             outcome.damaged_steps += u32::from(self.damaged);
             progress.step_judged(slot.step, &slot.result.remarks);
             if slot.result.counts.total() > 0 && !self.damaged {
-                outcome.wrong_steps += 1;
+                outcome.parity.findings.wrong_steps += 1;
             }
             let is_right = slot.result.firsts.is_empty() && slot.fair.findings.is_empty();
             if !is_right && !self.damaged {

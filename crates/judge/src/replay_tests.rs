@@ -1,6 +1,6 @@
 //! Batches and limits, tried from inside.
 use super::*;
-use crate::{finding::Kind, samples::changed};
+use crate::{finding::FindingKind, samples::changed};
 use fosssim_model::{
     sim::Simulation,
     trace::{Frame, Reader, Recorder, Writer},
@@ -53,9 +53,10 @@ fn a_crowd_of_contacts_is_judged() {
         }
     });
     let outcome = crate::samples::judged(&scene, &trace);
-    assert_eq!(outcome.counts.get(Kind::SuperfluousCollision), 500_002);
+    assert_eq!(outcome.parity.findings.counts.get(FindingKind::SuperfluousCollision), 500_002);
     let fair = outcome.fair.expect("asked");
-    let counts = [Kind::SuperfluousCollision, Kind::RepeatedCollision].map(|kind| fair.counts.get(kind));
+    let counts =
+        [FindingKind::SuperfluousCollision, FindingKind::RepeatedCollision].map(|kind| fair.findings.counts.get(kind));
     assert_eq!(counts, [500_000, 2]);
 }
 
@@ -79,14 +80,14 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
         let options = Options { threads, ..Options::default() };
         let judge = |memory, trace: &[u8]| judge_within((memory, FLOOR), &scene, trace, &options, &mut ());
         let whole = judge(usize::MAX, &right);
-        assert!(whole.stop.is_none() && whole.counts.total() == 0, "{whole:?}");
+        assert!(whole.stop.is_none() && whole.parity.findings.counts.total() == 0, "{whole:?}");
         let Some(Stop::Trace { step: 1, frame: 2, cause: Unreadable::Limit, message, .. }) = judge(0, &right).stop
         else {
             panic!("not judged")
         };
         assert!(message.contains("14280 polynomials, as many as it should have"), "{message}");
         let wrong = judge(0, &longer);
-        assert!(wrong.stop.is_none() && wrong.wrong_steps == 2, "{wrong:?}");
-        assert!(wrong.examples[0].to_string().contains("14281 polynomials"), "{wrong:?}");
+        assert!(wrong.stop.is_none() && wrong.parity.findings.wrong_steps == 2, "{wrong:?}");
+        assert!(wrong.parity.findings.examples[0].to_string().contains("14281 polynomials"), "{wrong:?}");
     }
 }

@@ -1,12 +1,7 @@
 //! Which rule book is asked, which one is official, and what each says about one trace in the same words.
 //!
 //! The parity book is always computed, because everything else builds on its replay; the fair one only on demand.
-use super::{
-    counts::FindingCounts,
-    fair,
-    finding::Finding,
-    outcome::{Outcome, Overall},
-};
+use super::{book_findings::BookFindings, fair, outcome::Outcome, parity::Overall};
 
 /// A rule book.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -100,19 +95,6 @@ impl Ruling {
     }
 }
 
-/// What one book has found.
-#[derive(Debug, Clone, Copy)]
-pub struct BookFindings<'a> {
-    /// Counts per kind of finding.
-    pub counts: &'a FindingCounts,
-    /// Steps with at least one finding.
-    pub wrong_steps: u64,
-    /// The first finding of each kind.
-    pub examples: &'a [Finding],
-    /// The very first finding.
-    pub first_divergence: Option<&'a Finding>,
-}
-
 impl Outcome {
     /// The verdict by a book; by the fair one the original's, if the fair one was not asked.
     #[must_use]
@@ -123,7 +105,7 @@ impl Outcome {
                 (fair::FairVerdict::Rejected, None) => Ruling::WrongAnswer,
                 (fair::FairVerdict::Rejected, Some(_)) | (fair::FairVerdict::None, _) => Ruling::BadTrace,
             },
-            _ => match self.overall {
+            _ => match self.parity.overall {
                 Overall::Passed => Ruling::Accepted,
                 Overall::Failed => Ruling::WrongAnswer,
                 Overall::None => Ruling::BadTrace,
@@ -145,20 +127,10 @@ impl Outcome {
 
     /// What a book has found; by the fair one what the original has, if the fair one was not asked.
     #[must_use]
-    pub fn findings_by(&self, book: Book) -> BookFindings<'_> {
+    pub fn findings_by(&self, book: Book) -> &BookFindings {
         match (book, &self.fair) {
-            (Book::Fair, Some(fair)) => BookFindings {
-                counts: &fair.counts,
-                wrong_steps: fair.wrong_steps,
-                examples: &fair.examples,
-                first_divergence: fair.first_divergence.as_ref(),
-            },
-            _ => BookFindings {
-                counts: &self.counts,
-                wrong_steps: self.wrong_steps,
-                examples: &self.examples,
-                first_divergence: self.first_divergence.as_ref(),
-            },
+            (Book::Fair, Some(fair)) => &fair.findings,
+            _ => &self.parity.findings,
         }
     }
 }
@@ -183,18 +155,18 @@ mod tests {
         let mut outcome = Outcome::empty(3);
         outcome.steps_judged = 3;
         for (overall, right) in [(Overall::Failed, 2), (Overall::Passed, 3)] {
-            outcome.overall = overall;
+            outcome.parity.overall = overall;
             assert_eq!(outcome.right_steps(Book::Parity), right);
         }
-        outcome.wrong_steps = 5;
+        outcome.parity.findings.wrong_steps = 5;
         assert_eq!(outcome.right_steps(Book::Parity), 0);
     }
 
     #[test]
     fn without_a_fair_judgement_parity_speaks_for_both() {
         let mut outcome = Outcome::empty(3);
-        outcome.wrong_steps = 2;
-        outcome.overall = Overall::Failed;
+        outcome.parity.findings.wrong_steps = 2;
+        outcome.parity.overall = Overall::Failed;
         assert_eq!(outcome.ruling(Book::Fair), Ruling::WrongAnswer);
         assert_eq!(outcome.findings_by(Book::Fair).wrong_steps, 2);
         let mut judgement = fair::Judgement::default();

@@ -1,5 +1,5 @@
 //! Scenes and traces for the tests of this crate.
-use super::{options::Options, outcome::Outcome, parity};
+use super::{options::Options, outcome::Outcome, replay};
 use fosssim_model::{
     scene::{Scene, original},
     sim::{Observer, RootSearch, Simulation},
@@ -62,7 +62,7 @@ pub(crate) fn changed(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Ve
 /// What both books say.
 pub(crate) fn judged(scene: &Scene, trace: &[u8]) -> Outcome {
     let options = Options { fair: true, threads: 1, ..Options::default() };
-    parity::judge(scene, trace, &options, &mut ())
+    replay::judge(scene, trace, &options, &mut ())
 }
 
 /// Replaces a frame's polynomials.

@@ -7,8 +7,8 @@ use super::{
     contacts::{Contacts, key, logged_key},
     counts::FindingCounts,
     differing::{differing, factor},
-    finding::{Detail, Finding, Kind, PolynomialPlace, Rescaled, Role},
-    outcome::Residuals,
+    finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, Rescaled, Role},
+    parity::Residuals,
     progress::Remark,
 };
 use fosssim_model::{
@@ -80,7 +80,7 @@ impl StepResult {
 /// The findings about polynomials, held back until the two lists are known to have the same length.
 #[derive(Debug, Default)]
 struct Pending {
-    runs: Vec<(Kind, u32)>,
+    runs: Vec<(FindingKind, u32)>,
     firsts: Vec<Finding>,
 }
 
@@ -90,7 +90,7 @@ impl Pending {
         self.firsts.clear();
     }
 
-    fn record(&mut self, kind: Kind, finding: impl FnOnce() -> Finding) {
+    fn record(&mut self, kind: FindingKind, finding: impl FnOnce() -> Finding) {
         if !self.firsts.iter().any(|first| first.kind() == kind) {
             self.firsts.push(finding());
         }
@@ -209,7 +209,7 @@ impl<'a> Tally<'a> {
         self.compare_states(reference);
     }
 
-    fn finding(&self, detail: Detail) -> Finding {
+    fn finding(&self, detail: FindingDetail) -> Finding {
         Finding { step: self.step, frame: self.frame_number, detail }
     }
 
@@ -225,11 +225,11 @@ impl<'a> Tally<'a> {
         own_keys.sort_unstable();
         for expected in own.iter().filter(|own| logged(own).is_none()) {
             self.result.remarks.push(Remark::Missed(*expected));
-            self.result.record(self.finding(Detail::MissedCollision { expected: *expected }));
+            self.result.record(self.finding(FindingDetail::MissedCollision { expected: *expected }));
         }
         for actual in theirs.iter().filter(|logged| own_keys.binary_search(&logged_key(logged)).is_err()) {
             self.result.remarks.push(Remark::Superfluous(*actual));
-            self.result.record(self.finding(Detail::SuperfluousCollision { actual: *actual }));
+            self.result.record(self.finding(FindingDetail::SuperfluousCollision { actual: *actual }));
         }
         for expected in &own {
             let Some(actual) = logged(expected).map(|index| &theirs[index]) else { continue };
@@ -237,7 +237,7 @@ impl<'a> Tally<'a> {
             // Parity's exception: a NaN normal passes, because the original asks whether the distance is larger.
             if residual > PARITY_NORMAL {
                 self.result.remarks.push(Remark::WrongNormal { actual: *actual, expected: *expected });
-                let detail = Detail::WrongNormal { expected: *expected, actual: *actual, residual };
+                let detail = FindingDetail::WrongNormal { expected: *expected, actual: *actual, residual };
                 self.result.record(self.finding(detail));
             }
         }
@@ -249,8 +249,8 @@ impl<'a> Tally<'a> {
         let actual = self.frame.logged;
         if actual != self.polynomials {
             let per_pass = self.polynomials.checked_div(self.passes).unwrap_or(0);
-            let detail = Detail::PolynomialCount { expected: self.polynomials, actual, per_pass };
-            self.result.remarks.push(Remark::Polynomials(Kind::PolynomialCount, 1));
+            let detail = FindingDetail::PolynomialCount { expected: self.polynomials, actual, per_pass };
+            self.result.remarks.push(Remark::Polynomials(FindingKind::PolynomialCount, 1));
             self.result.record(self.finding(detail));
             return;
         }
@@ -271,7 +271,7 @@ impl<'a> Tally<'a> {
             // Written so that NaN is a finding: it fails the accumulated residual.
             if !(position < PARITY_MAXIMUM) {
                 let (expected, actual) = (expected.into(), actual.into());
-                let detail = Detail::Position { particle, expected, actual, residual: position };
+                let detail = FindingDetail::Position { particle, expected, actual, residual: position };
                 self.result.record(self.finding(detail));
                 positions += 1;
             }
@@ -279,14 +279,14 @@ impl<'a> Tally<'a> {
             let velocity = length(expected - actual);
             if !(velocity < PARITY_MAXIMUM) {
                 let (expected, actual) = (expected.into(), actual.into());
-                let detail = Detail::Velocity { particle, expected, actual, residual: velocity };
+                let detail = FindingDetail::Velocity { particle, expected, actual, residual: velocity };
                 self.result.record(self.finding(detail));
                 velocities += 1;
             }
             self.result.residuals.push((position, velocity));
         }
-        debug_assert_eq!(self.result.counts.get(Kind::Position), positions);
-        debug_assert_eq!(self.result.counts.get(Kind::Velocity), velocities);
+        debug_assert_eq!(self.result.counts.get(FindingKind::Position), positions);
+        debug_assert_eq!(self.result.counts.get(FindingKind::Velocity), velocities);
     }
 
     /// Compares the next polynomial of the reference, as oracle-behaviour.md 6.2 does; `place` says where it belongs, should that be
@@ -310,9 +310,9 @@ impl<'a> Tally<'a> {
         let finding = |detail| Finding { step, frame, detail };
         let shown = Polynomial::untrimmed(&actual[..actual.len().min(MAX_COEFFICIENTS)]);
         if own.len() != actual.len() {
-            self.buffers.pending.record(Kind::PolynomialDegree, || {
+            self.buffers.pending.record(FindingKind::PolynomialDegree, || {
                 let (expected, actual_size) = (*expected, actual.len());
-                finding(Detail::PolynomialDegree { place: place(), expected, actual_size, actual: shown })
+                finding(FindingDetail::PolynomialDegree { place: place(), expected, actual_size, actual: shown })
             });
             return;
         }
@@ -321,8 +321,8 @@ impl<'a> Tally<'a> {
             return;
         }
         if sum_own < PARITY_ZERO_POLYNOMIAL {
-            self.buffers.pending.record(Kind::VanishingPolynomial, || {
-                finding(Detail::VanishingPolynomial { place: place(), expected: *expected, actual: shown })
+            self.buffers.pending.record(FindingKind::VanishingPolynomial, || {
+                finding(FindingDetail::VanishingPolynomial { place: place(), expected: *expected, actual: shown })
             });
             return;
         }
@@ -331,7 +331,7 @@ impl<'a> Tally<'a> {
             let residual = (coefficient - rescaled).abs();
             // Parity's exception: NaN passes, because the original asks whether the distance is larger.
             if residual > PARITY_COEFFICIENT {
-                self.buffers.pending.record(Kind::Coefficient, || {
+                self.buffers.pending.record(FindingKind::Coefficient, || {
                     let power = own.len() - 1 - number;
                     let rescaled = Rescaled { power, expected: rescaled, actual: coefficient, residual };
                     finding(wrong_coefficient(place(), rescaled, expected, &shown))
@@ -342,14 +342,19 @@ impl<'a> Tally<'a> {
 }
 
 /// A wrong coefficient, under the name that a person would give it.
-fn wrong_coefficient(place: PolynomialPlace, rescaled: Rescaled, expected: &Polynomial, actual: &Polynomial) -> Detail {
+fn wrong_coefficient(
+    place: PolynomialPlace,
+    rescaled: Rescaled,
+    expected: &Polynomial,
+    actual: &Polynomial,
+) -> FindingDetail {
     let (own, logged) = (expected.coefficients(), actual.coefficients());
     let factor = factor(own, logged);
     // What the original's bound alone rejects is named as the original does.
     let power = differing(own, logged, factor).first().copied().unwrap_or(rescaled.power);
     let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
     let (right, wrong) = (factor * of(own), of(logged));
-    Detail::Coefficient {
+    FindingDetail::Coefficient {
         place,
         power,
         expected: right,

@@ -1,8 +1,8 @@
 //! Findings in words: one sentence that says where, what was expected and what was there.
 //!
 //! Vectors have as many digits as tell them apart; other numbers are written so that reading them back gives the same
-//! value. Reports that lay values out side by side use the fields of [`Detail`] instead.
-use super::finding::{Detail, Finding, Kind, Part, PolynomialPlace, RecordPart, Role};
+//! value. Reports that lay values out side by side use the fields of [`FindingDetail`] instead.
+use super::finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Role};
 use fosssim_model::{
     sim::{Pair, PairKind, Pass, Stage},
     trace::LoggedImpulse,
@@ -30,16 +30,16 @@ impl Display for What<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Finding { step, detail, .. } = self.0;
         match *detail {
-            Detail::Position { particle, expected, actual, .. } if *step == 0 => {
+            FindingDetail::Position { particle, expected, actual, .. } if *step == 0 => {
                 write!(f, "particle {particle} starts at {}", Apart { expected, actual })
             }
-            Detail::Velocity { particle, expected, actual, .. } if *step == 0 => {
+            FindingDetail::Velocity { particle, expected, actual, .. } if *step == 0 => {
                 write!(f, "particle {particle} starts with velocity {}", Apart { expected, actual })
             }
-            Detail::RecordsDiffer { part: RecordPart::Impulses } if *step == 0 => {
+            FindingDetail::RecordsDiffer { part: RecordPart::Impulses } if *step == 0 => {
                 f.write_str("the first record holds impulses, before anything has moved")
             }
-            Detail::RecordsDiffer { part: RecordPart::Polynomials } if *step == 0 => {
+            FindingDetail::RecordsDiffer { part: RecordPart::Polynomials } if *step == 0 => {
                 f.write_str("the first record holds polynomials, before anything has moved")
             }
             _ => write!(f, "{detail}"),
@@ -47,7 +47,7 @@ impl Display for What<'_> {
     }
 }
 
-impl Display for Detail {
+impl Display for FindingDetail {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::MissedCollision { expected } => {
@@ -212,7 +212,7 @@ impl Display for Role {
     }
 }
 
-impl Display for Kind {
+impl Display for FindingKind {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::MissedCollision => "missed collision",
@@ -306,7 +306,7 @@ mod tests {
         let pass = Pass { stage: Stage::Impulses { round: 1 }, index: 1 };
         let place = PolynomialPlace { pass, pair, role: Role::Overlap, index: 17 };
         let polynomial = Polynomial::untrimmed(&[1.0, 2.0, 3.0]);
-        let detail = Detail::Coefficient {
+        let detail = FindingDetail::Coefficient {
             place,
             power: 2,
             expected: 3.5,
@@ -324,11 +324,11 @@ mod tests {
 
     #[test]
     fn particles_start_in_the_first_record_and_end_in_the_others() {
-        let detail = Detail::Position { particle: 2, expected: [0.0, 1.0], actual: [0.0, 3.0], residual: 2.0 };
+        let detail = FindingDetail::Position { particle: 2, expected: [0.0, 1.0], actual: [0.0, 3.0], residual: 2.0 };
         let words = |step| Finding { step, frame: 0, detail }.to_string();
         assert_eq!(words(0), "step 0: particle 2 starts at (0, 3), expected (0, 1), distance 2");
         assert_eq!(words(1), "step 1: particle 2 ends at (0, 3), expected (0, 1), distance 2");
-        let detail = Detail::RecordsDiffer { part: RecordPart::Impulses };
+        let detail = FindingDetail::RecordsDiffer { part: RecordPart::Impulses };
         assert_eq!(
             Finding { step: 0, frame: 0, detail }.to_string(),
             "step 0: the first record holds impulses, before anything has moved"
@@ -354,7 +354,8 @@ mod tests {
 
     #[test]
     fn whole_passes_are_counted() {
-        let words = |expected, actual, per_pass| Detail::PolynomialCount { expected, actual, per_pass }.to_string();
+        let words =
+            |expected, actual, per_pass| FindingDetail::PolynomialCount { expected, actual, per_pass }.to_string();
         assert_eq!(words(40, 60, 20), "60 polynomials logged, expected 40: 1 detection pass too many");
         assert_eq!(words(60, 20, 20), "20 polynomials logged, expected 60: 2 detection passes too few");
         assert_eq!(words(60, 61, 20), "61 polynomials logged, expected 60");

@@ -7,7 +7,7 @@ use crate::{
     words::{INPUT_AND_OUTPUT, NO_VORTEX_HESSIAN, input_not_opened, output_not_opened},
 };
 use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_limited};
-use fosssim_judge::{Stop, Unreadable, parity, parity::Progress};
+use fosssim_judge::{Stop, Unreadable, replay, replay::Progress};
 use fosssim_model::{
     scene::{
         Integrator, LARGEST_IMPLICIT, LARGEST_SCENE, Scene,
@@ -211,7 +211,7 @@ fn grade(
     mut transcript: Transcript<'_, impl Write>,
     outside: &dyn Outside,
 ) -> u8 {
-    let outcome = parity::judge(scene, trace, &parity::Options::default(), &mut transcript);
+    let outcome = replay::judge(scene, trace, &replay::Options::default(), &mut transcript);
     transcript.graded(&outcome);
     drop(transcript.finish());
     if let Some(residuals) = residual_file(&outcome)

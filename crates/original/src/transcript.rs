@@ -5,7 +5,7 @@ use crate::{
 };
 use fosssim_judge::{
     Outcome, Residuals, Stop, Unreadable,
-    parity::{Progress, Remark},
+    replay::{Progress, Remark},
 };
 use fosssim_model::scene::{Integrator, Scene};
 use fosssim_num::printed::general;
@@ -215,7 +215,7 @@ const fn integrator_name(integrator: Integrator) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fosssim_judge::{FindingCounts, Kind, Overall};
+    use fosssim_judge::{FindingKind, Overall, parity};
     use fosssim_model::{
         scene::Collision,
         sim::{Impulse, Pair, PairKind, SearchCounts},
@@ -238,14 +238,11 @@ mod tests {
     }
 
     fn outcome(overall: Overall, stop: Option<Stop>) -> Outcome {
+        let residuals =
+            Residuals { accumulated_position: 0.002_828_427, maximum_position: 1e-10, ..Default::default() };
+        let collisions_passed = (overall != Overall::None).then_some(false);
         Outcome {
-            overall,
-            residuals: Residuals { accumulated_position: 0.002_828_427, maximum_position: 1e-10, ..Default::default() },
-            collisions_passed: (overall != Overall::None).then_some(false),
-            counts: FindingCounts::default(),
-            wrong_steps: 0,
-            examples: Vec::new(),
-            first_divergence: None,
+            parity: parity::Judgement { overall, residuals, collisions_passed, ..Default::default() },
             steps_judged: 0,
             steps: 0,
             records_per_step: 1,
@@ -320,7 +317,7 @@ mod tests {
             transcript.begins();
             steps(transcript, 1..=59);
             transcript.step_begins(60);
-            transcript.step_judged(60, &[missed, Remark::Polynomials(Kind::PolynomialDegree, 2)]);
+            transcript.step_judged(60, &[missed, Remark::Polynomials(FindingKind::PolynomialDegree, 2)]);
             steps(transcript, 61..=200);
             transcript.graded(&outcome(Overall::Failed, None));
         });

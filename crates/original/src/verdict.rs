@@ -13,16 +13,16 @@ const NAMES: [&str; 4] = [
 
 /// The lines after the file has been closed: with verdict, or without one when grading did not come to its end.
 pub(crate) fn lines(outcome: &Outcome) -> String {
-    if outcome.overall == Overall::None {
-        return incomplete(&outcome.residuals);
+    if outcome.parity.overall == Overall::None {
+        return incomplete(&outcome.parity.residuals);
     }
     let mut text = String::new();
-    for (name, (value, bound)) in NAMES.into_iter().zip(outcome.residuals.with_bounds()) {
+    for (name, (value, bound)) in NAMES.into_iter().zip(outcome.parity.residuals.with_bounds()) {
         text += &format!("{name}: {}   {}\n", general(value), passed(value < bound));
     }
-    let collisions = if outcome.collisions_passed == Some(true) { "Yes." } else { "No." };
+    let collisions = if outcome.parity.collisions_passed == Some(true) { "Yes." } else { "No." };
     text += &format!("Collisions Passed: {collisions}\n");
-    text += &format!("Overall success: {}\n", passed(outcome.overall == Overall::Passed));
+    text += &format!("Overall success: {}\n", passed(outcome.parity.overall == Overall::Passed));
     text += &format!("{PINK}FOSSSim message: {PLAIN}Saved residual to residual.txt.\n");
     text
 }
@@ -43,11 +43,11 @@ pub(crate) fn incomplete(residuals: &Residuals) -> String {
 /// end; the file is not written then.
 #[must_use]
 pub(crate) fn residual_file(outcome: &Outcome) -> Option<String> {
-    if outcome.overall == Overall::None {
+    if outcome.parity.overall == Overall::None {
         return None;
     }
     let line = |(value, bound): (f64, f64)| format!("{}   {}\n", u8::from(value < bound), general(value));
-    Some(outcome.residuals.with_bounds().into_iter().map(line).collect())
+    Some(outcome.parity.residuals.with_bounds().into_iter().map(line).collect())
 }
 
 const fn passed(yes: bool) -> &'static str {

@@ -3,7 +3,7 @@
 //! `schemas/check.schema.json` documents the shape of a check. A field's meaning never changes within one schema
 //! version; fields may be added.
 use super::number;
-use fosssim_judge::{Detail, Finding, Kind, PolynomialPlace, Rescaled};
+use fosssim_judge::{Finding, FindingDetail, FindingKind, PolynomialPlace, Rescaled};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage},
     trace::LoggedImpulse,
@@ -203,12 +203,12 @@ impl From<&Rescaled> for RescaledView {
 
 /// The bound that a kind's distance is held to.
 #[must_use]
-pub const fn tolerance(kind: Kind) -> Option<f64> {
+pub const fn tolerance(kind: FindingKind) -> Option<f64> {
     use fosssim_num::tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL};
     match kind {
-        Kind::WrongNormal => Some(PARITY_NORMAL),
-        Kind::Coefficient => Some(PARITY_COEFFICIENT),
-        Kind::Position | Kind::Velocity => Some(PARITY_MAXIMUM),
+        FindingKind::WrongNormal => Some(PARITY_NORMAL),
+        FindingKind::Coefficient => Some(PARITY_COEFFICIENT),
+        FindingKind::Position | FindingKind::Velocity => Some(PARITY_MAXIMUM),
         _ => None,
     }
 }
@@ -244,50 +244,53 @@ impl From<&Finding> for FindingView {
 }
 
 impl FindingView {
-    fn fill(&mut self, detail: &Detail) {
+    fn fill(&mut self, detail: &FindingDetail) {
         match detail {
-            Detail::MissedCollision { expected } => {
+            FindingDetail::MissedCollision { expected } => {
                 self.pair = Some(expected.pair.into());
                 self.expected = Some(Value::Collision(expected.into()));
             }
-            Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
+            FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
                 self.pair = Some(actual.into());
                 self.actual = Some(Value::Collision(actual.into()));
             }
-            Detail::WrongNormal { expected, actual, residual } => {
+            FindingDetail::WrongNormal { expected, actual, residual } => {
                 self.pair = Some(expected.pair.into());
                 self.compare(Value::Collision(expected.into()), Value::Collision(actual.into()));
                 self.residual = Some(Number(*residual));
             }
-            Detail::ContactTime { expected, actual } => {
+            FindingDetail::ContactTime { expected, actual } => {
                 self.pair = Some(expected.pair.into());
                 self.compare(Value::Collision(expected.into()), Value::Collision(actual.into()));
             }
-            Detail::PassPositions { place } | Detail::TrimmedDecision { place, .. } | Detail::MixedForms { place } => {
+            FindingDetail::PassPositions { place }
+            | FindingDetail::TrimmedDecision { place, .. }
+            | FindingDetail::MixedForms { place } => {
                 self.pair = Some(place.pair.into());
             }
-            Detail::TrimmedTime { place, expected, actual } => {
+            FindingDetail::TrimmedTime { place, expected, actual } => {
                 self.pair = Some(place.pair.into());
                 self.compare(Value::Number(Number(*expected)), Value::Number(Number(*actual)));
             }
-            Detail::BeyondReach { particle, position, .. } => {
+            FindingDetail::BeyondReach { particle, position, .. } => {
                 self.particle = Some(*particle);
                 self.actual = Some(Value::Numbers(numbers(position)));
             }
-            Detail::RecordsDiffer { .. } | Detail::ImpossibleLog => {}
-            Detail::PolynomialCount { expected, actual, .. } | Detail::PassCount { expected, actual, .. } => {
+            FindingDetail::RecordsDiffer { .. } | FindingDetail::ImpossibleLog => {}
+            FindingDetail::PolynomialCount { expected, actual, .. }
+            | FindingDetail::PassCount { expected, actual, .. } => {
                 self.compare(Value::Count(*expected), Value::Count(*actual));
             }
-            Detail::PolynomialDegree { place, expected, actual_size, actual } => {
+            FindingDetail::PolynomialDegree { place, expected, actual_size, actual } => {
                 self.place(place, expected.coefficients(), actual.coefficients());
                 self.compare(Value::Count(expected.coefficients().len()), Value::Count(*actual_size));
             }
-            Detail::VanishingPolynomial { place, expected, actual } => {
+            FindingDetail::VanishingPolynomial { place, expected, actual } => {
                 let (expected, actual) = (expected.coefficients(), actual.coefficients());
                 self.place(place, expected, actual);
                 self.compare(Value::Numbers(numbers(expected)), Value::Numbers(numbers(actual)));
             }
-            Detail::Coefficient {
+            FindingDetail::Coefficient {
                 place,
                 power,
                 expected,
@@ -303,8 +306,8 @@ impl FindingView {
                 self.compare(Value::Number(Number(*expected)), Value::Number(Number(*actual)));
                 self.residual = Some(Number(*residual));
             }
-            Detail::Position { particle, expected, actual, residual }
-            | Detail::Velocity { particle, expected, actual, residual } => {
+            FindingDetail::Position { particle, expected, actual, residual }
+            | FindingDetail::Velocity { particle, expected, actual, residual } => {
                 self.particle = Some(*particle);
                 self.compare(Value::Numbers(numbers(expected)), Value::Numbers(numbers(actual)));
                 self.residual = Some(Number(*residual));

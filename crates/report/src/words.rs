@@ -9,7 +9,7 @@ use fosssim_grading::{
     },
     told::{ToldBook, ToldFinding, ToldPlace},
 };
-use fosssim_judge::{Kind, PairWords, Unreadable, share};
+use fosssim_judge::{FindingKind, PairWords, Unreadable, share};
 
 /// The exit code of shells and loaders that did not find what they were to run.
 const NOT_FOUND: i32 = 127;
@@ -221,8 +221,8 @@ pub(crate) fn first_divergence(first: &ToldFinding) -> String {
 fn counts(account: &ToldBook) -> Option<String> {
     let counts = &account.counts;
     // What is found in damaged records alone has no example, and says nothing about the program.
-    let has_example = |kind: Kind| account.examples.iter().any(|example| example.kind() == kind);
-    let list: Vec<String> = Kind::ALL
+    let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);
+    let list: Vec<String> = FindingKind::ALL
         .into_iter()
         .filter(|&kind| counts.get(kind) > 0 && has_example(kind))
         .map(|kind| format!("{kind}: {}", counts.get(kind)))

@@ -13,7 +13,7 @@ use crate::{
     evidence::{self, StepRulings},
     judge::{
         Outcome, Overall, Rules, Stop, Unreadable, fair,
-        parity::{self, Progress, Remark, WrongStep},
+        replay::{self, Progress, Remark, WrongStep},
     },
     report::{
         self,
@@ -40,11 +40,11 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
     let rules: Rules = arguments.rules.into();
-    let options = parity::Options {
+    let options = replay::Options {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
         root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded },
         fair: rules.ask_fair(),
-        ..parity::Options::default()
+        ..replay::Options::default()
     };
     let steps = scene.scene.steps();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
@@ -164,7 +164,7 @@ impl Progress for Heard {
 fn is_wrong(outcome: &Outcome) -> bool {
     match &outcome.fair {
         Some(fair) => fair.verdict == fair::FairVerdict::Rejected,
-        None => outcome.overall != Overall::Passed,
+        None => outcome.parity.overall != Overall::Passed,
     }
 }
 

@@ -12,7 +12,7 @@ use crate::{
     },
     diagnose::{self, Explanation, Keep, examine},
     evidence::StepRulings,
-    judge::{Rules, fair::FairVerdict, parity::Options},
+    judge::{Rules, fair::FairVerdict, replay::Options},
     report::{
         check::stopped,
         diagnosis::{Case, Diagnosis},
@@ -95,7 +95,7 @@ fn case(
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
     let explanations = if fair.verdict == FairVerdict::Accepted { Vec::new() } else { examined.explain() };
-    let first = fair.first_divergence.as_ref().and_then(|first| hints.finding(first));
+    let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.finding(first));
     let explanations = hints.cut(explanations);
     let draws = arguments.format == ExplainFormat::Html && !accepted;
     let card = draws.then(|| {

@@ -4,7 +4,7 @@ use crate::{
     cli::output,
     diagnose::Explanation,
     evidence::{self, Evidence, Focus, StepRulings, Track},
-    judge::{Outcome, Rules, parity},
+    judge::{Outcome, Rules, replay},
     report::{
         check::{Check, StepChoice, WrongSteps},
         page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
@@ -122,10 +122,10 @@ pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: b
     }
     if recorded {
         let again = guarded(|| {
-            let options = parity::Options { threads: 1, fair: true, ..parity::Options::default() };
+            let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
             let mut nobody = ();
             let mut rulings = StepRulings::new(&mut nobody);
-            let outcome = parity::judge(&judged.task.scene, judged.trace, &options, &mut rulings);
+            let outcome = replay::judge(&judged.task.scene, judged.trace, &options, &mut rulings);
             (rulings.into_steps(&outcome), outcome)
         });
         // What failed while drawing costs nobody's points.
@@ -187,8 +187,8 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
 
 /// What a viewer is to look at closely: what both books found, the official one's first.
 pub(super) fn focus(outcome: &Outcome) -> Vec<Focus> {
-    let fair = outcome.fair.iter().flat_map(|fair| fair.first_divergence.iter().chain(&fair.examples));
-    fair.chain(&outcome.first_divergence).chain(&outcome.examples).map(Focus::from).collect()
+    let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
+    books.flat_map(|book| book.first_divergence.iter().chain(&book.examples)).map(Focus::from).collect()
 }
 
 /// The run of the reference with the mistake that is named, beside the trace.

@@ -9,7 +9,7 @@ use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
     diagnose::{self, Keep, examine},
     evidence::StepRulings,
-    judge::parity::Options,
+    judge::replay::Options,
     report::grade::{Format, Text, TextDetail, rehearse},
     sandbox::{self, Ended},
     suite::{

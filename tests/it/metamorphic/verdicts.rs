@@ -3,7 +3,7 @@ use super::{built_in, transform::Map};
 use fosssim_oracle::{
     judge::{
         fair::FairVerdict,
-        parity::{Options, judge},
+        replay::{Options, judge},
     },
     scene::Scene,
     student::{self, Student},

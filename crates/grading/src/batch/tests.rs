@@ -8,7 +8,7 @@ use crate::{
     told::ToldFinding,
     verdict::Verdict,
 };
-use fosssim_judge::{Detail, Rules, fair::Cause};
+use fosssim_judge::{FindingDetail, Rules, fair::Cause};
 use fosssim_sandbox::Job;
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ fn first_divergence(result: &SceneResult) -> (u32, usize) {
     let told = result.told.as_ref().expect("full hints");
     match &told.official().first_divergence {
         Some(ToldFinding::Full(finding)) => match finding.detail {
-            Detail::Position { particle, .. } => (finding.step, particle),
+            FindingDetail::Position { particle, .. } => (finding.step, particle),
             other => panic!("{other:?}"),
         },
         other => panic!("{other:?}"),

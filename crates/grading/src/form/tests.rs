@@ -10,8 +10,8 @@ use crate::{
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{
-    Book, Damage, Detail, Finding, FindingCounts, Kind, Part, PolynomialPlace, RecordPart, Rescaled, Residuals, Role,
-    Ruling, Unreadable, fair::Cause,
+    Book, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Rescaled,
+    Residuals, Role, Ruling, Unreadable, fair::Cause,
 };
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
@@ -50,20 +50,20 @@ fn findings() -> Vec<Finding> {
     let polynomial = Polynomial::untrimmed(&[1e-300, f64::NEG_INFINITY, 0.3]);
     let rescaled = Rescaled { power: 1, expected: 1.0, actual: 2.5, residual: 1.5 };
     let details = [
-        Detail::MissedCollision { expected },
-        Detail::SuperfluousCollision { actual },
-        Detail::WrongNormal { expected, actual, residual: 0.7 },
-        Detail::PolynomialCount { expected: 4, actual: 8, per_pass: 4 },
-        Detail::PassCount { part: Part::Impulses, expected: 1, actual: 2 },
-        Detail::PassCount { part: Part::Geometric, expected: 1, actual: 2 },
-        Detail::PolynomialDegree {
+        FindingDetail::MissedCollision { expected },
+        FindingDetail::SuperfluousCollision { actual },
+        FindingDetail::WrongNormal { expected, actual, residual: 0.7 },
+        FindingDetail::PolynomialCount { expected: 4, actual: 8, per_pass: 4 },
+        FindingDetail::PassCount { part: Part::Impulses, expected: 1, actual: 2 },
+        FindingDetail::PassCount { part: Part::Geometric, expected: 1, actual: 2 },
+        FindingDetail::PolynomialDegree {
             place: first,
             expected: polynomial,
             actual_size: 9,
             actual: Polynomial::untrimmed(&[]),
         },
-        Detail::VanishingPolynomial { place: second, expected: polynomial, actual: polynomial },
-        Detail::Coefficient {
+        FindingDetail::VanishingPolynomial { place: second, expected: polynomial, actual: polynomial },
+        FindingDetail::Coefficient {
             place: third,
             power: 2,
             expected: 0.1,
@@ -73,19 +73,19 @@ fn findings() -> Vec<Finding> {
             expected_polynomial: polynomial,
             actual_polynomial: polynomial,
         },
-        Detail::Position { particle: 2, expected: [0.1, 0.2], actual: [-0.0, 1e17], residual: f64::INFINITY },
-        Detail::Velocity { particle: 2, expected: [0.1, 0.2], actual: [0.3, 0.4], residual: 0.5 },
-        Detail::ContactTime { expected, actual },
-        Detail::RepeatedCollision { actual },
-        Detail::PassPositions { place: last },
-        Detail::RecordsDiffer { part: RecordPart::State },
-        Detail::RecordsDiffer { part: RecordPart::Impulses },
-        Detail::RecordsDiffer { part: RecordPart::Polynomials },
-        Detail::ImpossibleLog,
-        Detail::TrimmedDecision { place: last, collides: true },
-        Detail::TrimmedTime { place: last, expected: 0.5, actual: 2.0 },
-        Detail::BeyondReach { particle: 0, position: [1e300, 0.0], velocity: [0.0, f64::NEG_INFINITY] },
-        Detail::MixedForms { place: last },
+        FindingDetail::Position { particle: 2, expected: [0.1, 0.2], actual: [-0.0, 1e17], residual: f64::INFINITY },
+        FindingDetail::Velocity { particle: 2, expected: [0.1, 0.2], actual: [0.3, 0.4], residual: 0.5 },
+        FindingDetail::ContactTime { expected, actual },
+        FindingDetail::RepeatedCollision { actual },
+        FindingDetail::PassPositions { place: last },
+        FindingDetail::RecordsDiffer { part: RecordPart::State },
+        FindingDetail::RecordsDiffer { part: RecordPart::Impulses },
+        FindingDetail::RecordsDiffer { part: RecordPart::Polynomials },
+        FindingDetail::ImpossibleLog,
+        FindingDetail::TrimmedDecision { place: last, collides: true },
+        FindingDetail::TrimmedTime { place: last, expected: 0.5, actual: 2.0 },
+        FindingDetail::BeyondReach { particle: 0, position: [1e300, 0.0], velocity: [0.0, f64::NEG_INFINITY] },
+        FindingDetail::MixedForms { place: last },
     ];
     details.into_iter().map(|detail| Finding { step: 7, frame: 14, detail }).collect()
 }
@@ -99,7 +99,7 @@ fn wrong() -> SceneResult {
         ToldPlace::Objects(-1, i32::MAX),
     ];
     let mut counts = FindingCounts::default();
-    for (number, kind) in Kind::ALL.into_iter().enumerate() {
+    for (number, kind) in FindingKind::ALL.into_iter().enumerate() {
         counts.add(kind, u64::MAX / 20 * (number as u64 % 2));
     }
     let account = ToldBook {
@@ -109,7 +109,7 @@ fn wrong() -> SceneResult {
         first_divergence: examples.first().cloned(),
         examples,
     };
-    let told = |place| ToldFinding::Place { step: 0, kind: Kind::MixedForms, place };
+    let told = |place| ToldFinding::Place { step: 0, kind: FindingKind::MixedForms, place };
     let fair = ToldBook {
         ruling: Ruling::BadTrace,
         first_divergence: None,
@@ -118,7 +118,7 @@ fn wrong() -> SceneResult {
     };
     let residuals = Residuals { accumulated_position: f64::INFINITY, maximum_position: 0.1, ..Residuals::default() };
     let damage = Damage { frame: 1, step: 2, offset: 3, message: "\u{1b}[31m\n\"".to_owned() };
-    let why = Reason::Wrong(Wrong::Steps { wrong: 3, first: 7, kind: Kind::Coefficient });
+    let why = Reason::Wrong(Wrong::Steps { wrong: 3, first: 7, kind: FindingKind::Coefficient });
     SceneResult {
         ended: Some(Ended::Exited(0)),
         differs: Some(Cause::ContactTime),
@@ -146,7 +146,7 @@ fn a_result_reads_back_the_same_to_the_last_bit() {
     let result = wrong();
     // Equality does not see the sign of a zero; this does.
     assert_eq!(format!("{:?}", again(&result)), format!("{result:?}"));
-    let nan = Detail::WrongNormal {
+    let nan = FindingDetail::WrongNormal {
         expected: Impulse { pair: pair(PairKind::ParticleEdge), normal: Vec2::new(0.0, 1.0), time: f64::NAN },
         actual: LoggedImpulse { kind: 0, first: 0, second: 0, normal: Vec2::new(f64::NAN, 0.0), time: 0.0 },
         residual: f64::NAN,
@@ -177,7 +177,7 @@ fn every_reason_and_every_end_reads_back() {
         Reason::Stopped,
         Reason::DoesNotBuild,
     ];
-    let wrong = [Wrong::Untold, Wrong::FirstRecord(Kind::Position), Wrong::Damaged, Wrong::SmallErrors];
+    let wrong = [Wrong::Untold, Wrong::FirstRecord(FindingKind::Position), Wrong::Damaged, Wrong::SmallErrors];
     reasons.extend(wrong.map(Reason::Wrong));
     reasons.extend(errors.map(|error| Reason::Trace(BadTrace::NoResult(error))));
     reasons.extend(causes.map(|cause| Reason::Trace(unreadable(cause))));

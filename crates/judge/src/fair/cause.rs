@@ -4,8 +4,9 @@
 //! original's rules are is written in oracle-behaviour.md 4 to 6, why they can't be trusted in numerics.md 1.
 use super::judgement::{FairRefusal, FairVerdict, Form, Judgement};
 use crate::{
-    finding::{Detail, Finding, Role},
-    outcome::{Outcome, Overall},
+    finding::{Finding, FindingDetail, Role},
+    outcome::Outcome,
+    parity::Overall,
 };
 use fosssim_model::sim::PairKind;
 
@@ -164,7 +165,7 @@ impl std::fmt::Display for Cause {
 #[must_use]
 pub fn cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
-    match (outcome.overall, fair.verdict) {
+    match (outcome.parity.overall, fair.verdict) {
         (Overall::Failed, FairVerdict::Accepted) => Some(too_strict(outcome, fair)),
         (Overall::Passed, FairVerdict::Rejected) => Some(too_lax(outcome, fair)),
         _ => None,
@@ -173,25 +174,25 @@ pub fn cause(outcome: &Outcome) -> Option<Cause> {
 
 /// Parity fails what fair accepts.
 fn too_strict(outcome: &Outcome, fair: &Judgement) -> Cause {
-    let Some(first) = &outcome.first_divergence else { return Cause::AccumulatedResiduals };
+    let Some(first) = &outcome.parity.findings.first_divergence else { return Cause::AccumulatedResiduals };
     // Not all borderline decisions are kept as examples; one that is not may be the one.
     let is_borderline = fair.borderline > fair.borderline_examples.len() as u64
         || fair.borderline_examples.iter().any(|decision| decision.step == first.step);
     match &first.detail {
-        Detail::Coefficient { place, .. } if is_approach_of_edge(place.role, place.pair.kind) => {
+        FindingDetail::Coefficient { place, .. } if is_approach_of_edge(place.role, place.pair.kind) => {
             if fair.form == Form::Right { Cause::ApproachForm } else { Cause::AbsoluteCoefficients }
         }
-        Detail::PolynomialDegree { place, .. }
+        FindingDetail::PolynomialDegree { place, .. }
             if fair.form == Form::Right && is_approach_of_edge(place.role, place.pair.kind) =>
         {
             Cause::ApproachForm
         }
-        Detail::Coefficient { .. } => Cause::AbsoluteCoefficients,
-        Detail::PolynomialDegree { .. } => Cause::DroppedCoefficients,
-        Detail::VanishingPolynomial { .. } => Cause::VanishingPolynomial,
-        Detail::WrongNormal { .. } => Cause::AbsoluteNormals,
+        FindingDetail::Coefficient { .. } => Cause::AbsoluteCoefficients,
+        FindingDetail::PolynomialDegree { .. } => Cause::DroppedCoefficients,
+        FindingDetail::VanishingPolynomial { .. } => Cause::VanishingPolynomial,
+        FindingDetail::WrongNormal { .. } => Cause::AbsoluteNormals,
         _ if is_borderline => Cause::BorderlineDecision,
-        Detail::Position { .. } | Detail::Velocity { .. } => Cause::AbsoluteStates,
+        FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => Cause::AbsoluteStates,
         // A certain decision that differs all the same: it follows from the right form.
         _ if fair.form == Form::Right => Cause::ApproachForm,
         _ => Cause::BorderlineDecision,
@@ -206,41 +207,44 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
 fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     match fair.refusal {
         Some(FairRefusal::Damaged) => return Cause::Damage,
-        Some(FairRefusal::TrailingBytes) if fair.counts.total() == 0 => return Cause::TrailingBytes,
+        Some(FairRefusal::TrailingBytes) if fair.findings.counts.total() == 0 => return Cause::TrailingBytes,
         // The original came to its end: it is the trace's own polynomials that lead nowhere.
         Some(FairRefusal::Stopped) => return Cause::OwnPolynomials,
         _ => {}
     }
-    let Some(first) = &fair.first_divergence else { return Cause::SmallErrors };
+    let Some(first) = &fair.findings.first_divergence else { return Cause::SmallErrors };
     if first.step == 0 {
         return Cause::FirstRecord;
     }
     match &first.detail {
-        Detail::RecordsDiffer { .. } | Detail::PassCount { .. } => Cause::MidRecord,
-        Detail::Position { .. } | Detail::Velocity { .. } if is_mid_record(first, outcome) => Cause::MidRecord,
-        Detail::ContactTime { .. } => Cause::ContactTime,
-        Detail::RepeatedCollision { .. } => Cause::RepeatedCollision,
-        Detail::ImpossibleLog => Cause::ImpossibleLog,
-        Detail::WrongNormal { residual, .. } if residual.is_nan() => Cause::NotANumber,
-        Detail::Coefficient { actual_polynomial, .. } | Detail::PolynomialDegree { actual: actual_polynomial, .. }
+        FindingDetail::RecordsDiffer { .. } | FindingDetail::PassCount { .. } => Cause::MidRecord,
+        FindingDetail::Position { .. } | FindingDetail::Velocity { .. } if is_mid_record(first, outcome) => {
+            Cause::MidRecord
+        }
+        FindingDetail::ContactTime { .. } => Cause::ContactTime,
+        FindingDetail::RepeatedCollision { .. } => Cause::RepeatedCollision,
+        FindingDetail::ImpossibleLog => Cause::ImpossibleLog,
+        FindingDetail::WrongNormal { residual, .. } if residual.is_nan() => Cause::NotANumber,
+        FindingDetail::Coefficient { actual_polynomial, .. }
+        | FindingDetail::PolynomialDegree { actual: actual_polynomial, .. }
             if actual_polynomial.coefficients().iter().any(|c| !c.is_finite()) =>
         {
             Cause::NotANumber
         }
-        Detail::MissedCollision { .. }
-        | Detail::SuperfluousCollision { .. }
-        | Detail::TrimmedDecision { .. }
-        | Detail::TrimmedTime { .. }
-        | Detail::PolynomialCount { .. } => Cause::OwnPolynomials,
-        Detail::WrongNormal { .. }
-        | Detail::PolynomialDegree { .. }
-        | Detail::VanishingPolynomial { .. }
-        | Detail::Coefficient { .. }
-        | Detail::Position { .. }
-        | Detail::BeyondReach { .. }
-        | Detail::Velocity { .. }
-        | Detail::PassPositions { .. }
-        | Detail::MixedForms { .. } => Cause::SmallErrors,
+        FindingDetail::MissedCollision { .. }
+        | FindingDetail::SuperfluousCollision { .. }
+        | FindingDetail::TrimmedDecision { .. }
+        | FindingDetail::TrimmedTime { .. }
+        | FindingDetail::PolynomialCount { .. } => Cause::OwnPolynomials,
+        FindingDetail::WrongNormal { .. }
+        | FindingDetail::PolynomialDegree { .. }
+        | FindingDetail::VanishingPolynomial { .. }
+        | FindingDetail::Coefficient { .. }
+        | FindingDetail::Position { .. }
+        | FindingDetail::BeyondReach { .. }
+        | FindingDetail::Velocity { .. }
+        | FindingDetail::PassPositions { .. }
+        | FindingDetail::MixedForms { .. } => Cause::SmallErrors,
     }
 }
 

@@ -5,7 +5,7 @@ use super::{
     sensitivity::Deviation,
     step_judgement::StepJudgement,
 };
-use crate::finding::{Detail, Finding};
+use crate::finding::{Finding, FindingDetail};
 use fosssim_model::{
     scene::Collision,
     sim::{Decision, Impulse, Pair, State},
@@ -89,11 +89,11 @@ pub(super) fn hit(
     own: Impulse,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
-) -> Option<Detail> {
+) -> Option<FindingDetail> {
     if actual.time != own.time {
         let fits = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time, value));
         if !fits {
-            return Some(Detail::ContactTime { expected: own, actual: *actual });
+            return Some(FindingDetail::ContactTime { expected: own, actual: *actual });
         }
     }
     let (normal, tolerance) = match known {
@@ -111,20 +111,20 @@ pub(super) fn possible_hit(
     pair: Pair,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
-) -> Option<Detail> {
+) -> Option<FindingDetail> {
     let Some((motion, expected)) = known else {
         // Overlaps at the end of the step have no time, and the normal at its end.
         let normal = overlap_normal(context, pair, &records.end.state.positions);
         let expected = Impulse { pair, normal, time: 0.0 };
         if actual.time != 0.0 {
-            return Some(Detail::ContactTime { expected, actual: *actual });
+            return Some(FindingDetail::ContactTime { expected, actual: *actual });
         }
         return compare_normal(expected, simple_tolerance(context, records), actual, judged);
     };
     if !is_possible(expected, actual.time, value) {
         let time = possible_time(expected);
         let (normal, _) = normal(motion, time);
-        return Some(Detail::ContactTime { expected: Impulse { pair, normal, time }, actual: *actual });
+        return Some(FindingDetail::ContactTime { expected: Impulse { pair, normal, time }, actual: *actual });
     }
     let (normal, tolerance) = normal(motion, actual.time);
     compare_normal(Impulse { pair, normal, time: actual.time }, tolerance, actual, judged)
@@ -148,10 +148,10 @@ fn compare_normal(
     tolerance: f64,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
-) -> Option<Detail> {
+) -> Option<FindingDetail> {
     let residual = length(actual.normal - expected.normal);
     if !(residual <= tolerance) {
-        return Some(Detail::WrongNormal { expected, actual: *actual, residual });
+        return Some(FindingDetail::WrongNormal { expected, actual: *actual, residual });
     }
     if residual > 0.0 {
         judged.shares.normal = judged.shares.normal.max(residual / tolerance);
@@ -200,7 +200,8 @@ pub(super) fn states(
         let (expected, actual) = (at(&own.positions, particle), at(&logged.positions, particle));
         let residual = distance(expected, actual);
         if !(residual <= position_tolerance) {
-            let detail = Detail::Position { particle, expected: expected.into(), actual: actual.into(), residual };
+            let detail =
+                FindingDetail::Position { particle, expected: expected.into(), actual: actual.into(), residual };
             judged.charge(Finding { step: judged.step, frame, detail });
             continue;
         }
@@ -209,7 +210,7 @@ pub(super) fn states(
         let velocity_residual = distance(expected, actual);
         if !(velocity_residual <= velocity_tolerance) {
             let (expected, actual, residual) = (expected.into(), actual.into(), velocity_residual);
-            let detail = Detail::Velocity { particle, expected, actual, residual };
+            let detail = FindingDetail::Velocity { particle, expected, actual, residual };
             judged.charge(Finding { step: judged.step, frame, detail });
             continue;
         }

@@ -1,7 +1,7 @@
 //! Traces that no program wrote in earnest: each shows what the fair rules must not fall for.
 use super::{FairRefusal, FairVerdict, Judgement};
 use crate::{
-    finding::{Detail, Kind},
+    finding::{FindingDetail, FindingKind},
     samples::{BOUNCE, ZONES, changed, judged, relog, run, scene, written},
 };
 use fosssim_model::{
@@ -95,7 +95,7 @@ fn a_factor_of_each_polynomial_must_not_change_what_happens() {
 fn ordinary_factors_are_accepted() {
     for (name, scene) in assets() {
         let judged = fair(&scene, &written(&scene, &run(&scene, Factors(|_, _| 1, 0))));
-        assert_eq!(judged.verdict, FairVerdict::Accepted, "{name}: {:?}", judged.first_divergence);
+        assert_eq!(judged.verdict, FairVerdict::Accepted, "{name}: {:?}", judged.findings.first_divergence);
     }
 }
 
@@ -133,11 +133,11 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     assert_eq!(without.borderline + right.borderline, 1, "one of them is the reference's");
     for (time, x, y) in [(1.0, 0.5, -0.08), (1.0, 0.06, 0.08), (1.0, f64::NAN, -0.08), (1.0, -0.07, -0.08)] {
         let judged = with(time, x, y);
-        assert_eq!(judged.counts.get(Kind::WrongNormal), 1, "{x} {y}: {judged:?}");
+        assert_eq!(judged.findings.counts.get(FindingKind::WrongNormal), 1, "{x} {y}: {judged:?}");
     }
     for time in [0.0, 0.44, 0.999, 1.001, f64::NAN, -1.0] {
         let judged = with(time, -0.06, -0.08);
-        assert_eq!(judged.counts.get(Kind::ContactTime), 1, "{time}: {judged:?}");
+        assert_eq!(judged.findings.counts.get(FindingKind::ContactTime), 1, "{time}: {judged:?}");
     }
 }
 
@@ -210,9 +210,9 @@ fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let scene = scene(LEAVE);
     let empty = |frames: &mut [Frame]| frames.iter_mut().for_each(|frame| relog(frame, |_, _| vec![]));
     let judged = fair(&scene, &changed(&scene, |frames| empty(frames)));
-    let first = judged.first_divergence.expect("the first empty polynomial");
-    assert_eq!((judged.wrong_steps, first.step), (4, 1), "{judged:?}");
-    assert!(matches!(first.detail, Detail::Coefficient { .. }), "{first:?}");
+    let first = judged.findings.first_divergence.expect("the first empty polynomial");
+    assert_eq!((judged.findings.wrong_steps, first.step), (4, 1), "{judged:?}");
+    assert!(matches!(first.detail, FindingDetail::Coefficient { .. }), "{first:?}");
     // The fourth step's end is wrong, too: the empty polynomial of the second still comes first.
     let judged = fair(
         &scene,
@@ -221,7 +221,11 @@ fn polynomials_that_hang_on_factors_count_in_their_steps() {
             frames[8].state.positions[0] += 0.25;
         }),
     );
-    assert_eq!((judged.wrong_steps, judged.first_divergence.map(|first| first.step)), (2, Some(2)), "{judged:?}");
+    assert_eq!(
+        (judged.findings.wrong_steps, judged.findings.first_divergence.map(|first| first.step)),
+        (2, Some(2)),
+        "{judged:?}"
+    );
 }
 
 const NOWHERE: [f64; 7] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e100, -1e100, 1e-160, 0.0];
@@ -260,14 +264,14 @@ fn a_lost_record_spoils_two_steps() {
     );
     for value in [f64::NAN, f64::INFINITY, 1e200] {
         let forged = changed(&scene, |frames| frames[5].state.velocities[1] = value);
-        assert_eq!(fair(&scene, &forged).wrong_steps, 2, "{value}");
+        assert_eq!(fair(&scene, &forged).findings.wrong_steps, 2, "{value}");
         let forged = changed(&scene, |frames| {
             for frame in &mut frames[5..] {
                 frame.state.positions.fill(value);
                 frame.state.velocities.fill(value);
             }
         });
-        assert_eq!(fair(&scene, &forged).wrong_steps, 6, "{value}");
+        assert_eq!(fair(&scene, &forged).findings.wrong_steps, 6, "{value}");
     }
 }
 
@@ -305,5 +309,5 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     assert_eq!(plain.verdict, FairVerdict::Accepted);
     let forged = fair(&scene, &written(&scene, &run(&scene, Push)));
     assert_eq!(forged.refusal, Some(FairRefusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
-    assert_eq!(forged.counts.total(), 0, "{:?}", forged.first_divergence);
+    assert_eq!(forged.findings.counts.total(), 0, "{:?}", forged.findings.first_divergence);
 }

@@ -1,8 +1,8 @@
 //! The fair verdict on one trace.
 use super::step_judgement::{Borderline, Pending, Scales, Shares, StepJudgement};
 use crate::{
-    counts::FindingCounts,
-    finding::{Detail, Finding},
+    book_findings::BookFindings,
+    finding::{Finding, FindingDetail},
 };
 
 /// So many examples of borderline decisions are kept.
@@ -55,14 +55,8 @@ pub struct Judgement {
     pub verdict: FairVerdict,
     /// Why the trace is refused as a whole, whatever its steps hold.
     pub refusal: Option<FairRefusal>,
-    /// Counts per kind of finding.
-    pub counts: FindingCounts,
-    /// Steps with at least one finding; the initial record is not one.
-    pub wrong_steps: u64,
-    /// The first finding of each kind that occurred, in the order of [`Kind::ALL`](crate::Kind::ALL).
-    pub examples: Vec<Finding>,
-    /// The very first finding.
-    pub first_divergence: Option<Finding>,
+    /// What was found.
+    pub findings: BookFindings,
     /// How many decisions about pairs the trace holds, in all steps and passes.
     pub decisions: u64,
     /// How many borderline decisions the trace has the other way.
@@ -101,7 +95,7 @@ impl Judgement {
     /// Adds what the initial record says.
     pub(crate) fn add_initial(&mut self, initial: &StepJudgement) {
         self.add(initial);
-        self.wrong_steps = 0;
+        self.findings.wrong_steps = 0;
     }
 
     /// Adds a step, in the order of the steps.
@@ -109,7 +103,7 @@ impl Judgement {
         for finding in &step.findings {
             self.charge(*finding);
         }
-        self.counts += step.more;
+        self.findings.counts += step.more;
         self.decisions += step.decisions;
         self.borderline += step.borderline.len() as u64;
         let room = EXAMPLES.saturating_sub(self.borderline_examples.len());
@@ -132,10 +126,14 @@ impl Judgement {
                 self.form = form;
             } else if self.form != form {
                 is_wrong = true;
-                self.charge(Finding { step: step.step, frame: step.frame, detail: Detail::MixedForms { place } });
+                self.charge(Finding {
+                    step: step.step,
+                    frame: step.frame,
+                    detail: FindingDetail::MixedForms { place },
+                });
             }
         }
-        self.wrong_steps += u64::from(is_wrong);
+        self.findings.wrong_steps += u64::from(is_wrong);
         // A range of factors that fits already will fit at the end.
         let hangs = |pending: &&Pending| {
             let (kind, number) = pending.place;
@@ -148,13 +146,8 @@ impl Judgement {
 
     /// Adds a finding.
     pub(crate) fn charge(&mut self, finding: Finding) {
-        self.counts.add(finding.kind(), 1);
-        if self.first_divergence.is_none() {
-            self.first_divergence = Some(finding);
-        }
-        if !self.examples.iter().any(|example| example.kind() == finding.kind()) {
-            self.examples.push(finding);
-        }
+        self.findings.counts.add(finding.kind(), 1);
+        self.findings.keep_first(&finding);
     }
 
     /// Charges what is no round-off with the factors that the trace uses for polynomials of the same kind; with 1, if none tells.
@@ -164,18 +157,18 @@ impl Judgement {
             let (kind, number) = polynomials.place;
             let Some(finding) = polynomials.finding(self.scales[kind][number].unwrap_or([1.0; 2])) else { continue };
             // Steps come in their order, so the polynomials of one stand together.
-            self.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
+            self.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
-            if self.first_divergence.is_some_and(|first| first.step > finding.step) {
-                self.first_divergence = None;
+            if self.findings.first_divergence.is_some_and(|first| first.step > finding.step) {
+                self.findings.first_divergence = None;
             }
-            if let Some(place) = self.examples.iter().position(|known| known.kind() == finding.kind())
-                && self.examples[place].step > finding.step
+            if let Some(place) = self.findings.examples.iter().position(|known| known.kind() == finding.kind())
+                && self.findings.examples[place].step > finding.step
             {
-                self.examples.remove(place);
+                self.findings.examples.remove(place);
             }
             self.charge(finding);
-            self.counts.add(finding.kind(), polynomials.count - 1);
+            self.findings.counts.add(finding.kind(), polynomials.count - 1);
         }
     }
 
@@ -188,8 +181,8 @@ impl Judgement {
     pub(crate) fn conclude(&mut self, refusal: Option<FairRefusal>, complete: bool) {
         self.refusal = self.refusal.or(refusal).or(self.is_undecided().then_some(FairRefusal::Undecided));
         self.settle_pending();
-        self.examples.sort_by_key(Finding::kind);
-        self.verdict = if self.refusal.is_some() || self.counts.total() > 0 {
+        self.findings.conclude();
+        self.verdict = if self.refusal.is_some() || self.findings.counts.total() > 0 {
             FairVerdict::Rejected
         } else if complete {
             FairVerdict::Accepted

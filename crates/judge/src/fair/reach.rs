@@ -10,7 +10,7 @@ use super::{
     step::judge,
     step_judgement::StepJudgement,
 };
-use crate::finding::Detail;
+use crate::finding::FindingDetail;
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation, State},
@@ -71,11 +71,11 @@ impl<'a> Reach<'a> {
     }
 
     /// The first particle that is where the reference never comes near.
-    fn beyond_reach(&self, records: &Records<'_>) -> Option<Detail> {
+    fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
             let particle = beyond(&self.range, state)?;
             let (position, velocity) = (at(&state.positions, particle), at(&state.velocities, particle));
-            Some(Detail::BeyondReach { particle, position: position.into(), velocity: velocity.into() })
+            Some(FindingDetail::BeyondReach { particle, position: position.into(), velocity: velocity.into() })
         })
     }
 

@@ -9,7 +9,7 @@ use super::{
     sensitivity::Sensitivity,
     step_judgement::StepJudgement,
 };
-use crate::finding::{Detail, Finding, RecordPart};
+use crate::finding::{Finding, FindingDetail, RecordPart};
 use fosssim_model::{
     scene::Collision,
     sim::{Simulation, State, StepError},
@@ -59,7 +59,7 @@ pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> Step
     contact::states(context, &mut judged, 0, &state, &frame.state, None);
     if !frame.impulses.is_empty() || !frame.polynomials.is_empty() {
         let part = if frame.impulses.is_empty() { RecordPart::Polynomials } else { RecordPart::Impulses };
-        judged.charge(Finding { step: 0, frame: 0, detail: Detail::RecordsDiffer { part } });
+        judged.charge(Finding { step: 0, frame: 0, detail: FindingDetail::RecordsDiffer { part } });
     }
     judged
 }
@@ -107,18 +107,18 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     let Records { step, frame, mid, end, .. } = records;
     let mut charge = |detail| judged.charge(Finding { step, frame, detail });
     if is_impossible(end) || mid.is_some_and(is_impossible) {
-        charge(Detail::ImpossibleLog);
+        charge(FindingDetail::ImpossibleLog);
     }
     let Some(mid) = mid else { return };
     if mid.impulses.len() != end.impulses.len() || !mid.impulses.iter().zip(&end.impulses).all(same_impulse) {
-        charge(Detail::RecordsDiffer { part: RecordPart::Impulses });
+        charge(FindingDetail::RecordsDiffer { part: RecordPart::Impulses });
     }
     let count = mid.polynomials.len();
     let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
     let whole = if is_hybrid { count <= end.polynomials.len() } else { count == end.polynomials.len() };
     let same = whole && (0..count).all(|index| same_bits(mid.polynomials.get(index), end.polynomials.get(index)));
     if !same {
-        charge(Detail::RecordsDiffer { part: RecordPart::Polynomials });
+        charge(FindingDetail::RecordsDiffer { part: RecordPart::Polynomials });
     }
 }
 

@@ -2,7 +2,7 @@
 use super::context::{Context, Records};
 use crate::{
     counts::FindingCounts,
-    finding::{Detail, Finding, Kind, PolynomialPlace},
+    finding::{Finding, FindingDetail, FindingKind, PolynomialPlace},
 };
 use fosssim_model::sim::{ByKind, Pair, PairKind, Pass};
 
@@ -126,7 +126,7 @@ impl StepJudgement {
     }
 
     /// The same, with one more finding.
-    pub(super) fn also(mut self, records: Records<'_>, detail: Detail) -> Self {
+    pub(super) fn also(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
         (self.step, self.frame) = (records.step, records.frame);
         self.charge(Finding { step: self.step, frame: self.frame, detail });
         self
@@ -170,13 +170,13 @@ impl StepJudgement {
         self.findings.iter().any(|finding| {
             !matches!(
                 finding.kind(),
-                Kind::Coefficient
-                    | Kind::PolynomialDegree
-                    | Kind::WrongNormal
-                    | Kind::ContactTime
-                    | Kind::RepeatedCollision
-                    | Kind::RecordsDiffer
-                    | Kind::ImpossibleLog
+                FindingKind::Coefficient
+                    | FindingKind::PolynomialDegree
+                    | FindingKind::WrongNormal
+                    | FindingKind::ContactTime
+                    | FindingKind::RepeatedCollision
+                    | FindingKind::RecordsDiffer
+                    | FindingKind::ImpossibleLog
             )
         })
     }
@@ -186,7 +186,11 @@ impl StepJudgement {
         self.findings.iter().any(|finding| {
             matches!(
                 finding.kind(),
-                Kind::PolynomialCount | Kind::PassPositions | Kind::Position | Kind::Velocity | Kind::TrimmedDecision
+                FindingKind::PolynomialCount
+                    | FindingKind::PassPositions
+                    | FindingKind::Position
+                    | FindingKind::Velocity
+                    | FindingKind::TrimmedDecision
             )
         })
     }

@@ -12,7 +12,7 @@ use std::{
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
     diagnose::{Explanation, common, known},
-    judge::parity,
+    judge::replay,
     scene::{Scene, original},
     student::{self, CATALOGUE, RowKind, Student},
     suite::scene_files::{self, SceneFile},
@@ -135,8 +135,8 @@ fn explain(
     let time = begin.elapsed();
     let outcome = match explanations.first().cloned() {
         None => {
-            let options = parity::Options { threads: 1, ..parity::Options::default() };
-            match parity::judge(scene, &trace[..], &options, &mut ()).wrong_steps {
+            let options = replay::Options { threads: 1, ..replay::Options::default() };
+            match replay::judge(scene, &trace[..], &options, &mut ()).parity.findings.wrong_steps {
                 0 => Outcome::Unseen,
                 steps => Outcome::Nothing(steps),
             }

@@ -9,7 +9,7 @@ use fosssim_oracle::{
     judge::{
         Overall,
         fair::{FairVerdict, Judgement},
-        parity::{self, Options},
+        replay::{self, Options},
     },
     scene::original,
 };
@@ -75,8 +75,8 @@ fn judge(corpus: &Path, row: &Row) -> anyhow::Result<Option<(Overall, Judgement)
     let scene = original::read(&scene).with_context(|| row.scene.clone())?.scene;
     let trace = zstd::Decoder::new(std::fs::File::open(corpus.join(file))?)?;
     let options = Options { threads: 1, fair: true, ..Options::default() };
-    let outcome = parity::judge(&scene, trace, &options, &mut ());
-    Ok(outcome.fair.map(|fair| (outcome.overall, *fair)))
+    let outcome = replay::judge(&scene, trace, &options, &mut ());
+    Ok(outcome.fair.map(|fair| (outcome.parity.overall, *fair)))
 }
 
 fn reason(fair: &Judgement) -> String {
@@ -84,10 +84,14 @@ fn reason(fair: &Judgement) -> String {
     if let Some(refusal) = fair.refusal {
         parts.push(format!("{refusal:?}"));
     }
-    if let Some(first) = fair.first_divergence {
-        let kinds: Vec<String> =
-            fair.examples.iter().map(|f| format!("{} {}", fair.counts.get(f.kind()), f.kind())).collect();
-        parts.push(format!("{first} [{}; {} steps]", kinds.join(", "), fair.wrong_steps));
+    if let Some(first) = fair.findings.first_divergence {
+        let kinds: Vec<String> = fair
+            .findings
+            .examples
+            .iter()
+            .map(|f| format!("{} {}", fair.findings.counts.get(f.kind()), f.kind()))
+            .collect();
+        parts.push(format!("{first} [{}; {} steps]", kinds.join(", "), fair.findings.wrong_steps));
     }
     if let Some([low, high]) = fair.scale() {
         parts.push(format!("factor {low:.3e}..{high:.3e}"));

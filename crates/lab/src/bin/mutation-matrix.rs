@@ -14,7 +14,7 @@ use std::{
 
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
-    judge::{Kind, Outcome, Overall, fair::FairVerdict, parity::Options},
+    judge::{FindingKind, Outcome, Overall, fair::FairVerdict, replay::Options},
     scene::{Scene, original},
     student::{self, CATALOGUE, KNOWN_REFUSED, Row, Student},
     suite::scene_files::{self, SceneFile},
@@ -43,13 +43,16 @@ const RULE_BOOKS: &[(&str, Rules)] = &[("parity", parity), ("fair", fair)];
 const FAIR: usize = 1;
 
 fn parity(scene: &Scene, trace: &[u8]) -> Answer {
-    if judge(scene, trace, false).overall == Overall::Passed { Answer::Accepted } else { Answer::Refused }
+    if judge(scene, trace, false).parity.overall == Overall::Passed { Answer::Accepted } else { Answer::Refused }
 }
 
 fn fair(scene: &Scene, trace: &[u8]) -> Answer {
     match judge(scene, trace, true).fair {
         Some(fair) if fair.verdict == FairVerdict::Accepted => Answer::Accepted,
-        Some(fair) if fair.refusal.is_none() && fair.counts.get(Kind::TrimmedDecision) == fair.counts.total() => {
+        Some(fair)
+            if fair.refusal.is_none()
+                && fair.findings.counts.get(FindingKind::TrimmedDecision) == fair.findings.counts.total() =>
+        {
             Answer::Lost
         }
         _ => Answer::Refused,
@@ -58,7 +61,7 @@ fn fair(scene: &Scene, trace: &[u8]) -> Answer {
 
 fn judge(scene: &Scene, trace: &[u8], fair: bool) -> Outcome {
     let options = Options { threads: 1, fair, ..Options::default() };
-    fosssim_oracle::judge::parity::judge(scene, trace, &options, &mut ())
+    fosssim_oracle::judge::replay::judge(scene, trace, &options, &mut ())
 }
 
 /// A scene and its correct trace.

@@ -3,7 +3,7 @@ use super::{Explanation, explain::explain_source, source::Source};
 use fosssim_judge::{
     Outcome,
     kept::{Keeper, KeptTrace, LONGEST},
-    parity::{Options, Progress},
+    replay::{Options, Progress},
 };
 use fosssim_model::scene::Scene;
 use std::io::Read;

@@ -4,7 +4,7 @@ use crate::student::{
     self, Area, Student,
     mutants::{Mutant, mutants},
 };
-use fosssim_judge::{fair::FairVerdict, parity::Options};
+use fosssim_judge::{fair::FairVerdict, replay::Options};
 use fosssim_model::{assignments::Assignment, scene::Scene};
 use rayon::prelude::*;
 

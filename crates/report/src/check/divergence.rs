@@ -4,7 +4,7 @@ use super::super::{
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
-use fosssim_judge::{Detail, Finding, PassWords, Power, Rescaled, differing, factor};
+use fosssim_judge::{Finding, FindingDetail, PassWords, Power, Rescaled, differing, factor};
 
 /// The block about one finding, with a heading and without advice.
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
@@ -21,27 +21,29 @@ pub(super) fn block(finding: &Finding, style: Style) -> String {
     format!("  {}\n{}", finding.what(), side_by_side(&finding.detail, style))
 }
 
-fn side_by_side(detail: &Detail, style: Style) -> String {
+fn side_by_side(detail: &FindingDetail, style: Style) -> String {
     match detail {
-        Detail::MissedCollision { expected } => {
+        FindingDetail::MissedCollision { expected } => {
             collision(style, Some((expected.normal.x, expected.normal.y, expected.time)), None)
         }
-        Detail::SuperfluousCollision { actual } | Detail::RepeatedCollision { actual } => {
+        FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
             collision(style, None, Some((actual.normal.x, actual.normal.y, actual.time)))
         }
-        Detail::WrongNormal { expected, actual, .. } | Detail::ContactTime { expected, actual } => collision(
-            style,
-            Some((expected.normal.x, expected.normal.y, expected.time)),
-            Some((actual.normal.x, actual.normal.y, actual.time)),
-        ),
-        Detail::PolynomialCount { expected, actual, per_pass } => {
+        FindingDetail::WrongNormal { expected, actual, .. } | FindingDetail::ContactTime { expected, actual } => {
+            collision(
+                style,
+                Some((expected.normal.x, expected.normal.y, expected.time)),
+                Some((actual.normal.x, actual.normal.y, actual.time)),
+            )
+        }
+        FindingDetail::PolynomialCount { expected, actual, per_pass } => {
             let mut table = Table::new([Align::Left, Align::Right]);
             table.row(["expected".into(), expected.to_string().into()]);
             table.row(["actual".into(), Cell::looking(Look::Bad, actual.to_string())]);
             table.row(["one pass over all pairs".into(), per_pass.to_string().into()]);
             table.render(style)
         }
-        Detail::PolynomialDegree { place, expected, actual_size, actual } => {
+        FindingDetail::PolynomialDegree { place, expected, actual_size, actual } => {
             let more = actual_size.saturating_sub(actual.coefficients().len());
             let mut text = logged_by(place);
             text += &polynomials(expected.coefficients(), actual.coefficients(), style);
@@ -50,10 +52,12 @@ fn side_by_side(detail: &Detail, style: Style) -> String {
             }
             text
         }
-        Detail::VanishingPolynomial { place, expected, actual } => {
+        FindingDetail::VanishingPolynomial { place, expected, actual } => {
             logged_by(place) + &polynomials(expected.coefficients(), actual.coefficients(), style)
         }
-        Detail::Coefficient { place, power, expected, rescaled, expected_polynomial, actual_polynomial, .. } => {
+        FindingDetail::Coefficient {
+            place, power, expected, rescaled, expected_polynomial, actual_polynomial, ..
+        } => {
             let (reference, trace) = (expected_polynomial.coefficients(), actual_polynomial.coefficients());
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
             // The factor that the finding was made with.
@@ -70,20 +74,22 @@ fn side_by_side(detail: &Detail, style: Style) -> String {
             }
             text
         }
-        Detail::Position { expected, actual, .. } | Detail::Velocity { expected, actual, .. } => {
+        FindingDetail::Position { expected, actual, .. } | FindingDetail::Velocity { expected, actual, .. } => {
             vectors(*expected, *actual, style)
         }
-        Detail::PassCount { expected, actual, .. } => {
+        FindingDetail::PassCount { expected, actual, .. } => {
             let mut table = Table::new([Align::Left, Align::Right]);
             table.row(["expected passes".into(), expected.to_string().into()]);
             table.row(["actual".into(), Cell::looking(Look::Bad, actual.to_string())]);
             table.render(style)
         }
-        Detail::PassPositions { place }
-        | Detail::TrimmedDecision { place, .. }
-        | Detail::TrimmedTime { place, .. }
-        | Detail::MixedForms { place } => logged_by(place),
-        Detail::BeyondReach { .. } | Detail::RecordsDiffer { .. } | Detail::ImpossibleLog => String::new(),
+        FindingDetail::PassPositions { place }
+        | FindingDetail::TrimmedDecision { place, .. }
+        | FindingDetail::TrimmedTime { place, .. }
+        | FindingDetail::MixedForms { place } => logged_by(place),
+        FindingDetail::BeyondReach { .. } | FindingDetail::RecordsDiffer { .. } | FindingDetail::ImpossibleLog => {
+            String::new()
+        }
     }
 }
 

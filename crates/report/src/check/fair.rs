@@ -53,12 +53,16 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
             line(format!("  and {} more", count(more)));
         }
     }
-    if !fair.examples.is_empty() {
+    if !fair.findings.examples.is_empty() {
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
         table.heading(["kind", "count", "first example"]);
-        for example in &fair.examples {
+        for example in &fair.findings.examples {
             let kind = example.kind();
-            table.row([kind.to_string().into(), count(fair.counts.get(kind)).into(), example.to_string().into()]);
+            table.row([
+                kind.to_string().into(),
+                count(fair.findings.counts.get(kind)).into(),
+                example.to_string().into(),
+            ]);
         }
         text += &table.render(style);
     }
@@ -84,13 +88,13 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
         }
         None => None,
     };
-    let found = fair.first_divergence.as_ref().map(|first| {
-        let wrong = match fair.wrong_steps {
+    let found = fair.findings.first_divergence.as_ref().map(|first| {
+        let wrong = match fair.findings.wrong_steps {
             0 => "the first record is wrong".to_owned(),
             many => share::wrong(many, outcome.steps, count),
         };
         let first = match first.step {
-            0 if fair.wrong_steps == 0 => String::new(),
+            0 if fair.findings.wrong_steps == 0 => String::new(),
             0 => ", and so is the first record".to_owned(),
             _ if outcome.steps == 1 => String::new(),
             step => format!(", the first is step {step}"),

@@ -85,12 +85,16 @@ impl From<&Judgement> for FairView {
                 FairRefusal::TrailingBytes => "trailing_bytes",
                 FairRefusal::Undecided => "undecided",
             }),
-            wrong_steps: fair.wrong_steps,
-            first_divergence: fair.first_divergence.as_ref().map(FindingView::fair),
+            wrong_steps: fair.findings.wrong_steps,
+            first_divergence: fair.findings.first_divergence.as_ref().map(FindingView::fair),
             findings: fair
+                .findings
                 .examples
                 .iter()
-                .map(|first| CountedView { count: fair.counts.get(first.kind()), first: FindingView::fair(first) })
+                .map(|first| CountedView {
+                    count: fair.findings.counts.get(first.kind()),
+                    first: FindingView::fair(first),
+                })
                 .collect(),
             factor: fair.scale().map(|range| range.map(Number)),
             approach_form: match fair.form {

@@ -25,7 +25,7 @@ use super::{
     view::{CHECK_SCHEMA, FindingView, Number},
 };
 use fair_view::{CauseView, CountedView, FairView};
-use fosssim_judge::{Book, Kind, Outcome, Overall, Rules, Ruling, Stop, Unreadable, fair::cause};
+use fosssim_judge::{Book, FindingKind, Outcome, Overall, Rules, Ruling, Stop, Unreadable, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -107,7 +107,7 @@ impl Check<'_> {
 
     fn view(&self) -> View<'_> {
         let outcome = self.outcome;
-        let residuals = outcome.residuals;
+        let residuals = outcome.parity.residuals;
         let account = outcome.findings_by(self.book());
         let finding = |finding| match self.book() {
             Book::Parity => FindingView::from(finding),
@@ -122,7 +122,7 @@ impl Check<'_> {
             verdict: self.verdict(),
             summary: text::headline(self),
             parity: Parity {
-                overall: match outcome.overall {
+                overall: match outcome.parity.overall {
                     Overall::Passed => "passed",
                     Overall::Failed => "failed",
                     Overall::None => "none",
@@ -131,12 +131,12 @@ impl Check<'_> {
                 accumulated_velocity_residual: Number(residuals.accumulated_velocity),
                 maximum_position_residual: Number(residuals.maximum_position),
                 maximum_velocity_residual: Number(residuals.maximum_velocity),
-                collisions_passed: outcome.collisions_passed,
+                collisions_passed: outcome.parity.collisions_passed,
                 messages: messages(outcome),
             },
             fair: outcome.fair.as_deref().map(FairView::from),
             difference: CauseView::of(outcome),
-            first_divergence: account.first_divergence.map(finding),
+            first_divergence: account.first_divergence.as_ref().map(finding),
             findings: account
                 .examples
                 .iter()
@@ -171,12 +171,12 @@ impl Check<'_> {
 
 /// How often the original prints each of its messages, in the words that graders of its output look for.
 fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
-    let mut messages: BTreeMap<_, _> = Kind::ALL
+    let mut messages: BTreeMap<_, _> = FindingKind::ALL
         .into_iter()
-        .filter_map(|kind| Some((kind.original_message()?, outcome.counts.get(kind))))
+        .filter_map(|kind| Some((kind.original_message()?, outcome.parity.findings.counts.get(kind))))
         .filter(|&(_, count)| count > 0)
         .collect();
-    if outcome.overall == Overall::None {
+    if outcome.parity.overall == Overall::None {
         messages.insert("Simulation did not run to completion", 1);
     }
     match outcome.stop {

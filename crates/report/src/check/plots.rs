@@ -50,7 +50,7 @@ fn differ(expected: &[f64], own: &[f64]) -> bool {
 mod tests {
     use super::*;
     use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
-    use fosssim_judge::parity;
+    use fosssim_judge::replay;
     use fosssim_mistakes::student::{self, Student};
     use fosssim_model::scene::original;
 
@@ -62,9 +62,9 @@ mod tests {
         let trace = student::trace(&scene, Student::new(mistake)).unwrap_or_else(|(trace, _)| trace);
         let mut nobody = ();
         let mut rulings = StepRulings::new(&mut nobody);
-        let options = parity::Options { fair: true, ..Default::default() };
-        let outcome = parity::judge(&scene, &trace[..], &options, &mut rulings);
-        let focus: Vec<Focus> = outcome.examples.iter().map(Focus::from).collect();
+        let options = replay::Options { fair: true, ..Default::default() };
+        let outcome = replay::judge(&scene, &trace[..], &options, &mut rulings);
+        let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
         plots(&gather(&scene, &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET), 80)
     }
 

@@ -7,7 +7,7 @@ use super::super::{
 use super::{Check, divergence, fair_view::CountedView};
 use fosssim_judge::{
     Book, BookFindings, Finding, FindingCounts,
-    parity::{Progress, StepFindings, WrongStep},
+    replay::{Progress, StepFindings, WrongStep},
 };
 use serde::Serialize;
 
@@ -59,12 +59,12 @@ impl WrongSteps {
     }
 
     /// What a book has found; what it could tell only from the whole trace is among it.
-    fn by(&self, book: Book, account: BookFindings<'_>) -> Steps {
+    fn by(&self, book: Book, account: &BookFindings) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
             Book::Fair => self.fair.clone(),
         };
-        for finding in account.examples.iter().chain(account.first_divergence) {
+        for finding in account.examples.iter().chain(&account.first_divergence) {
             let findings = StepFindings { firsts: std::slice::from_ref(finding), more: FindingCounts::default() };
             steps.add(finding.step, findings, &self.shown);
         }

@@ -12,7 +12,7 @@ use super::{
     first::{first, is_other_scene},
     steps,
 };
-use fosssim_judge::{Book, BookFindings, Detail, Finding, Outcome, Overall, Ruling, Stop, Unreadable, share};
+use fosssim_judge::{Book, BookFindings, Finding, FindingDetail, Outcome, Overall, Ruling, Stop, Unreadable, share};
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let outcome = check.outcome;
@@ -69,17 +69,17 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
         return words::explanation::what(question);
     }
     let steps = count(u64::from(outcome.steps));
-    let parity = match outcome.overall {
+    let parity = match outcome.parity.overall {
         Overall::Passed if outcome.steps == 0 => "the scene has no step; there is nothing to get wrong".to_owned(),
         Overall::Passed => format!("{} by the original's rules", share::right(outcome.steps, count)),
         Overall::Failed if outcome.damaged_steps > 0 => damaged(outcome),
-        Overall::Failed if outcome.wrong_steps == 0 => {
+        Overall::Failed if outcome.parity.findings.wrong_steps == 0 => {
             format!("no single step of {steps} is wrong, but a residual is above its tolerance")
         }
         Overall::Failed => {
-            let first = outcome.first_divergence.map_or(0, |finding| finding.step);
+            let first = outcome.parity.findings.first_divergence.map_or(0, |finding| finding.step);
             let first = if outcome.steps == 1 { String::new() } else { format!(", the first is step {first}") };
-            share::wrong(outcome.wrong_steps, outcome.steps, count) + &first
+            share::wrong(outcome.parity.findings.wrong_steps, outcome.steps, count) + &first
         }
         Overall::None => {
             let judged = count(u64::from(outcome.steps_judged));
@@ -105,7 +105,7 @@ fn damaged(outcome: &Outcome) -> String {
         _ => "the trace is damaged".to_owned(),
     };
     let before = u64::from(outcome.steps_judged - outcome.damaged_steps);
-    match (before, outcome.wrong_steps, &outcome.first_divergence) {
+    match (before, outcome.parity.findings.wrong_steps, &outcome.parity.findings.first_divergence) {
         (0, ..) => place,
         (_, wrong, Some(first)) if wrong > 0 => {
             let verb = if wrong == 1 { "is" } else { "are" };
@@ -171,15 +171,15 @@ fn parts(stop: &Stop, outcome: &Outcome) -> (String, String, &'static str) {
 
 fn residuals(outcome: &Outcome, style: Style) -> String {
     let names = ["accumulated position", "accumulated velocity", "maximum position", "maximum velocity"];
-    let judged = outcome.overall != Overall::None;
+    let judged = outcome.parity.overall != Overall::None;
     let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
     table.heading(["residual", "value", "tolerance", "used", ""]);
-    for (name, (value, bound)) in names.into_iter().zip(outcome.residuals.with_bounds()) {
+    for (name, (value, bound)) in names.into_iter().zip(outcome.parity.residuals.with_bounds()) {
         let verdict = if judged { passed(value < bound) } else { "".into() };
         table.row([name.into(), general(value).into(), general(bound).into(), used(value, bound).into(), verdict]);
     }
-    let collisions = outcome.collisions_passed.map_or_else(|| "".into(), passed);
-    let wrong = count(outcome.counts.collisions());
+    let collisions = outcome.parity.collisions_passed.map_or_else(|| "".into(), passed);
+    let wrong = count(outcome.parity.findings.counts.collisions());
     table.row(["collisions, polynomials".into(), wrong.into(), "0".into(), "".into(), collisions]);
     format!("{}\n{}", style.paint(Look::Strong, "Rules of the original (parity)"), table.render(style))
 }
@@ -206,10 +206,10 @@ fn used(value: f64, bound: f64) -> String {
     }
 }
 
-fn findings(account: BookFindings<'_>, style: Style) -> String {
+fn findings(account: &BookFindings, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
-    for example in account.examples {
+    for example in &account.examples {
         let kind = example.kind();
         table.row([kind.to_string().into(), count(account.counts.get(kind)).into(), example.to_string().into()]);
     }
@@ -222,23 +222,23 @@ fn findings(account: BookFindings<'_>, style: Style) -> String {
 pub(super) fn advice(finding: &Finding) -> &'static [&'static str] {
     match finding.detail {
         _ if finding.step == 0 => &["the first record: the scene's own positions and velocities, before any step"],
-        Detail::MissedCollision { .. } => &[
+        FindingDetail::MissedCollision { .. } => &[
             "the detection of this pair: the trace's own state at the start of the step leads to this impact",
             "do its polynomials agree? then the choice of the time of impact, or the test of the normal, is wrong",
         ],
-        Detail::SuperfluousCollision { .. } => &[
+        FindingDetail::SuperfluousCollision { .. } => &[
             "the detection of this pair: from the trace's own state at the start of the step it does not collide",
             "are the objects approaching, and is the time of impact inside the step?",
         ],
-        Detail::WrongNormal { .. } => &[
+        FindingDetail::WrongNormal { .. } => &[
             "the contact normal: from the first object to the second, at the time of impact, not normalised",
             "is it taken from the positions at that time, and not from those at the end of the step?",
         ],
-        Detail::PolynomialCount { actual: 0, .. } => &[
+        FindingDetail::PolynomialCount { actual: 0, .. } => &[
             "the detection: in this step it asks the course's root finder about no pair; is it written yet?",
             "it is to ask about every pair in every pass, also about pairs that are far apart",
         ],
-        Detail::PolynomialCount { expected, actual, .. } | Detail::PassCount { expected, actual, .. }
+        FindingDetail::PolynomialCount { expected, actual, .. } | FindingDetail::PassCount { expected, actual, .. }
             if actual > expected =>
         {
             &[
@@ -246,46 +246,48 @@ pub(super) fn advice(finding: &Finding) -> &'static [&'static str] {
                 "an earlier response of this step that differs also makes the loop go on",
             ]
         }
-        Detail::PolynomialCount { .. } | Detail::PassCount { .. } => &[
+        FindingDetail::PolynomialCount { .. } | FindingDetail::PassCount { .. } => &[
             "the loop over detection passes: it ends too early, or leaves out pairs",
             "an earlier response of this step that differs also makes the loop end",
         ],
-        Detail::PolynomialDegree { .. } => &[
+        FindingDetail::PolynomialDegree { .. } => &[
             "the leading coefficients of this polynomial: those below 1e-12 in size are dropped, others are kept",
             "a factor on all coefficients moves them across that bound",
         ],
-        Detail::VanishingPolynomial { .. } => {
+        FindingDetail::VanishingPolynomial { .. } => {
             &["the inputs of this polynomial: for the reference the two objects do not move relative to each other"]
         }
-        Detail::Coefficient { .. } => &[
+        FindingDetail::Coefficient { .. } => &[
             "the formula of this coefficient; any positive factor of the whole polynomial is right",
             "in a later detection pass of the step, a wrong response before it changes the coefficients, too",
         ],
-        Detail::Position { .. } | Detail::Velocity { .. } => {
+        FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => {
             &["the integrator, the forces, or the response: the step starts from the trace's own state, so errors of \
              earlier steps are not to blame"]
         }
-        Detail::ContactTime { .. } => &[
+        FindingDetail::ContactTime { .. } => &[
             "the time of impact that is stored with the contact: the fraction of the step at which the objects touch",
             "is it the time that the root finder returned, and not the step's number or the simulation's time?",
         ],
-        Detail::RepeatedCollision { .. } => &["each pair is looked at once in a step: is it added to the list twice?"],
-        Detail::PassPositions { .. } => &[
+        FindingDetail::RepeatedCollision { .. } => {
+            &["each pair is looked at once in a step: is it added to the list twice?"]
+        }
+        FindingDetail::PassPositions { .. } => &[
             "the response (or the rigid failsafe) before this detection pass: what it does to the end positions",
             "which positions the pass is given: those after the responses of the round before",
         ],
-        Detail::RecordsDiffer { .. } => {
+        FindingDetail::RecordsDiffer { .. } => {
             &["what is written after the step: the course's code writes both records itself"]
         }
-        Detail::ImpossibleLog => &["the trace was not written by the course's library as it was handed out"],
-        Detail::BeyondReach { .. } => {
+        FindingDetail::ImpossibleLog => &["the trace was not written by the course's library as it was handed out"],
+        FindingDetail::BeyondReach { .. } => {
             &["the step that leads to this state: something divides by zero, or grows from step to step"]
         }
-        Detail::TrimmedDecision { .. } | Detail::TrimmedTime { .. } => &[
+        FindingDetail::TrimmedDecision { .. } | FindingDetail::TrimmedTime { .. } => &[
             "the factor of your polynomials: the course's library drops leading coefficients below 1e-12",
             "polynomials in the units of the assignment's formulas are not affected",
         ],
-        Detail::MixedForms { .. } => {
+        FindingDetail::MixedForms { .. } => {
             &["the approach polynomial: one of its two accepted forms is to be used throughout"]
         }
     }
@@ -311,7 +313,7 @@ pub(super) fn notes(check: &Check<'_>) -> Vec<String> {
             "frame {} (step {}), byte {}: {}{silence}",
             damage.frame, damage.step, damage.offset, damage.message
         ));
-        if outcome.damaged_steps > 0 && outcome.counts.total() > 0 {
+        if outcome.damaged_steps > 0 && outcome.parity.findings.counts.total() > 0 {
             notes.push("what is left of a damaged record is counted, but nobody is to blame for it".to_owned());
         }
     }

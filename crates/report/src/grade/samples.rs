@@ -6,7 +6,7 @@ use fosssim_grading::{
     score,
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
-use fosssim_judge::{Book, FindingCounts, Kind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
+use fosssim_judge::{Book, FindingCounts, FindingKind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::time::Duration;
 
@@ -72,9 +72,9 @@ pub(crate) fn bad() -> Grade {
     let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
     let pass = Pass { stage: Stage::Impulses { round: 0 }, index: 0 };
     let place = ToldPlace::Polynomial(PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 });
-    let first = ToldFinding::Place { step: 3, kind: Kind::Coefficient, place };
+    let first = ToldFinding::Place { step: 3, kind: FindingKind::Coefficient, place };
     let mut counts = FindingCounts::default();
-    counts.add(Kind::Coefficient, 1);
+    counts.add(FindingKind::Coefficient, 1);
     wrong.told = Some(Told {
         official: Book::Parity,
         parity: ToldBook {

@@ -54,8 +54,8 @@ impl Case<'_> {
         let heading = |words: &str| format!("<h{0}>{words}</h{0}>\n", depth + 1);
         let mut out = books(outcome);
         let account = outcome.findings_by(self.check.rules.official());
-        let other = outcome.fair.as_ref().and_then(|fair| fair.first_divergence.as_ref());
-        let first = account.first_divergence.or(other);
+        let other = outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
+        let first = account.first_divergence.as_ref().or(other);
         if let (Some(first), true) = (first, is_full && !self.is_other_scene()) {
             let _ = writeln!(
                 out,
@@ -107,7 +107,7 @@ impl Case<'_> {
         }
         if is_full && !account.examples.is_empty() {
             out += &heading("Findings");
-            out += &findings(&account);
+            out += &findings(account);
         }
         out
     }
@@ -177,12 +177,12 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     out
 }
 
-fn findings(account: &BookFindings<'_>) -> String {
+fn findings(account: &BookFindings) -> String {
     let mut out = String::from(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Findings\"><table><thead><tr>\
          <th scope=\"col\">kind</th><th scope=\"col\">count</th><th scope=\"col\">first example</th></tr></thead><tbody>\n",
     );
-    for example in account.examples {
+    for example in &account.examples {
         let kind = example.kind();
         let _ = writeln!(
             out,

@@ -6,7 +6,7 @@ use fosssim_grading::{
     result::Wrong,
     score,
 };
-use fosssim_judge::{Outcome, Rules, parity};
+use fosssim_judge::{Outcome, Rules, replay};
 use fosssim_mistakes::{
     diagnose,
     student::{self, Student},
@@ -23,12 +23,12 @@ fn page(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8]) -> Stri
 }
 
 fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: Hints) -> String {
-    let options = parity::Options { fair: true, ..Default::default() };
+    let options = replay::Options { fair: true, ..Default::default() };
     let mut nobody = ();
     let mut rulings = StepRulings::new(&mut nobody);
-    let outcome: Outcome = parity::judge(scene, trace, &options, &mut rulings);
+    let outcome: Outcome = replay::judge(scene, trace, &options, &mut rulings);
     let explanations = hints.cut(diagnose::explain(scene, trace));
-    let focus: Vec<Focus> = outcome.examples.iter().map(Focus::from).collect();
+    let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, trace, &rulings.into_steps(&outcome), true, &focus, BUDGET);
     let check = Check {
         scene: scene_name,
@@ -124,9 +124,9 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let trace = of_mistake(scene, id);
     let mut nobody = ();
     let mut rulings = StepRulings::new(&mut nobody);
-    let options = parity::Options { fair: true, ..Default::default() };
-    let outcome = parity::judge(scene, &trace[..], &options, &mut rulings);
-    let focus: Vec<Focus> = outcome.examples.iter().map(Focus::from).collect();
+    let options = replay::Options { fair: true, ..Default::default() };
+    let outcome = replay::judge(scene, &trace[..], &options, &mut rulings);
+    let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
     let explanations = hints.cut(diagnose::explain(scene, &trace));
     let what_if = WhatIf {

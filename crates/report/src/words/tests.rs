@@ -39,11 +39,14 @@ fn a_limit_says_how_far_the_trace_came() {
 
 #[test]
 fn a_wrong_trace_says_how_many_steps_and_where_first() {
-    let steps = |wrong| says(Reason::Wrong(Wrong::Steps { wrong, first: 3, kind: Kind::Coefficient }));
+    let steps = |wrong| says(Reason::Wrong(Wrong::Steps { wrong, first: 3, kind: FindingKind::Coefficient }));
     assert_eq!(steps(12), "12 of 15 steps are wrong, first step 3: wrong coefficient");
     assert_eq!(steps(1), "1 of 15 steps is wrong, first step 3: wrong coefficient");
     assert_eq!(says(Reason::Wrong(Wrong::Untold)), "the trace is wrong");
-    assert_eq!(says(Reason::Wrong(Wrong::FirstRecord(Kind::Position))), "the first record is wrong: wrong position");
+    assert_eq!(
+        says(Reason::Wrong(Wrong::FirstRecord(FindingKind::Position))),
+        "the first record is wrong: wrong position"
+    );
     assert_eq!(says(Reason::Right), "all 15 steps are right");
 }
 
@@ -51,13 +54,14 @@ fn a_wrong_trace_says_how_many_steps_and_where_first() {
 fn details_are_what_is_told_and_nothing_else() {
     let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(Wrong::Untold));
     assert_eq!(details(&result), [""; 0]);
-    let first = ToldFinding::Place { step: 4, kind: Kind::Position, place: ToldPlace::Particle(2) };
-    let objects = ToldFinding::Place { step: 5, kind: Kind::SuperfluousCollision, place: ToldPlace::Objects(1, 2) };
+    let first = ToldFinding::Place { step: 4, kind: FindingKind::Position, place: ToldPlace::Particle(2) };
+    let objects =
+        ToldFinding::Place { step: 5, kind: FindingKind::SuperfluousCollision, place: ToldPlace::Objects(1, 2) };
     let mut counts = FindingCounts::default();
-    counts.add(Kind::Position, 7);
-    counts.add(Kind::SuperfluousCollision, 2);
+    counts.add(FindingKind::Position, 7);
+    counts.add(FindingKind::SuperfluousCollision, 2);
     // What is found in damaged records alone has no example.
-    counts.add(Kind::Velocity, 1);
+    counts.add(FindingKind::Velocity, 1);
     let told = Told {
         official: Book::Fair,
         parity: ToldBook {

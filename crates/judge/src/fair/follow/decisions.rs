@@ -3,7 +3,7 @@ use super::Follower;
 use crate::{
     contacts::{key, logged_key},
     fair::contact,
-    finding::Detail,
+    finding::FindingDetail,
 };
 use fosssim_model::{
     sim::{Decision, Impulse, Pair, Stage, Time},
@@ -60,11 +60,11 @@ impl Follower<'_> {
         if (actual <= 1.0) != hits {
             if contact::decides(motion, expected) == Some(hits) {
                 let place = self.place(pair);
-                self.charge(Detail::TrimmedDecision { place, collides: hits });
+                self.charge(FindingDetail::TrimmedDecision { place, collides: hits });
             }
         } else if hits && !contact::is_time_without_losses(expected, own.time, actual) {
             let (place, expected) = (self.place(pair), contact::possible_time(expected));
-            self.charge(Detail::TrimmedTime { place, expected, actual });
+            self.charge(FindingDetail::TrimmedTime { place, expected, actual });
         }
     }
 
@@ -113,7 +113,7 @@ impl Follower<'_> {
             }
             (Decision::Hit { time, normal }, None) => {
                 if !self.is_borderline(call) {
-                    self.charge(Detail::MissedCollision { expected: Impulse { pair, normal, time } });
+                    self.charge(FindingDetail::MissedCollision { expected: Impulse { pair, normal, time } });
                 }
                 Decision::Miss { time: Time::Found(time) }
             }
@@ -128,7 +128,7 @@ impl Follower<'_> {
                         self.charge(detail);
                     }
                 } else {
-                    self.charge(Detail::SuperfluousCollision { actual });
+                    self.charge(FindingDetail::SuperfluousCollision { actual });
                 }
                 contact::followed(actual).unwrap_or(own)
             }
@@ -144,9 +144,9 @@ impl Follower<'_> {
             let actual = self.records.end.impulses[index];
             let repeats = self.contacts.about(logged_key(&actual)).next() < Some(index);
             let detail = if repeats && !self.is_hybrid() {
-                Detail::RepeatedCollision { actual }
+                FindingDetail::RepeatedCollision { actual }
             } else {
-                Detail::SuperfluousCollision { actual }
+                FindingDetail::SuperfluousCollision { actual }
             };
             self.charge(detail);
         }

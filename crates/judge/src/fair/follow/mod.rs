@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     contacts::Contacts,
-    finding::{Detail, Finding, Part, PolynomialPlace},
+    finding::{Finding, FindingDetail, Part, PolynomialPlace},
 };
 use decisions::Own;
 use fosssim_model::sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone};
@@ -143,7 +143,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    fn charge(&mut self, detail: Detail) {
+    fn charge(&mut self, detail: FindingDetail) {
         let (step, frame) = (self.records.step, self.records.frame);
         self.judged.charge(Finding { step, frame, detail });
     }
@@ -238,7 +238,7 @@ impl Observer for Follower<'_> {
             && logged[0] != self.passes[0]
             && !self.spoilt[0]
         {
-            self.charge(Detail::PassCount { part: Part::Impulses, expected: self.passes[0], actual: logged[0] });
+            self.charge(FindingDetail::PassCount { part: Part::Impulses, expected: self.passes[0], actual: logged[0] });
             self.spoilt[0] = true;
         }
         if !self.spoilt[0] {

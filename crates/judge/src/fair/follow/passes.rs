@@ -1,6 +1,6 @@
 //! How many detection passes a step has logged, and which positions they certainly saw.
 use super::Follower;
-use crate::finding::{Detail, Part};
+use crate::finding::{FindingDetail, Part};
 use fosssim_model::{
     scene::Collision,
     sim::{Pair, Stage},
@@ -28,7 +28,7 @@ impl<'a> Follower<'a> {
         let Some(logged) = self.logged_passes else {
             let (expected, actual) =
                 ((self.passes[0] + self.passes[1]) * self.context.per_pass, self.records.end.polynomials.len());
-            self.charge(Detail::PolynomialCount { expected, actual, per_pass: self.context.per_pass });
+            self.charge(FindingDetail::PolynomialCount { expected, actual, per_pass: self.context.per_pass });
             self.spoilt[1] = true;
             return;
         };
@@ -37,7 +37,7 @@ impl<'a> Follower<'a> {
             let follows = index == 1 && self.spoilt[0];
             if logged[index] != self.passes[index] {
                 if !self.spoilt[index] && !follows {
-                    self.charge(Detail::PassCount { part, expected: self.passes[index], actual: logged[index] });
+                    self.charge(FindingDetail::PassCount { part, expected: self.passes[index], actual: logged[index] });
                 }
                 self.spoilt[index] = true;
                 self.spoilt[1] = true;

@@ -6,7 +6,7 @@ use crate::{
         formulas::{BoundedPairMotion, Expected},
         step_judgement::Pending,
     },
-    finding::{Detail, Finding, PolynomialPlace, Role},
+    finding::{Finding, FindingDetail, PolynomialPlace, Role},
 };
 use fosssim_model::sim::{Pair, PairKind};
 use fosssim_num::polynomial::{MAX_COEFFICIENTS, Polynomial};
@@ -138,7 +138,7 @@ impl Follower<'_> {
         if self.is_moved(place.pair) && !is_known {
             // A formula that is known to be wrong is wrong here, too, wherever the particles are.
             if !self.wrong_formulas[place.pair.kind][number] {
-                self.charge(Detail::PassPositions { place });
+                self.charge(FindingDetail::PassPositions { place });
                 self.spoilt[part] = true;
             }
             return;
@@ -153,13 +153,13 @@ impl Follower<'_> {
         number: usize,
         expected: &Expected,
         mismatch: Mismatch,
-    ) -> Detail {
+    ) -> FindingDetail {
         let actual = self.records.end.polynomials.get(place.index);
         let right: Vec<f64> = expected.polynomial(number).iter().map(|c| c.value).collect();
         let (right, shown) =
             (Polynomial::trimmed(&right), Polynomial::untrimmed(&actual[..actual.len().min(MAX_COEFFICIENTS)]));
         match mismatch {
-            Mismatch::Coefficient { power, expected, actual, .. } => Detail::Coefficient {
+            Mismatch::Coefficient { power, expected, actual, .. } => FindingDetail::Coefficient {
                 place,
                 power,
                 expected,
@@ -170,7 +170,7 @@ impl Follower<'_> {
                 actual_polynomial: shown,
             },
             Mismatch::TooLong => {
-                Detail::PolynomialDegree { place, expected: right, actual_size: actual.len(), actual: shown }
+                FindingDetail::PolynomialDegree { place, expected: right, actual_size: actual.len(), actual: shown }
             }
         }
     }

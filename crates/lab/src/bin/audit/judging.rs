@@ -11,7 +11,7 @@ use std::{
 
 use anyhow::Context;
 use fosssim_oracle::{
-    judge::parity::{self, Options},
+    judge::replay::{self, Options},
     scene::{Scene, original},
     student::{self, CATALOGUE, Student},
     suite::library,
@@ -60,7 +60,7 @@ pub fn run(part: &str) -> anyhow::Result<ExitCode> {
             for fair in [false, true] {
                 let [one, other] = [false, true].map(|one_by_one| {
                     let options = Options { threads: 1, fair, one_by_one, ..Options::default() };
-                    format!("{:?}", parity::judge(&scene, &trace[..], &options, &mut ()))
+                    format!("{:?}", replay::judge(&scene, &trace[..], &options, &mut ()))
                 });
                 if one != other {
                     let mut differing = differing.lock().expect("no other thread has panicked");

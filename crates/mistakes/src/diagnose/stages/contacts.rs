@@ -1,8 +1,9 @@
 //! What the impulse lists of `continuous-time` say: contacts too many or too few, their vectors and times. And the order in
 //! which pairs are looked at.
 use super::{
-    ALIKE, Explanation, ROUND_OFF, common_value, observation, ratios, same_polynomial,
-    story::{Facts, Hit},
+    ALIKE, Explanation, ROUND_OFF, common_value,
+    events::{Facts, Hit},
+    observation, ratios, same_polynomial,
 };
 use crate::diagnose::{StageDetail, StageFault, WrongDecisions, WrongVectors, known::same_impulse};
 use fosssim_model::{

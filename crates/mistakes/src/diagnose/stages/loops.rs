@@ -1,5 +1,5 @@
 //! The impulse rounds of `hybrid`: how many there are, and what they hand over.
-use super::{ALIKE, Explanation, observation, responses::Responses, story::Facts};
+use super::{ALIKE, Explanation, events::Facts, observation, responses::Responses};
 use crate::diagnose::{LoopEnd, Quantity, StageDetail, StageFault, WrongNumber, known::ROUND_OFF};
 use fosssim_model::{
     scene::{Collision, Scene},

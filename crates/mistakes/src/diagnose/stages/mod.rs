@@ -6,10 +6,10 @@
 //! body) says where. These are observations and no guesses: nothing is said of a stage that something before it may have
 //! spoilt, and nothing where a polynomial is wrong whose inputs are known.
 mod contacts;
+mod events;
 mod loops;
 mod responses;
 mod rigid;
-mod story;
 
 use super::{
     Detail, Explanation, Ratios, StageDetail,
@@ -17,8 +17,8 @@ use super::{
     fault::StageFault,
     known::{ROUND_OFF, Sample, first_difference, same_polynomial},
 };
+use events::{Facts, Reference};
 use fosssim_model::scene::{Collision, Scene};
-use story::{Facts, Teller};
 
 /// So many steps are looked at.
 const MOST_STEPS: usize = 120;
@@ -35,7 +35,7 @@ pub(super) fn explain<'a>(scene: &Scene, samples: impl Iterator<Item = &'a Sampl
     if !matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. }) {
         return None;
     }
-    let mut teller = Teller::new(scene);
+    let mut reference = Reference::new(scene);
     let mut work = 0;
     let facts: Vec<Facts> = samples
         .take(MOST_STEPS)
@@ -44,7 +44,7 @@ pub(super) fn explain<'a>(scene: &Scene, samples: impl Iterator<Item = &'a Sampl
             work += sample.records.end.polynomials.len();
             goes_on
         })
-        .filter_map(|sample| teller.tell(sample))
+        .filter_map(|sample| reference.facts(sample))
         .collect();
     if facts.iter().all(|facts| !facts.is_wrong) {
         return None;

@@ -1,7 +1,8 @@
 //! What isolated contacts change, body by body.
 use super::{
-    ALIKE, Explanation, common_value, observation, ratios,
-    story::{Facts, Hit},
+    ALIKE, Explanation, common_value,
+    events::{Facts, Hit},
+    observation, ratios,
 };
 use crate::diagnose::{
     Amount, Changed, Quantity, StageDetail, StageFault, WrongResponses,

@@ -1,7 +1,8 @@
 //! Impact zones and the rigid failsafe: steps whose first part is right, zone by zone.
 use super::{
-    ALIKE, Explanation, common_value, observation, ratios,
-    story::{Facts, ZoneFacts},
+    ALIKE, Explanation, common_value,
+    events::{Facts, ZoneFacts},
+    observation, ratios,
 };
 use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongZoneRounds, WrongZones};
 use fosssim_model::{

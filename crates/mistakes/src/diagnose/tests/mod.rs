@@ -1,7 +1,7 @@
 //! Programs with several mistakes, asked about on the probe scenes.
 use super::{About, Explanation, Keep, examine, explain, outside::told_of, probe_scenes, several};
 use crate::student::{self, Area, CATALOGUE, Row, RowKind, Student};
-use fosssim_judge::parity::Options;
+use fosssim_judge::replay::Options;
 use fosssim_model::{assignments::Assignment, sim::PairKind};
 use rayon::prelude::*;
 

@@ -4,7 +4,7 @@ use crate::student::{self, Area, CATALOGUE, KNOWN_REFUSED, Mistake, Row, RowKind
 use fosssim_judge::{
     self as judging,
     fair::{FairVerdict, Judgement},
-    parity::{Options, judge},
+    replay::{Options, judge},
 };
 use fosssim_model::{
     assignments::Assignment,
@@ -108,8 +108,8 @@ fn is_accepted(scene: &Scene, trace: &[u8]) -> bool {
 
 /// Whether nothing is found but decisions that hang on coefficients which the course's library dropped.
 fn loses(scene: &Scene, trace: &[u8]) -> bool {
-    let counts = judged(scene, trace).counts;
-    counts.total() > 0 && counts.get(judging::Kind::TrimmedDecision) == counts.total()
+    let counts = judged(scene, trace).findings.counts;
+    counts.total() > 0 && counts.get(judging::FindingKind::TrimmedDecision) == counts.total()
 }
 
 /// Mistakes that show in the last bits only, which the fair rules rightly pass over: at the time of impact alpha is in [0, 1]

@@ -38,7 +38,7 @@ pub(super) struct ZoneFacts {
 
 /// What the reference tells besides its records.
 #[derive(Debug, Default)]
-struct Story {
+struct StepEvents {
     hits: Vec<Hit>,
     passes: Vec<PassFacts>,
     zones: Vec<ZoneFacts>,
@@ -46,7 +46,7 @@ struct Story {
     polynomials: usize,
 }
 
-impl Observer for Story {
+impl Observer for StepEvents {
     fn begin_step(&mut self, _step: u32) {
         *self = Self::default();
     }
@@ -71,9 +71,9 @@ impl Observer for Story {
 }
 
 /// The observer of a step in which nothing collides.
-struct Unhindered;
+struct NoCollisions;
 
-impl Observer for Unhindered {
+impl Observer for NoCollisions {
     fn decide(&mut self, _pair: Pair, _decision: Decision) -> Decision {
         Decision::Miss { time: Time::Found(f64::INFINITY) }
     }
@@ -121,19 +121,19 @@ impl Facts {
 }
 
 /// Lets the reference run steps.
-pub(super) struct Teller<'a> {
+pub(super) struct Reference<'a> {
     budget: Budget<'a>,
     simulation: Simulation,
-    observers: (Capture, Story),
+    observers: (Capture, StepEvents),
 }
 
-impl<'a> Teller<'a> {
+impl<'a> Reference<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         Self {
             budget: Budget::new(scene, false),
             simulation,
-            observers: (Capture::new(&scene.collision), Story::default()),
+            observers: (Capture::new(&scene.collision), StepEvents::default()),
         }
     }
 
@@ -143,14 +143,14 @@ impl<'a> Teller<'a> {
     }
 
     /// The facts of a step; none where the reference has no result.
-    pub(super) fn tell(&mut self, sample: &Sample) -> Option<Facts> {
+    pub(super) fn facts(&mut self, sample: &Sample) -> Option<Facts> {
         self.set(sample);
-        self.budget.step(&mut self.simulation, &mut Unhindered).ok()?;
+        self.budget.step(&mut self.simulation, &mut NoCollisions).ok()?;
         let prediction = self.simulation.state().clone();
         self.set(sample);
         self.budget.step(&mut self.simulation, &mut self.observers).ok()?;
-        let (capture, story) = &mut self.observers;
-        let story = std::mem::take(story);
+        let (capture, events) = &mut self.observers;
+        let events = std::mem::take(events);
         let (expected, actual) = (capture.records.clone(), sample.records.clone());
         let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
         let differing =
@@ -165,10 +165,10 @@ impl<'a> Teller<'a> {
             expected,
             actual,
             right_polynomials,
-            hits: story.hits,
-            passes: story.passes,
-            zones: story.zones,
-            detections: story.detections,
+            hits: events.hits,
+            passes: events.passes,
+            zones: events.zones,
+            detections: events.detections,
         };
         facts.has_wrong_formula = differing.is_some_and(|index| index < facts.certain_polynomials());
         Some(facts)
