@@ -119,6 +119,48 @@ fn a_run_is_told_its_own_processor_time_alone() {
     assert!(4 * short < long, "{short:?} after a run of {long:?}");
 }
 
+/// What a hostile program is stopped by or refused in a keeper's first run, it is in a later one.
+#[test]
+fn walls_stand_for_every_run_of_a_keeper() {
+    if with_namespaces().is_none() {
+        return;
+    }
+    let (submission, secret) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let program = submission.path().join("program");
+    let script = "#!/bin/sh\ncase \"$1\" in\n\
+                  fork) (true); echo forked;;\n\
+                  execute) exec /bin/ls;;\n\
+                  read) read text < \"$2/secret\"; echo \"$text\"; read text < /etc/passwd; echo \"$text\";;\n\
+                  write) true > \"$2/made\"; true > /tmp/made; true > /dev/made; true > \"$0\";;\n\
+                  signal) kill -9 1; kill -9 $PPID; kill -0 -1;;\n\
+                  files) exec 2> /dev/null; i=0; while true; do i=$((i+1)); true > f$i; done;;\n\
+                  flood) while true; do echo xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx; done;;\n\
+                  spin) while true; do true; done;;\nesac\n";
+    fs::write(&program, script).unwrap();
+    fs::write(secret.path().join("secret"), "the secret").unwrap();
+    for path in [&*program, submission.path(), secret.path()] {
+        fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    for attack in ["fork", "execute", "read", "write", "signal", "files", "flood", "spin"] {
+        let run = |backend: &Backend, word: &str| {
+            let folder = tempfile::tempdir().unwrap();
+            let job = Job::new(&program, folder.path()).arguments([Path::new(word), secret.path()]);
+            let outcome = backend.start(&job.folder_in_memory().limits(small())).unwrap().wait().unwrap();
+            (outcome.ended, outcome.stdout.bytes)
+        };
+        let (fresh, used) = (alone().unwrap(), alone().unwrap());
+        let first = run(&fresh, attack);
+        assert_eq!(run(&used, "nothing").0, Ended::Exited(0));
+        assert_eq!(run(&used, attack), first, "{attack}");
+        let shown = String::from_utf8_lossy(&first.1);
+        assert!(!["secret", "root", "forked"].iter().any(|word| shown.contains(word)), "{attack}: {shown}");
+        let stopped = !matches!(first.0, Ended::Exited(_));
+        assert_eq!(stopped, ["fork", "execute", "files", "flood", "spin"].contains(&attack), "{attack}: {:?}", first.0);
+    }
+    assert!(!secret.path().join("made").exists() && !Path::new("/tmp/made").exists());
+    assert_eq!(fs::read_to_string(&program).unwrap(), script);
+}
+
 #[test]
 fn who_loses_a_keeper_or_a_supervisor_says_so_and_the_next_run_has_others() {
     let Some(backend) = alone() else { return };
