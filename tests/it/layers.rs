@@ -15,7 +15,7 @@ const CRATES: [(&str, &[&str]); 16] = [
     ("mistakes", &["num", "model", "judge"]),
     ("render", &["num", "model", "judge"]),
     ("evidence", &["model", "judge", "mistakes"]),
-    ("grading", &["num", "textdiff", "sandbox", "model", "judge", "mistakes", "evidence"]),
+    ("grading", &["num", "textdiff", "testing", "sandbox", "model", "judge", "mistakes", "evidence"]),
     ("report", &["num", "testing", "model", "judge", "mistakes", "render", "evidence", "grading"]),
     (
         "oracle",

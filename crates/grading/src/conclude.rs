@@ -36,8 +36,8 @@ pub struct Run<'a> {
     pub limits: &'a RunLimits,
 }
 
-/// The result of one scene, cut to what its hints let through. `explain` says what is likely wrong; it is not asked where the
-/// fair rules find no fault, or where what the program did besides is its worse fault.
+/// The result of one scene, cut to what its hints let through. `explain` says what is likely wrong; it is not asked where
+/// nothing of it may be told, where the fair rules find no fault, or where what the program did besides is its worse fault.
 #[must_use]
 pub fn conclude(run: &Run<'_>, explain: impl FnOnce() -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
@@ -54,7 +54,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce() -> Vec<Explanation>) -> Sc
     let reason = if untold { Reason::Wrong(Wrong::Untold) } else { reason };
     let differs = fair::cause(judged);
     let has_fault = rules == Rules::Fair || differs.is_none();
-    let is_explained = has_fault && matches!(verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+    let is_explained = hints.explains() && has_fault && matches!(verdict, Verdict::WrongAnswer | Verdict::BadTrace);
     SceneResult {
         scene: run.scene.to_owned(),
         verdict,
@@ -147,4 +147,45 @@ fn kept(captured: &sandbox::Captured) -> String {
         text.push_str("\n[cut short]");
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_judge::replay;
+    use fosssim_mistakes::student::{self, Mistake, Student};
+    use fosssim_model::scene::original;
+    use fosssim_testing::scenes;
+    use std::{sync::Arc, time::Duration};
+
+    /// Explaining takes as long as judging many traces: nobody asks for what is not told.
+    #[test]
+    fn what_is_not_told_is_not_explained() {
+        let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
+        let trace = student::trace(&scene, Student::new(Some(Mistake::ParticleEdgeEmpty))).expect("a trace");
+        let options = replay::Options { fair: true, ..replay::Options::default() };
+        let judged = replay::judge(&scene, &trace[..], &options, &mut ());
+        let program = sandbox::RunOutcome {
+            ended: Ended::Exited(0),
+            cpu: Duration::ZERO,
+            wall: Duration::ZERO,
+            peak_memory: 0,
+            bytes_written: trace.len() as u64,
+            stdout: sandbox::Captured::default(),
+            stderr: sandbox::Captured::default(),
+            layers: Arc::from([]),
+        };
+        let limits = &RunLimits::default();
+        for (hints, is_asked) in [(Hints::None, false), (Hints::Where, false), (Hints::What, true), (Hints::Full, true)]
+        {
+            let (program, judged, trace_bytes, rules) = (&program, &judged, trace.len() as u64, Rules::Fair);
+            let run = Run { scene: "a/b", program, judged, trace_bytes, rules, hints, limits };
+            let mut asked = false;
+            let result = conclude(&run, || {
+                asked = true;
+                Vec::new()
+            });
+            assert_eq!((result.verdict, asked), (Verdict::WrongAnswer, is_asked), "{hints:?}");
+        }
+    }
 }

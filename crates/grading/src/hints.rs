@@ -32,6 +32,12 @@ impl Hints {
         }
     }
 
+    /// Whether anything of explanations is told at this level.
+    #[must_use]
+    pub const fn explains(self) -> bool {
+        matches!(self, Self::What | Self::Full)
+    }
+
     /// Cuts explanations down to this level: below [`Hints::What`] there are none. At that level each says what is wrong, in a
     /// sentence without formulas, and which known mistakes can't be told apart from it; exact forms and examples need
     /// [`Hints::Full`].
@@ -123,6 +129,7 @@ mod tests {
         student::{self, CATALOGUE, RowKind, Student},
     };
     use fosssim_model::scene::original;
+    use fosssim_testing::scenes;
 
     fn explanation() -> Explanation {
         let example = Example {
@@ -151,6 +158,9 @@ mod tests {
         assert_eq!((what.about, what.details.len(), what.example), (About::Mistake, 0, None));
         assert_eq!(what.same_as, ["pe-square-two-eh"], "what is found in polynomials alone may be a formula's name");
         assert_eq!(told(Hints::Full), [explanation()]);
+        for hints in [Hints::None, Hints::Where, Hints::What, Hints::Full] {
+            assert_eq!(hints.explains(), !told(hints).is_empty(), "{hints:?}");
+        }
     }
 
     #[test]
@@ -166,7 +176,7 @@ mod tests {
 
     #[test]
     fn what_is_told_of_a_trace_grows_with_the_hints_and_holds_no_value_below_full() {
-        let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
+        let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
         let row = CATALOGUE.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
         let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
         let options = replay::Options { fair: true, ..replay::Options::default() };
@@ -188,13 +198,4 @@ mod tests {
         let fair = Hints::Full.tell(&judged, Rules::Fair).expect("something");
         assert_eq!(fair.official(), full.fair.as_ref().expect("asked"));
     }
-
-    /// An edge that turns and two discs that meet it and each other, above a slanted half-plane.
-    const SCENE: &str = "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\
-        <collision type=\"hybrid\" COR=\"0.8\" maxiters=\"2\"/>\
-        <particle m=\"1\" px=\"-2\" py=\"0.1\" vx=\"3\" vy=\"0\" fixed=\"0\" radius=\"0.3\"/>\
-        <particle m=\"2\" px=\"0\" py=\"-1\" vx=\"0.5\" vy=\"0\" fixed=\"0\" radius=\"0.25\"/>\
-        <particle m=\"3\" px=\"0.5\" py=\"1\" vx=\"-0.25\" vy=\"0\" fixed=\"0\" radius=\"0.2\"/>\
-        <particle m=\"1\" px=\"1\" py=\"-2\" vx=\"-3\" vy=\"-1\" fixed=\"0\" radius=\"0.2\"/>\
-        <edge i=\"1\" j=\"2\" radius=\"0.15\"/><halfplane px=\"0\" py=\"-2.5\" nx=\"1\" ny=\"3\"/></scene>";
 }

@@ -171,6 +171,7 @@ pub(crate) mod tests {
         scene::original,
         sim::{Pair, PairKind},
     };
+    use fosssim_testing::scenes;
 
     /// One with everything, one with the least.
     pub(crate) fn explanations() -> Vec<Explanation> {
@@ -258,18 +259,9 @@ pub(crate) mod tests {
         assert_eq!(view["same_as"].as_array().map(Vec::len), Some(5));
     }
 
-    /// An edge that turns and two discs that meet it and each other, above a slanted half-plane.
-    const SCENE: &str = "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\
-        <collision type=\"hybrid\" COR=\"0.8\" maxiters=\"2\"/>\
-        <particle m=\"1\" px=\"-2\" py=\"0.1\" vx=\"3\" vy=\"0\" fixed=\"0\" radius=\"0.3\"/>\
-        <particle m=\"2\" px=\"0\" py=\"-1\" vx=\"0.5\" vy=\"0\" fixed=\"0\" radius=\"0.25\"/>\
-        <particle m=\"3\" px=\"0.5\" py=\"1\" vx=\"-0.25\" vy=\"0\" fixed=\"0\" radius=\"0.2\"/>\
-        <particle m=\"1\" px=\"1\" py=\"-2\" vx=\"-3\" vy=\"-1\" fixed=\"0\" radius=\"0.2\"/>\
-        <edge i=\"1\" j=\"2\" radius=\"0.15\"/><halfplane px=\"0\" py=\"-2.5\" nx=\"1\" ny=\"3\"/></scene>";
-
     #[test]
     fn no_mistake_of_the_catalogue_gives_a_formula_away_below_full() {
-        let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
+        let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
         let mut told = 0;
         for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong) {
             let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);

@@ -5,6 +5,8 @@
 //! or says `all`, the test fails instead: a machine that is known to have something can't pass without it.
 #![forbid(unsafe_code)]
 
+pub mod scenes;
+
 use std::{fmt, fs, io::Write, path::PathBuf};
 
 /// Needs whose absence makes a test fail, separated by commas.

@@ -94,7 +94,8 @@ fn case(
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
-    let explanations = if fair.verdict == FairVerdict::Accepted { Vec::new() } else { examined.explain() };
+    let is_explained = fair.verdict != FairVerdict::Accepted && hints.explains();
+    let explanations = if is_explained { examined.explain() } else { Vec::new() };
     let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.finding(first));
     let explanations = hints.cut(explanations);
     let draws = arguments.format == ExplainFormat::Html && !accepted;
