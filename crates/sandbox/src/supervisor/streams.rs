@@ -31,7 +31,8 @@ impl Capture {
     /// Takes what is there. A stream over its limit is closed and marked; the rest is nobody's.
     pub(super) fn take(&mut self) {
         let Some(pipe) = &mut self.pipe else { return };
-        let mut buffer = [0; 1 << 16];
+        // Memory that is touched for the first time costs more than another call, and most programs print little.
+        let mut buffer = [0; 1 << 12];
         let mut taken = 0;
         while taken < AT_ONE_GO {
             match pipe.read(&mut buffer) {

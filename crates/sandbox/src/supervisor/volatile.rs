@@ -32,7 +32,7 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
             std::fs::create_dir(&target)?;
             copy(&entry.path(), &target)?;
         } else if metadata.is_file() {
-            copy_file(&mut File::open(entry.path())?, &target)?;
+            copy_file(&mut File::open(entry.path())?, &target, metadata.len())?;
         } else {
             continue;
         }
@@ -41,9 +41,10 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
     Ok(())
 }
 
-fn copy_file(from: &mut File, to: &Path) -> io::Result<()> {
+/// Copies a file that had this length a moment ago.
+fn copy_file(from: &mut File, to: &Path, expected: u64) -> io::Result<()> {
     let mut target = File::create_new(to)?;
-    let mut buffer = vec![0; AT_ONE_GO];
+    let mut buffer = vec![0; AT_ONE_GO.min(usize::try_from(expected).unwrap_or(AT_ONE_GO) + 1)];
     let mut length = 0;
     loop {
         let read = match from.read(&mut buffer) {
