@@ -44,12 +44,17 @@ impl<'a> Keeper<'a> {
 
     /// Judges the trace, which is kept as it is read.
     pub fn judge<R: Read + Send>(&self, trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
-        replay::judge(self.scene, self.reader(trace), options, &mut Heard { keeper: self, inner: progress })
+        replay::judge(
+            self.scene,
+            KeepingReader { is_judged: true, ..self.reader(trace) },
+            options,
+            &mut Heard { keeper: self, inner: progress },
+        )
     }
 
     /// The trace, which is kept as it is read.
     pub fn reader<R>(&self, trace: R) -> KeepingReader<'_, R> {
-        KeepingReader { store: &self.store, inner: trace }
+        KeepingReader { store: &self.store, is_judged: false, inner: trace }
     }
 
     /// Keeps what follows behind the place where judging stopped, as far as it would have been kept.
@@ -84,6 +89,8 @@ fn lock(store: &Mutex<Store>) -> MutexGuard<'_, Store> {
 #[derive(Debug)]
 pub struct KeepingReader<'k, R> {
     store: &'k Mutex<Store>,
+    /// Whether steps are judged as they are read, so that it is soon known which need not be kept.
+    is_judged: bool,
     inner: R,
 }
 
@@ -93,7 +100,7 @@ impl<R: Read> Read for KeepingReader<'_, R> {
         let mut store = lock(self.store);
         match count {
             0 => store.has_ended |= !buffer.is_empty(),
-            _ => store.keep(&buffer[..count]),
+            _ => store.keep(&buffer[..count], self.is_judged),
         }
         Ok(count)
     }
@@ -151,6 +158,8 @@ struct Store {
     base: u64,
     /// The last step in which something was found.
     wrong: u32,
+    /// Whether bytes are left out until the next step has been judged.
+    is_skipping: bool,
     has_ended: bool,
 }
 
@@ -187,6 +196,7 @@ impl Store {
             start: 0,
             base: 0,
             wrong: 0,
+            is_skipping: false,
             has_ended: false,
         }
     }
@@ -210,23 +220,31 @@ impl Store {
         &self.tail[place(begin)..place(end)]
     }
 
-    /// Keeps bytes that have been read.
-    fn keep(&mut self, bytes: &[u8]) {
+    /// Keeps bytes that have been read. A record that does not fit ends the beginning; while steps are judged, nothing is kept of it.
+    fn keep(&mut self, bytes: &[u8], is_judged: bool) {
         if self.most == 0 {
             return;
         }
+        if self.is_skipping {
+            self.base += bytes.len() as u64;
+            return;
+        }
         // Beyond the beginning, only for steps that are found wrong.
-        let room = if self.is_closed { LATE } else { self.most };
+        let room = match (self.is_closed, is_judged) {
+            (true, _) => LATE,
+            (false, true) => self.most.max(LATE),
+            (false, false) => self.most,
+        };
         if self.tail.len() - self.start + bytes.len() > room {
-            // A record of that size: the beginning ends inside of it.
-            self.tail.extend_from_slice(bytes);
-            if !self.is_closed {
+            if !self.is_closed && !is_judged {
+                self.tail.extend_from_slice(bytes);
                 let room = self.most.saturating_sub(self.memory) as u64;
-                let end = self.end().min(self.covered + room);
-                self.add(end);
-                self.is_closed = true;
+                self.add(self.end().min(self.covered + room));
+                self.base = self.end();
+            } else {
+                self.base = self.end() + bytes.len() as u64;
             }
-            self.base = self.end();
+            (self.is_closed, self.is_skipping) = (true, true);
             (self.tail, self.start) = (Vec::new(), 0);
             return;
         }
@@ -272,6 +290,7 @@ impl Store {
             self.late_memory += records.len();
             self.late.push(LateStep { step: place.step, records });
         }
+        self.is_skipping = false;
         if let Some(done) = place.last.checked_sub(self.base) {
             self.start = self.start.saturating_add(usize::try_from(done).unwrap_or(usize::MAX)).min(self.tail.len());
             self.base = place.last;

@@ -103,12 +103,25 @@ fn of_what_does_not_fit_the_wrong_steps_are_kept() {
 }
 
 #[test]
-fn a_record_that_is_too_large_ends_the_beginning() {
-    let scene = long(BOUNCE);
-    let trace = written(&scene, &run(&scene, ()));
-    let kept = kept(&scene, &trace, 10);
-    let beginning = kept.bytes(usize::MAX);
-    assert!(!kept.is_whole() && trace.starts_with(&beginning) && beginning.len() <= 10, "{}", beginning.len());
+fn nothing_is_kept_of_a_record_that_is_too_large() {
+    let scene = scene(BOUNCE);
+    let mut store = Store::new(Layout::of(&scene), 1000);
+    store.keep(&[1; 100], true);
+    let place = StepPlace { step: 1, before: 0, begin: 40, last: 60, end: 100, is_own: false };
+    store.pass(&place);
+    let large = vec![2; LATE];
+    store.keep(&large, true);
+    store.keep(&large, true);
+    assert_eq!((store.end(), store.tail.capacity(), store.is_closed), (100 + 2 * LATE as u64, 0, true));
+    let (begin, end) = (100, store.end());
+    store.pass(&StepPlace { step: 2, before: 60, begin, last: begin, end, is_own: false });
+    // What comes behind it may be a wrong step again.
+    store.keep(&[3; 50], true);
+    store.wrong = 4;
+    store.pass(&StepPlace { step: 4, before: end, begin: end + 10, last: end + 20, end: end + 30, is_own: false });
+    let late: Vec<(u32, usize)> = store.late.iter().map(|late| (late.step, late.records.len())).collect();
+    assert_eq!(late, [(4, 30)]);
+    assert!(matches!(&store.pieces[..], [Piece::Bytes(bytes)] if *bytes == [1; 100]));
 }
 
 #[test]
@@ -117,4 +130,15 @@ fn nothing_is_kept_for_nobody() {
     let trace = changed(&scene, |frames| frames[3].state.velocities[1] += 1.0);
     let kept = kept(&scene, &trace, 0);
     assert!(kept.bytes(usize::MAX).is_empty() && kept.late().is_empty() && !kept.is_whole());
+}
+
+#[test]
+fn what_nobody_judges_is_kept_as_far_as_it_fits() {
+    let scene = long(BOUNCE);
+    let trace = written(&scene, &run(&scene, ()));
+    let most = trace.len() / 2;
+    let keeper = Keeper::new(&scene, most);
+    io::copy(&mut keeper.reader(Slowly(&trace)), &mut io::sink()).expect("read");
+    let kept = keeper.into_kept();
+    assert!(!kept.is_whole() && kept.bytes(usize::MAX) == trace[..most]);
 }
