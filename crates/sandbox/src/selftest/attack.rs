@@ -79,6 +79,11 @@ impl Attack {
         self.expected.iter().any(|expected| expected.kind == "violation")
     }
 
+    /// Whether the run may end by itself, with an exit code.
+    pub(super) fn expects_exit(&self) -> bool {
+        self.expected.iter().any(|expected| expected.kind == "exited")
+    }
+
     /// Reads the head of a source.
     pub(super) fn parse(name: &str, source: &str) -> Result<Self, String> {
         let mut attack = Self {

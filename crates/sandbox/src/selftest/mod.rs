@@ -24,6 +24,7 @@ use super::fault::SandboxError;
 use super::job::{Job, Limits};
 use super::layers::Layer;
 use super::outcome::{Ended, RunOutcome};
+use super::running::Running;
 use super::supervisor::processes;
 use super::sys;
 
@@ -190,13 +191,28 @@ impl Place<'_> {
             .environment(environment())
             .limits(limits(attack));
         let job = if attack.pipe.is_some() { job.trace_pipe("trace.bin") } else { job };
-        let mut running = self.backend.start(&job).map_err(|e| fault(&e))?;
-        let traced = running.trace().map(|mut trace| {
-            let mut bytes = Vec::new();
-            // A trace over its limit ends with an error; how the run ended says so, too.
-            let _ = std::io::Read::read_to_end(&mut trace, &mut bytes);
-            bytes.len()
-        });
+        let start = || -> Result<(Running, Option<usize>), SandboxError> {
+            let mut running = self.backend.start(&job)?;
+            let traced = running.trace().map(|mut trace| {
+                let mut bytes = Vec::new();
+                // A trace over its limit ends with an error; how the run ended says so, too.
+                let _ = std::io::Read::read_to_end(&mut trace, &mut bytes);
+                bytes.len()
+            });
+            Ok((running, traced))
+        };
+        if attack.expects_exit() {
+            // Where runs have a supervisor in common, what this one leaves in it is there for the next.
+            let (running, _) = start().map_err(|e| fault(&e))?;
+            let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
+            if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
+                return Err(broken(format!("in a first run it {}{}", outcome.ended, words(&outcome))));
+            }
+            if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
+                return Err(broken("it printed a secret in a first run".into()));
+            }
+        }
+        let (running, traced) = start().map_err(|e| fault(&e))?;
         let (outcome, folder) = running.wait_with_folder().map_err(|error| broken(error.to_string()))?;
         let folder = folder.map_or_else(|| collect::OpenFolder::open(&decoy.work), Ok).map_err(|e| fault(&e))?;
 
