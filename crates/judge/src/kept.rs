@@ -213,11 +213,13 @@ impl Store {
 
     /// The bytes that were read from one offset to another, as far as they are still there.
     fn read(&self, begin: u64, end: u64) -> &[u8] {
-        let place = |offset: u64| {
-            let behind = usize::try_from(offset.saturating_sub(self.base)).unwrap_or(usize::MAX);
-            self.start.saturating_add(behind).min(self.tail.len())
-        };
-        &self.tail[place(begin)..place(end)]
+        &self.tail[self.place(begin)..self.place(end)]
+    }
+
+    /// Where the byte of this offset lies in the tail.
+    fn place(&self, offset: u64) -> usize {
+        let behind = usize::try_from(offset.saturating_sub(self.base)).unwrap_or(usize::MAX);
+        self.start.saturating_add(behind).min(self.tail.len())
     }
 
     /// Keeps bytes that have been read. A record that does not fit ends the beginning; while steps are judged, nothing is kept of it.
@@ -257,13 +259,14 @@ impl Store {
 
     /// Adds the bytes up to an offset to the beginning.
     fn add(&mut self, end: u64) {
-        let bytes = self.read(self.covered, end).to_vec();
+        let places = self.place(self.covered)..self.place(end);
+        let bytes = &self.tail[places];
         self.memory += bytes.len();
         self.covered = end.max(self.covered);
         match self.pieces.last_mut() {
-            Some(Piece::Bytes(last)) => last.extend_from_slice(&bytes),
+            Some(Piece::Bytes(last)) => last.extend_from_slice(bytes),
             _ if bytes.is_empty() => {}
-            _ => self.pieces.push(Piece::Bytes(bytes)),
+            _ => self.pieces.push(Piece::Bytes(bytes.to_vec())),
         }
     }
 

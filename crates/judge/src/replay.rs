@@ -91,8 +91,11 @@ struct Batch {
 /// takes over its mid record, and is compared with its end record (oracle-behaviour.md 4 to 6). Memory does not depend
 /// on the trace's length. What follows the last record is not read, save for one byte that tells whether it is there.
 pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
-    // Compiled once, whatever the trace comes from.
-    let trace: &mut (dyn Read + Send) = &mut trace;
+    judge_any(scene, &mut trace, options, progress)
+}
+
+/// Compiled once and here, whatever the trace comes from: what is generic is compiled where it is used, at that crate's level.
+fn judge_any(scene: &Scene, trace: &mut (dyn Read + Send), options: &Options, progress: &mut dyn Progress) -> Outcome {
     judge_within((record_memory(scene), FLOOR), scene, trace, options, progress)
 }
 

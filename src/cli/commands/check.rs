@@ -9,7 +9,7 @@ use crate::{
         console, exit, input,
         output::Output,
     },
-    diagnose::{Keep, examine},
+    diagnose::{self, Keep, examine},
     evidence::{self, StepRulings},
     judge::{
         Outcome, Overall, Rules, Stop, Unreadable, fair,
@@ -25,8 +25,8 @@ use crate::{
     sim::{RootSearch, StepError},
     suite::config::Hints,
 };
-use anyhow::{Result, bail};
-use std::path::Path;
+use anyhow::{Context, Result, bail};
+use std::{io::Read, path::Path};
 
 pub(super) fn run(arguments: &Check) -> Result<u8> {
     if let Some(scenes) = &arguments.own {
@@ -64,7 +64,10 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let pictures = console::pictures().filter(|_| arguments.format == CheckFormat::Text && target.is_none());
     let pictures = pictures.filter(|_| arguments.step.is_empty());
     let draws = is_page || pictures.is_some();
-    let most = if explain || (draws && !lasting) { Keep::EXPLAINED.most } else { 0 };
+    // A file that is there later, too, is read again if it comes to that: most traces are right.
+    let is_short_file = lasting && trace.length.is_some_and(|length| length <= Keep::EXPLAINED.most as u64);
+    let is_kept = if explain { !is_short_file } else { draws && !lasting };
+    let most = if is_kept { Keep::EXPLAINED.most } else { 0 };
     // Whoever writes a trace that comes once may write no more.
     let keep = Keep { most, reads_on: lasting };
     let mut rulings = StepRulings::new(&mut heard);
@@ -91,8 +94,19 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
             }
         }
     }
-    let explanations = if explain && is_wrong(outcome) { examined.explain() } else { Vec::new() };
     let content = &scene.scene;
+    let mut again = Vec::new();
+    let explanations = match explain && is_wrong(outcome) {
+        true if is_short_file => {
+            let file = input::trace(name)?.reader;
+            file.take(Keep::EXPLAINED.most as u64)
+                .read_to_end(&mut again)
+                .with_context(|| format!("cannot read the trace {} again", trace.name))?;
+            diagnose::explain(content, &again)
+        }
+        true => examined.explain(),
+        false => Vec::new(),
+    };
     let (scene, trace) = (scene.name.as_str(), trace.name.as_str());
     let audit = arguments.audit;
     let check =
@@ -118,7 +132,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         CheckFormat::Github => check.github(),
         CheckFormat::Html => {
             let evidence = evidence();
-            let bytes = examined.trace.bytes(Keep::EXPLAINED.most);
+            let bytes = if is_short_file { again } else { examined.trace.bytes(Keep::EXPLAINED.most) };
             let what_if = explanations.first().and_then(|first| what_if(content, first, &bytes, &evidence));
             let hints = Hints::Full;
             let case = page::Case {

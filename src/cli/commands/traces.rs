@@ -135,7 +135,10 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
         Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
     let mut quiet = ();
     let mut rulings = StepRulings::new(&mut quiet);
-    let examined = examine(&task.scene, &trace[..], Keep::EXPLAINED, &options, &mut rulings);
+    // It is in memory already; what lies beyond is kept only where something is found.
+    let is_short = trace.len() <= Keep::EXPLAINED.most;
+    let keep = if is_short { Keep::NOTHING } else { Keep::EXPLAINED };
+    let examined = examine(&task.scene, &trace[..], keep, &options, &mut rulings);
     let outcome = &examined.outcome;
     // As if a program had ended well after it wrote this.
     let program = sandbox::RunOutcome {
@@ -157,7 +160,8 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
         hints: plan.hints,
         limits: &plan.limits,
     };
-    let explained = conclude(&run, || examined.explain());
+    let explained =
+        conclude(&run, || if is_short { diagnose::explain(&task.scene, &trace) } else { examined.explain() });
     let mut result = SceneResult { ended: None, memory: None, ..explained };
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())
