@@ -201,9 +201,9 @@ impl Place<'_> {
             });
             Ok((running, traced))
         };
-        if attack.expects_exit() {
-            // Where runs have a supervisor in common, what this one leaves in it is there for the next.
-            let (running, _) = start().map_err(|e| fault(&e))?;
+        let (mut running, mut traced) = start().map_err(|e| fault(&e))?;
+        if attack.expects_exit() && running.is_in_memory() {
+            // Such runs have a supervisor in common: what this one leaves in it is there for the next.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
             if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
                 return Err(broken(format!("in a first run it {}{}", outcome.ended, words(&outcome))));
@@ -211,8 +211,8 @@ impl Place<'_> {
             if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
                 return Err(broken("it printed a secret in a first run".into()));
             }
+            (running, traced) = start().map_err(|e| fault(&e))?;
         }
-        let (running, traced) = start().map_err(|e| fault(&e))?;
         let (outcome, folder) = running.wait_with_folder().map_err(|error| broken(error.to_string()))?;
         let folder = folder.map_or_else(|| collect::OpenFolder::open(&decoy.work), Ok).map_err(|e| fault(&e))?;
 
