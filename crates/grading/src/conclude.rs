@@ -156,7 +156,6 @@ mod tests {
     use fosssim_mistakes::student::{self, Mistake, Student};
     use fosssim_model::scene::original;
     use fosssim_testing::scenes;
-    use std::{sync::Arc, time::Duration};
 
     /// Explaining takes as long as judging many traces: nobody asks for what is not told.
     #[test]
@@ -165,16 +164,7 @@ mod tests {
         let trace = student::trace(&scene, Student::new(Some(Mistake::ParticleEdgeEmpty))).expect("a trace");
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
-        let program = sandbox::RunOutcome {
-            ended: Ended::Exited(0),
-            cpu: Duration::ZERO,
-            wall: Duration::ZERO,
-            peak_memory: 0,
-            bytes_written: trace.len() as u64,
-            stdout: sandbox::Captured::default(),
-            stderr: sandbox::Captured::default(),
-            layers: Arc::from([]),
-        };
+        let program = sandbox::RunOutcome::without_run(trace.len() as u64);
         let limits = &RunLimits::default();
         for (hints, is_asked) in [(Hints::None, false), (Hints::Where, false), (Hints::What, true), (Hints::Full, true)]
         {

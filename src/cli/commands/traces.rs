@@ -11,7 +11,7 @@ use crate::{
     evidence::StepRulings,
     judge::replay::Options,
     report::grade::{Format, Text, TextDetail, rehearse},
-    sandbox::{self, Ended},
+    sandbox::RunOutcome,
     suite::{
         Grade, Reason, Run, SceneResult, SceneTask, Verdict,
         cards::{Cards, Judged},
@@ -29,7 +29,6 @@ use std::{
     fs::{self, File},
     io::{self, Read},
     path::{Path, PathBuf},
-    sync::Arc,
     time::Duration,
 };
 
@@ -141,16 +140,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
     let examined = examine(&task.scene, &trace[..], keep, &options, &mut rulings);
     let outcome = &examined.outcome;
     // As if a program had ended well after it wrote this.
-    let program = sandbox::RunOutcome {
-        ended: Ended::Exited(0),
-        cpu: Duration::ZERO,
-        wall: Duration::ZERO,
-        peak_memory: 0,
-        bytes_written: trace.len() as u64,
-        stdout: sandbox::Captured::default(),
-        stderr: sandbox::Captured::default(),
-        layers: Arc::from([]),
-    };
+    let program = RunOutcome::without_run(trace.len() as u64);
     let run = Run {
         scene: &task.name,
         program: &program,
