@@ -12,7 +12,8 @@
 //!    [`FAIR_SENSITIVITY`] times what such roundings of the step's input do to its result.
 //! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged. Where and when the
 //!    pair collides, if it does, is not free. Coefficients that were lost because of a factor are no round-off: decisions
-//!    and times of impact are compared with those of the whole polynomials.
+//!    and times of impact are compared with those of the whole polynomials. Those that a factor keeps, and the course's
+//!    library drops of the reference's, are followed.
 //! 5. It looks at everything: the first record, mid records, times of impact, repeated contacts, and what follows the
 //!    last record.
 //! 6. A step from or to a state that leads nowhere is never right.

@@ -16,7 +16,7 @@ use fosssim_num::vector::Vec2;
 pub(super) struct Own {
     /// Their time of impact.
     pub time: f64,
-    /// Whether the logged ones have lost other leading coefficients.
+    /// Whether the logged ones have lost leading coefficients that these have.
     pub lost: bool,
 }
 
@@ -50,7 +50,8 @@ impl Follower<'_> {
         decision
     }
 
-    /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault.
+    /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault. Where a factor keeps some
+    /// that the course's library drops of the reference's, nothing is lost: what its root finder makes of them is not charged.
     fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: Own) {
         if !own.lost {
             return;

@@ -198,9 +198,10 @@ impl Observer for Follower<'_> {
         let findings = self.judged.total();
         self.review(pair, q_start, q_end, index, polynomials.len());
         if self.judged.total() == findings {
-            let differs = |(number, own): (usize, &Polynomial)| own.coefficients().len() != logged(number).len();
-            let lost = polynomials.iter().enumerate().any(differs);
-            self.judged.lost += u64::from(lost);
+            let lengths =
+                || polynomials.iter().enumerate().map(|(number, own)| (own.coefficients().len(), logged(number).len()));
+            self.judged.lost += u64::from(lengths().any(|(own, logged)| logged != own));
+            let lost = lengths().any(|(own, logged)| logged < own);
             self.own = contact::time_of(polynomials).map(|time| Own { time, lost });
         }
         // What the submission solved is what decides, even if it is wrong: a wrong polynomial is charged once.
