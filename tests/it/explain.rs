@@ -1,12 +1,13 @@
 //! Explanations: what is said of each known mistake, by one trace and by several.
 use super::{
+    corpus,
     fair::{assets, rows, simulated},
     workspace::Workspace,
 };
 use fosssim_oracle::{
     diagnose::{ExamplePlace, Explanation, common, explain, formula_in, known},
     judge::{fair::FairVerdict, replay},
-    scene::Scene,
+    scene::{Scene, original},
     sim::PairKind,
     student::{self, KNOWN_ACCUSED, Row, RowKind},
 };
@@ -73,6 +74,67 @@ fn nine_of_ten_mistakes_are_named_first() {
     let confused: Vec<&String> = named.iter().flatten().collect();
     eprintln!("{} of {} mistakes named first; the others:\n{confused:#?}", rows.len() - confused.len(), rows.len());
     assert!(10 * confused.len() <= rows.len(), "{confused:#?}");
+}
+
+/// What submissions of the corpus do wrong, by the name of their mistake: where the fair rules refuse one of their traces, that is
+/// named first, or told with what this trace can't tell it from.
+const SUBMISSIONS: [(&str, &str); 27] = [
+    ("b02-", "pp-no-two"),
+    ("b03-", "pp-radii-squared-apart"),
+    ("b14-", "pp-first-radius-twice"),
+    ("b16-", "handover-single-precision"),
+    ("b17-", "handover-position-only"),
+    ("b32-", "pe-edge-still"),
+    ("b35-", "pe-no-cubic"),
+    ("b36-", "pe-cubic-one-bc"),
+    ("b37-", "pe-radii-squared-apart"),
+    ("b42-", "ph-no-normal-square"),
+    ("b53-", "pp-tiny-error"),
+    ("c02-", "pp-contact-at-start"),
+    ("c05-", "decision-open-start"),
+    ("c18-", "ph-contact-undivided"),
+    ("c21-", "contact-unit-length"),
+    ("d01-", "loop-once-when-zero"),
+    ("d03-", "loop-test-when-zero"),
+    ("d05-", "loop-anew"),
+    ("d08-", "loop-always-fails"),
+    ("e02-", "failsafe-centre-unweighted"),
+    ("e05-", "failsafe-fixed-forgotten"),
+    ("e08-", "failsafe-velocity-no-step"),
+    ("e13-", "geometric-finds-in-vain"),
+    ("e17-", "failsafe-small-angle"),
+    ("e22-", "zones-one-endpoint"),
+    ("e32-", "failsafe-angular-doubled"),
+    ("real1", "failsafe-angular-doubled"),
+];
+
+#[test]
+fn what_submissions_of_the_corpus_do_wrong_is_named() {
+    let Some(folder) = corpus::folder() else { return };
+    let text = std::fs::read_to_string(folder.join("verdicts.jsonl")).expect("readable");
+    let rows: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
+    let named: Vec<Option<String>> = rows
+        .par_iter()
+        .filter_map(|row| {
+            let text = |key: &str| row[key].as_str().unwrap_or_default();
+            let (_, id) = SUBMISSIONS.iter().find(|(start, _)| text("submission").starts_with(start))?;
+            let file = row["trace_file"].as_str()?;
+            let scene = std::fs::read(folder.join(format!("scenes/{}.xml", text("scene")))).expect("readable");
+            let scene = original::read(&scene).expect("a scene").scene;
+            let trace = corpus::unpack(&folder.join(file));
+            let fair = replay::judge(&scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
+            (fair.verdict == FairVerdict::Rejected).then(|| {
+                let found = explain(&scene, &trace);
+                let first = found.first().map(|first| (first.key.clone(), first.same_as.clone())).unwrap_or_default();
+                let is_named = first.0 == *id || first.1.iter().any(|other| other == id);
+                (!is_named).then(|| format!("{} on {}: {first:?}", text("submission"), text("scene")))
+            })
+        })
+        .collect();
+    let misnamed: Vec<&String> = named.iter().flatten().collect();
+    assert!(misnamed.is_empty(), "{misnamed:#?}");
+    corpus::ran("what_submissions_of_the_corpus_do_wrong_is_named", named.len());
 }
 
 /// No correct variant is accused of anything: the fair rules accept it, and nobody asks. Where one is asked about all the

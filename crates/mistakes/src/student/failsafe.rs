@@ -112,6 +112,9 @@ impl<'a> Rigid<'a> {
     }
 
     fn mass(&self, particle: usize) -> f64 {
+        if self.mistake() == Some(Mistake::FailsafeUnweighted) {
+            return 1.0;
+        }
         let index = if self.mistake() == Some(Mistake::FailsafeMassIndex) { particle } else { 2 * particle };
         self.world.masses[index]
     }
@@ -119,13 +122,14 @@ impl<'a> Rigid<'a> {
     /// The centre of mass and its motion, from the particles' momenta.
     fn translation(&mut self, zone: &Zone, state: &State) {
         let mut total = 0.0;
+        let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));
+        let is_unweighted = |alone| both || student.makes(alone);
         for &particle in &zone.particles {
             let mass = self.mass(particle);
             let start = at(self.q_start, particle);
             let moved = at(&state.x, particle) - start;
             let position = if self.mistake() == Some(Mistake::FailsafeCentreAtEnd) { start + moved } else { start };
-            let student = self.world.student;
-            let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { mass };
+            let weight = |forgotten| if is_unweighted(forgotten) { 1.0 } else { mass };
             let motion = match student.mistake_in(HERE) {
                 Some(Mistake::FailsafeMomentumVelocity) => at(&state.v, particle),
                 _ => moved,
@@ -141,9 +145,9 @@ impl<'a> Rigid<'a> {
         }
         #[expect(clippy::cast_precision_loss, reason = "a number of particles")]
         let count = zone.particles.len() as f64;
-        let by_count = self.mistake() == Some(Mistake::FailsafeCentreUnweighted);
+        let by_count = is_unweighted(Mistake::FailsafeCentreUnweighted);
         self.centre = over(self.centre, if by_count { count } else { total });
-        let by_count = self.mistake() == Some(Mistake::FailsafeMomentumUnweighted);
+        let by_count = is_unweighted(Mistake::FailsafeMomentumUnweighted);
         self.shift = over(self.shift, if by_count { count } else { total });
         if self.mistake() == Some(Mistake::FailsafeNoTranslation) {
             self.shift = Vec2::zeros();

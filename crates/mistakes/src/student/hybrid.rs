@@ -69,7 +69,8 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
         let q_end = if student.makes(Mistake::GeometricDetectsPrediction) { &prediction.x } else { &state.x };
         let contacts = detection::pass(world, q_start, q_end, log)?;
         let found = contacts.iter().map(|contact| zones::zone_of(world, contact));
-        if contacts.is_empty() && student.makes(Mistake::GeometricStopsWhenClear) {
+        let stops_when_clear = contacts.is_empty() && student.makes(Mistake::GeometricStopsWhenClear);
+        if stops_when_clear || student.makes(Mistake::GeometricFindsInVain) {
             return Ok(());
         }
         let mut next: Vec<Zone> =

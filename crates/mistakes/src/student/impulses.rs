@@ -92,13 +92,15 @@ fn resolve(
     log: &mut StepLog,
 ) {
     let student = world.student;
-    let before = if student.makes(Mistake::ImpulsesFromPrediction) { prediction.clone() } else { state.clone() };
+    let anew = student.makes(Mistake::ImpulsesAnew);
+    let from_prediction = anew || student.makes(Mistake::ImpulsesFromPrediction);
+    let before = if from_prediction { prediction.clone() } else { state.clone() };
     let chosen = match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesFirstOnly) => &contacts[..1],
         Some(Mistake::ImpulsesLastOnly) => &contacts[contacts.len() - 1..],
         _ => contacts,
     };
-    if student.makes(Mistake::ImpulsesResultNotAccumulated) {
+    if anew || student.makes(Mistake::ImpulsesResultNotAccumulated) {
         state.clone_from(prediction);
     }
     if student.makes(Mistake::ImpulsesPredictedVelocities) {

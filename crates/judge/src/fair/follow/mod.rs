@@ -195,9 +195,7 @@ impl Observer for Follower<'_> {
             self.note_course_form(pair, q_start, q_end, index);
             return;
         }
-        let findings = self.judged.total();
-        self.review(pair, q_start, q_end, index, polynomials.len());
-        if self.judged.total() == findings {
+        if self.review(pair, q_start, q_end, index, polynomials.len()) {
             let lengths =
                 || polynomials.iter().enumerate().map(|(number, own)| (own.coefficients().len(), logged(number).len()));
             self.judged.lost += u64::from(lengths().any(|(own, logged)| logged != own));

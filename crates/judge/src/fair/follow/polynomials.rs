@@ -14,8 +14,9 @@ use fosssim_num::polynomial::{MAX_COEFFICIENTS, Polynomial};
 fosssim_model::drops_leading!();
 
 impl Follower<'_> {
-    /// Compares a pair's logged polynomials, which begin at `index`, with what they should be.
-    pub(super) fn review(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize, count: usize) {
+    /// Compares a pair's logged polynomials, which begin at `index`, with what they should be. Whether they are right as far as
+    /// the place of the particles is known.
+    pub(super) fn review(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize, count: usize) -> bool {
         let bounds = self.sensitivity.and_then(|known| known.passes.get(self.pass.index as usize));
         let motion = |q_end: &[f64], bounds: Option<&Vec<f64>>| {
             let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
@@ -51,7 +52,7 @@ impl Follower<'_> {
                 (seen, expected, results) = (other_motion, other, others);
             }
         }
-        let mut has_right_approach = false;
+        let (mut has_right_approach, mut is_right) = (false, true);
         for (number, result) in results.into_iter().enumerate().take(count) {
             let place =
                 PolynomialPlace { pass: self.pass, pair, role: Role::of(pair.kind, number), index: index + number };
@@ -82,16 +83,19 @@ impl Follower<'_> {
                 Err(mismatch) => {
                     let tells_no_factor = possible_factors(expected.polynomial(number), log.get(place.index)).is_some();
                     if tells_no_factor {
-                        let is_certain =
-                            self.known_positions().is_some() || !self.spoilt[self.part()] && !self.is_moved(pair);
+                        let is_reached = self.known_positions().is_some() || !self.spoilt[self.part()];
+                        let is_certain = self.known_positions().is_some() || is_reached && !self.is_moved(pair);
                         self.deferred.extend(is_certain.then_some(Deferred { place, number, expected }));
+                        is_right &= is_reached;
                     } else {
+                        is_right = false;
                         self.charge_polynomial(place, number, &expected, mismatch);
                     }
                 }
             }
         }
         self.seen = Some(Seen { motion: seen, has_right_approach });
+        is_right
     }
 
     /// The factors that a polynomial may have which does not tell its own: that of the same polynomial of another pair of its

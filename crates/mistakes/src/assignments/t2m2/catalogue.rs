@@ -389,6 +389,7 @@ catalogue! {
         ImpulsesFromPrediction "loop-from-prediction": "Every round computes its impulses from the integrator's prediction, not from the last round's result." => "applyImpulses gets qe and qdote; the last round's qm and qdotm belong there.";
         ImpulsesPredictedVelocities "loop-predicted-velocities": "Every round adds its impulses to the predicted velocities, which drops those of the rounds before." => "qdote stands where qdotm, the loop's own velocities, belongs.";
         ImpulsesResultNotAccumulated "loop-not-accumulated": "Every round applies its impulses to the integrator's prediction, which drops the rounds before." => "qm = qe + impulses stands where qm += impulses belongs.";
+        ImpulsesAnew "loop-anew": "Every round starts anew from the integrator's prediction: its impulses are computed from it and applied to it." => "qm = qe + impulses(qe, qdote) stands where qm += impulses(qm, qdotm) belongs.";
         ImpulsesOneByOne "loop-one-by-one": "Each impulse of a round is computed from the positions that the one before left." => "The round's start (qe, qdote) is to be kept while all impulses of the round are computed.";
         ImpulsesLastWins "loop-last-wins": "The impulses of a round overwrite one another instead of adding up." => "qm = qe + I_k stands where qm = qe + I_1 + I_2 + ... belongs.";
         ImpulsesFirstOnly "loop-first-only": "Only the first collision of a round is resolved." => "collisions[0] stands where all collisions belong.";
@@ -402,6 +403,7 @@ catalogue! {
     Wrong ImpactZones {
         GeometricEmpty "geometric-empty": "The geometric part is left empty." => "Steps 1 to 9 of section 3.6 are missing: the result is qm = qe, without a detection pass.";
         GeometricOneRound "geometric-one-round": "Zones never grow: the loop ends after the first round." => "Steps 5 to 9 of section 3.6 are missing.";
+        GeometricFindsInVain "geometric-finds-in-vain": "Zones never grow: what the pass after the first round finds is left aside." => "Steps 6 to 9 of section 3.6 are missing: nothing follows from step 5.";
         GeometricTwoRounds "geometric-two-rounds": "Zones grow only once." => "Step 9 of section 3.6 runs 1 time; it runs until Z = Z'.";
         GeometricRestarts "geometric-restarts": "Every round starts again from the predicted positions." => "qm = qe in every round; it belongs before the loop.";
         GeometricDetectsPrediction "geometric-detects-prediction": "Later passes look at the predicted positions, not at the modified ones." => "detectCollisions(qs, qe) stands where detectCollisions(qs, qm) belongs.";
@@ -428,6 +430,8 @@ catalogue! {
     }
     Wrong Failsafe {
         FailsafeEmpty "failsafe-empty": "The failsafe is left empty." => "x and v of the zone stay as they are; x = x_cm + dx_cm + R (xs - x_cm) and v = (x - xs) / dt belong there.";
+        FailsafeUnweighted "failsafe-unweighted": "All masses are left out." => "m is missing in all four sums: x_cm, dx_cm, L and I.";
+        FailsafeMeansUnweighted "failsafe-means-unweighted": "Neither the centre of mass nor its motion is weighted with the masses." => "sum(xs) / N and sum(dx) / N stand where sum(m xs) / sum(m) and sum(m dx) / sum(m) belong.";
         FailsafeCentreUnweighted "failsafe-centre-unweighted": "The centre of mass is not weighted with the masses." => "sum(xs) / N stands where sum(m xs) / sum(m) belongs.";
         FailsafeCentreAtEnd "failsafe-centre-at-end": "The centre of mass is taken at the end of the step." => "sum(m xe) / sum(m) stands where sum(m xs) / sum(m) belongs.";
         FailsafeNoCentre "failsafe-no-centre": "The centre of mass is not added back." => "dx_cm + R (xs - x_cm) lacks x_cm.";
