@@ -47,6 +47,33 @@ fn what_a_program_leaves_is_handed_over_and_its_folder_stays_as_it_was() {
 }
 
 #[test]
+fn a_jobs_files_lie_where_its_program_works_and_nowhere_else() {
+    let Some(backend) = with_namespaces() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let long = "x".repeat(300_000);
+    let files =
+        |job: Job| job.file("scene.xml", "a scene").file("empty", "").file("long", long.as_str()).limits(small());
+    let read = |folder: &Path| files(Job::new("/usr/bin/wc", folder).arguments(["-c", "scene.xml", "empty", "long"]));
+    let sizes = "     7 scene.xml\n     0 empty\n300000 long\n300007 total\n";
+    for _ in 0..2 {
+        let (outcome, left) = run(backend, &read(folder.path()).folder_in_memory());
+        assert_eq!(String::from_utf8_lossy(&outcome.stdout.bytes), sizes);
+        assert_eq!((outcome.ended, left.is_some()), (Ended::Exited(0), true));
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+    // Build tools, and folders on the disk.
+    let tools = read(folder.path()).folder_in_memory().policy(Policy::Tools);
+    for job in [tools, read(folder.path())] {
+        assert_eq!(String::from_utf8_lossy(&run(backend, &job).0.stdout.bytes), sizes);
+    }
+    for name in ["../scene.xml", "", ".", "a/b", "a\0b"] {
+        for job in [Job::new("/bin/true", folder.path()), Job::new("/bin/true", folder.path()).folder_in_memory()] {
+            assert!(backend.start(&job.file(name, "x").limits(small())).is_err(), "{name:?}");
+        }
+    }
+}
+
+#[test]
 fn the_kernel_itself_refuses_more_than_the_folder_may_hold() {
     let Some(backend) = with_namespaces() else { return };
     let folder = tempfile::tempdir().unwrap();

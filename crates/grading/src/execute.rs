@@ -215,10 +215,9 @@ impl Runner<'_> {
         task: &SceneTask,
     ) -> Result<(Running, Temporary), ExecuteError> {
         let folder = self.folders.take().map_err(ExecuteError::Folder)?;
-        let scene_file = folder.path().join(SCENE_FILE);
-        std::fs::write(&scene_file, &task.xml).map_err(ExecuteError::Folder)?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
+            .file(SCENE_FILE, task.xml.as_slice())
             .trace_pipe(TRACE_FILE)
             .policy(Policy::Submission)
             .folder_in_memory()

@@ -5,6 +5,7 @@
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
 use include_dir::{Dir, File, include_dir};
+use std::path::Path;
 
 static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
@@ -71,8 +72,19 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
 
 /// A file of an assignment by its path within the assignment's folder, or by its whole path.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
-    let of = |assignment: Assignment| root.get_file(format!("{}/{path}", assignment.key()));
-    Assignment::ALL.into_iter().find_map(of).or_else(|| root.get_file(path))
+    Assignment::ALL
+        .into_iter()
+        .find_map(|assignment| below(root.get_dir(assignment.key())?, path))
+        .or_else(|| below(root, path))
+}
+
+/// The file of this path below a folder. [`Dir::get_file`] compares the path with that of every entry, part by part.
+fn below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
+    let is_called = |path: &Path, name: &str| path.file_name().is_some_and(|last| last == name);
+    match path.split_once('/') {
+        Some((first, rest)) => below(folder.dirs().find(|inner| is_called(inner.path(), first))?, rest),
+        None => folder.files().find(|file| is_called(file.path(), path)),
+    }
 }
 
 #[cfg(test)]

@@ -89,9 +89,15 @@ impl Supervisor {
     }
 
     /// Asks a keeper of runs of this kind, and starts one if there is none; with the word whether it was there before.
-    fn ask_keeper(&self, order: &Order, kind: Keeping, pool: &Arc<Pool>) -> Result<(Asked, bool), SandboxError> {
+    fn ask_keeper(
+        &self,
+        order: &Order,
+        files: &[(String, Vec<u8>)],
+        kind: Keeping,
+        pool: &Arc<Pool>,
+    ) -> Result<(Asked, bool), SandboxError> {
         if let Some(keeper) = pool.take(&kind)
-            && let Ok((control, answers)) = keeper.ask(order)
+            && let Ok((control, answers)) = keeper.ask(order, files)
         {
             return Ok((Asked { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, true));
         }
@@ -100,7 +106,7 @@ impl Supervisor {
             command.stdout(Stdio::null());
             let (child, socket) = connected(command)?;
             let keeper = Keeper::new(kind, child, socket);
-            let (control, answers) = keeper.ask(order)?;
+            let (control, answers) = keeper.ask(order, files)?;
             Ok((Asked { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, false))
         };
         begin().map_err(|source| SandboxError::Supervisor { program: self.program.display().to_string(), source })
@@ -314,7 +320,10 @@ impl Backend {
     pub fn start(&self, job: &Job) -> Result<Running, SandboxError> {
         let (supervisor, walls, keepers) = match &self.kind {
             Kind::Launcher { supervisor, walls, keepers } => (supervisor, *walls, keepers),
-            Kind::Fake(script) => return Ok(script(job).into_running(job, self.layers.clone())),
+            Kind::Fake(script) => {
+                write_files(job)?;
+                return Ok(script(job).into_running(job, self.layers.clone()));
+            }
         };
         if let Some(staged) = &job.staged
             && Identity::of(&job.program).as_ref() != Some(staged)
@@ -328,7 +337,13 @@ impl Backend {
         if examined.sanitised && !job.sanitisers {
             return Ok(FakeRun::could_not_start(StartProblem::Sanitised).into_running(job, self.layers.clone()));
         }
-        let order = order(job, walls, examined, &supervisor.program)?;
+        let mut order = order(job, walls, examined, &supervisor.program)?;
+        if Keeping::exists_for(&order) {
+            order.files =
+                job.files.iter().map(|(name, bytes)| (name.clone().into_bytes(), bytes.len() as u64)).collect();
+        } else {
+            write_files(job)?;
+        }
         let pipe = match &job.trace_pipe {
             Some(name) if order.volatile => {
                 plain_name(name)?;
@@ -339,7 +354,7 @@ impl Backend {
         };
         let (mut asked, first) = loop {
             let (mut asked, kept) = match Keeping::of(&order) {
-                Some(kind) => supervisor.ask_keeper(&order, kind, keepers)?,
+                Some(kind) => supervisor.ask_keeper(&order, &job.files, kind, keepers)?,
                 None => (supervisor.spawn_for(&order)?, false),
             };
             match asked.first() {
@@ -374,6 +389,16 @@ impl Backend {
             }
         }
     }
+}
+
+/// Writes the job's files into its folder as it lies on the disk.
+fn write_files(job: &Job) -> Result<(), SandboxError> {
+    let failed = |source: io::Error| SandboxError::Folder { folder: job.folder.display().to_string(), source };
+    for (name, content) in &job.files {
+        let plain = wire::plain_name(name.as_bytes()).ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
+        std::fs::write(job.folder.join(plain), content).map_err(failed)?;
+    }
+    Ok(())
 }
 
 /// The working folder in memory, and the reading end of its trace pipe.
@@ -419,6 +444,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
         own: own::known(supervisor).iter().map(|path| wire::raw(path)).collect(),
         pipe: job.trace_pipe.as_ref().map(|name| name.as_bytes().to_vec()),
+        files: Vec::new(),
         volatile: job.in_memory && walls.namespaces && room::is_enough_for(job.limits.folder_bytes),
         tools: job.policy == Policy::Tools,
         interpreter: examined.script.as_ref().map(|script| wire::raw(&script.interpreter)),
@@ -442,7 +468,7 @@ fn micros(time: Duration) -> u64 {
 
 /// The name of a trace pipe, which leads to no other folder.
 fn plain_name(name: &str) -> Result<CString, SandboxError> {
-    let plain = !name.is_empty() && !name.contains('/') && name != "." && name != "..";
+    let plain = wire::plain_name(name.as_bytes()).is_some();
     CString::new(name).ok().filter(|_| plain).ok_or_else(|| SandboxError::Pipe {
         name: name.escape_debug().to_string(),
         source: io::ErrorKind::InvalidInput.into(),

@@ -133,7 +133,7 @@ mod tests {
     fn order() -> Order {
         serde_json::from_value(serde_json::json!({
             "program": [], "folder": [], "arguments": [], "environment": [], "readable": [], "executable": [], "named": [],
-            "own": [], "pipe": null, "volatile": false, "interpreter": null, "words": [], "tools": false, "sanitised": false,
+            "own": [], "pipe": null, "files": [], "volatile": false, "interpreter": null, "words": [], "tools": false, "sanitised": false,
             "walls": {"landlock": true, "landlock_version": 0, "scopes": true, "seccomp": true, "notify": true, "own_user": true, "namespaces": true, "group": true, "bubblewrap": false},
             "cpu_micros": 1_000_000, "wall_micros": 2_000_000, "memory": 1000, "output_bytes": 10,
             "folder_bytes": 10, "folder_files": 10, "processes": 1, "open_files": 10,

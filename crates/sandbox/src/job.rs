@@ -93,6 +93,7 @@ pub struct Job {
     pub(crate) sanitisers: bool,
     pub(crate) staged: Option<Identity>,
     pub(crate) in_memory: bool,
+    pub(crate) files: Vec<(String, Vec<u8>)>,
     pub(crate) limits: Limits,
 }
 
@@ -113,6 +114,7 @@ impl Job {
             sanitisers: false,
             staged: None,
             in_memory: false,
+            files: Vec::new(),
             limits: Limits::default(),
         }
     }
@@ -148,6 +150,14 @@ impl Job {
     #[must_use]
     pub fn folder_in_memory(mut self) -> Self {
         self.in_memory = true;
+        self
+    }
+
+    /// A file of this name and content lies in the working folder when the program starts. Where that folder lies in memory, so does
+    /// the file, and nowhere else.
+    #[must_use]
+    pub fn file(mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
+        self.files.push((name.into(), content.into()));
         self
     }
 

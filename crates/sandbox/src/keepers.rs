@@ -1,7 +1,7 @@
 //! Supervisors that serve several runs of one submission, as the grader sees them.
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Write};
 use std::net::Shutdown;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::fs::MetadataExt;
@@ -17,8 +17,8 @@ use super::program::Program;
 use super::sys;
 use super::wire::{self, Order, Report};
 
-/// What runs must have in common to be served by one keeper: all of the order but arguments, environment and working folder, and the
-/// very files that it names.
+/// What runs must have in common to be served by one keeper: all of the order but arguments, environment and working folder with what
+/// lies there, and the very files that it names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: Order,
@@ -27,14 +27,25 @@ pub(super) struct Kind {
 }
 
 impl Kind {
-    /// The kind of this order; `None` when its supervisor can serve no other run: where there are no namespaces, which end with
-    /// the run, or processes that nobody counts.
+    /// Whether there can be a keeper for this order. Otherwise its supervisor serves no other run: where there are no namespaces,
+    /// which end with the run, or processes that nobody counts.
+    pub(super) fn exists_for(order: &Order) -> bool {
+        order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
+    }
+
+    /// The kind of this order; `None` when there can be no keeper for it.
     pub(super) fn of(order: &Order) -> Option<Self> {
-        if !order.volatile || order.tools || !order.walls.namespaces || !order.walls.seccomp {
+        if !Self::exists_for(order) {
             return None;
         }
-        let common =
-            Order { folder: Vec::new(), arguments: Vec::new(), environment: Vec::new(), pipe: None, ..order.clone() };
+        let common = Order {
+            folder: Vec::new(),
+            arguments: Vec::new(),
+            environment: Vec::new(),
+            pipe: None,
+            files: Vec::new(),
+            ..order.clone()
+        };
         let named = order.readable.iter().chain(&order.executable).chain(&order.named);
         let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
         let files = named.map(|path| identity(&wire::path(path))).collect();
@@ -55,8 +66,9 @@ impl Keeper {
         Self { kind, child: Some(child), socket }
     }
 
-    /// Asks for a run of an order of its kind; the answer is the way to its supervisor, and what that says.
-    pub(super) fn ask(&self, order: &Order) -> io::Result<(UnixStream, File)> {
+    /// Asks for a run of an order of its kind, whose files have these contents; the answer is the way to its supervisor, and what that
+    /// says.
+    pub(super) fn ask(&self, order: &Order, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
         let (answers, told) = io::pipe()?;
@@ -64,6 +76,7 @@ impl Keeper {
         sys::send_descriptor(&self.socket, wire::ANSWERS, told.as_fd())?;
         sys::send_descriptor(&self.socket, wire::FOLDER, folder.as_fd())?;
         wire::send(&self.socket, order)?;
+        files.iter().try_for_each(|(_, content)| (&self.socket).write_all(content))?;
         Ok((control, OwnedFd::from(answers).into()))
     }
 
@@ -193,8 +206,13 @@ mod tests {
     #[test]
     fn runs_of_one_submission_are_of_one_kind() {
         let kind = Kind::of(&order()).unwrap();
-        let same =
-            Order { folder: b"/x".to_vec(), arguments: vec![b"-s".to_vec()], pipe: Some(b"t".to_vec()), ..order() };
+        let same = Order {
+            folder: b"/x".to_vec(),
+            arguments: vec![b"-s".to_vec()],
+            pipe: Some(b"t".to_vec()),
+            files: vec![(b"a".to_vec(), 9)],
+            ..order()
+        };
         assert_eq!(Kind::of(&same).unwrap(), kind);
         for other in [
             Order { program: b"/bin/ls".to_vec(), ..order() },

@@ -27,7 +27,8 @@ pub(super) enum Fork {
     Parent(i32),
 }
 
-/// The proof that this process has one thread, and starts none: the copy of its memory that a child gets is consistent.
+/// The proof that this process, or the one that it was forked from, has one thread, and starts none: the copy of its memory that a
+/// child gets is consistent.
 pub(super) struct SingleThread(());
 
 /// # Errors
@@ -46,8 +47,16 @@ pub(super) fn single_thread() -> io::Result<SingleThread> {
 ///
 /// When the process has more than one thread, or the kernel refuses.
 pub(super) fn fork() -> io::Result<Fork> {
-    single_thread()?;
-    // SAFETY: the process has one thread, as was just checked, so the child's copy of memory is consistent.
+    fork_alone(&single_thread()?)
+}
+
+/// Forks a process that is known to have one thread.
+///
+/// # Errors
+///
+/// When the kernel refuses.
+pub(super) fn fork_alone(_: &SingleThread) -> io::Result<Fork> {
+    // SAFETY: the process has one thread, so the child's copy of memory is consistent.
     match check(i64::from(unsafe { libc::fork() }))? {
         0 => Ok(Fork::Child),
         pid => Ok(Fork::Parent(pid as i32)),
@@ -195,13 +204,27 @@ pub(super) fn close_on_execute() -> io::Result<()> {
     Ok(())
 }
 
-/// Restores the default reaction to every signal and unblocks all of them.
-pub(super) fn default_signals() {
+/// The signals that this process ignores. Only these stay as they are when a program is executed: what has a function gets the
+/// default reaction then.
+pub(super) fn ignored_signals() -> Vec<i32> {
+    let is_ignored = |signal: &i32| {
+        // SAFETY: an all-zero action is valid and outlives the call, which only asks; numbers without a signal are refused by the
+        // kernel.
+        unsafe {
+            let mut action: libc::sigaction = std::mem::zeroed();
+            libc::sigaction(*signal, std::ptr::null(), &raw mut action) == 0 && action.sa_sigaction == libc::SIG_IGN
+        }
+    };
+    (1..=64).filter(is_ignored).collect()
+}
+
+/// Restores the default reaction to these signals and unblocks all.
+pub(super) fn default_signals(ignored: &[i32]) {
     // SAFETY: the default action needs no function; numbers without a signal are refused by the kernel. The set is
     // initialised by `sigemptyset` before it is read.
     unsafe {
-        for signal in 1..=64 {
-            libc::signal(signal, libc::SIG_DFL);
+        for signal in ignored {
+            libc::signal(*signal, libc::SIG_DFL);
         }
         let mut none: libc::sigset_t = std::mem::zeroed();
         libc::sigemptyset(&raw mut none);

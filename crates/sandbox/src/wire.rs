@@ -46,6 +46,12 @@ pub(super) fn path(raw: &Raw) -> PathBuf {
     PathBuf::from(std::ffi::OsString::from_vec(raw.clone()))
 }
 
+/// The name of an entry of a folder, if these bytes are one: it leads to no other folder.
+pub(super) fn plain_name(raw: &[u8]) -> Option<&Path> {
+    let leads_on = raw.is_empty() || raw == b"." || raw == b".." || raw.iter().any(|byte| matches!(byte, b'/' | 0));
+    (!leads_on).then(|| Path::new(std::ffi::OsStr::from_bytes(raw)))
+}
+
 /// Which layers the supervisor must put up. A layer that is asked for and fails is an error, never skipped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Walls {
@@ -77,6 +83,9 @@ pub(super) struct Order {
     /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
     pub(super) own: Vec<Raw>,
     pub(super) pipe: Option<Raw>,
+    /// Files that are laid into the working folder, by name, with their length: their bytes follow the order. Only where that folder
+    /// lies in memory.
+    pub(super) files: Vec<(Raw, u64)>,
     /// Whether the working folder lies in memory. The supervisor then makes the pipe, and hands both to the grader.
     pub(super) volatile: bool,
     pub(super) tools: bool,
@@ -198,6 +207,15 @@ pub(super) fn send<T: Serialize>(mut to: impl Write, message: &T) -> io::Result<
     to.flush()
 }
 
+/// Reads as many bytes as were promised. Memory grows as they arrive.
+pub(super) fn receive_bytes(from: impl Read, length: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(usize::try_from(length.min(USUAL_MESSAGE)).unwrap_or_default() + 1);
+    if from.take(length).read_to_end(&mut bytes)? as u64 != length {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
+    Ok(bytes)
+}
+
 /// Reads one message, and not a byte more.
 pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T> {
     let mut length = [0; 8];
@@ -206,12 +224,8 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     if length > LONGEST_MESSAGE {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "a message of the supervisor is out of step"));
     }
-    // The length is a claim: beyond what a message usually has, memory grows as bytes arrive.
-    let mut body = Vec::with_capacity(length.min(USUAL_MESSAGE) as usize + 1);
-    if from.take(length).read_to_end(&mut body)? as u64 != length {
-        return Err(io::ErrorKind::UnexpectedEof.into());
-    }
-    Ok(serde_json::from_slice(&body)?)
+    // The length is a claim.
+    Ok(serde_json::from_slice(&receive_bytes(from, length)?)?)
 }
 
 /// Reads as many messages of each kind as these bytes hold, and asks that each be the same once it was sent: for the fuzz target.

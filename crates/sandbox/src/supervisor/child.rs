@@ -38,6 +38,8 @@ pub(super) struct Plan {
     pub(super) rules: Option<RulesetCreated>,
     /// The filters, as far as they are compiled.
     pub(super) filters: Option<Filters>,
+    /// The signals that are ignored and shall not be.
+    pub(super) ignored: Rc<[i32]>,
     /// The ways into the run's control group.
     pub(super) groups: Vec<File>,
     pub(super) user: Option<u32>,
@@ -75,7 +77,7 @@ fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
     for (number, fd) in [(0, &plan.input), (1, &plan.output), (2, &plan.error)] {
         sys::duplicate_to(fd.as_raw_fd(), number).map_err(stage("connect the standard streams"))?;
     }
-    sys::default_signals();
+    sys::default_signals(&plan.ignored);
     sys::file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
     sys::first_to_go();

@@ -25,6 +25,8 @@ pub(super) struct Contents {
     pub(super) bytes: u64,
     /// Files and folders.
     pub(super) files: u64,
+    /// Folders among them, as far as they were looked for.
+    pub(super) folders: u64,
     /// Whether part of it could not be counted: too deep, closed to us, or beyond the limits.
     pub(super) over: bool,
 }
@@ -32,7 +34,12 @@ pub(super) struct Contents {
 impl Contents {
     /// The larger numbers of both.
     pub(super) fn at_least(self, other: Self) -> Self {
-        Self { bytes: self.bytes.max(other.bytes), files: self.files.max(other.files), over: self.over || other.over }
+        Self {
+            bytes: self.bytes.max(other.bytes),
+            files: self.files.max(other.files),
+            folders: self.folders.max(other.folders),
+            over: self.over || other.over,
+        }
     }
 }
 
@@ -41,7 +48,7 @@ pub(super) fn in_use(folder: BorrowedFd<'_>) -> Contents {
     // The root itself, and the trace pipe, if there is one.
     const OWN_FILES: u64 = 2;
     let (bytes, files) = sys::file_system_usage(folder).unwrap_or_default();
-    Contents { bytes, files: files.saturating_sub(OWN_FILES), over: false }
+    Contents { bytes, files: files.saturating_sub(OWN_FILES), ..Contents::default() }
 }
 
 /// Counts the folder's contents and stops as soon as a limit is passed. Pipes are not counted.
@@ -51,6 +58,7 @@ pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) 
         if !metadata.file_type().is_fifo() {
             contents.bytes += metadata.blocks() * BLOCK;
             contents.files += 1;
+            contents.folders += u64::from(metadata.is_dir());
         }
         contents.bytes <= most_bytes && contents.files <= most_files
     });

@@ -21,8 +21,8 @@ use super::prepared::{Held, Prepared};
 use super::run::{self, Run};
 use super::{namespaces, view};
 use crate::mounts;
-use crate::sys::{self, Fork, Readiness, SingleThread};
-use crate::wire::{self, Event, Failure, Order};
+use crate::sys::{self, Fork, Readiness};
+use crate::wire::{self, Event, Failure, Order, Raw};
 
 /// A keeper without orders goes after this time, so that its user is there for others.
 const IDLE: Duration = Duration::from_secs(2);
@@ -50,12 +50,13 @@ pub(super) fn main() -> ExitCode {
     })
 }
 
-/// One run: what to do, the way to and from the grader, and the working folder on the disk.
+/// One run: what to do, the way to and from the grader, the working folder on the disk, and what else shall lie there.
 struct Request {
     order: Order,
     control: File,
     answers: File,
     folder: OwnedFd,
+    files: Vec<(Raw, Vec<u8>)>,
 }
 
 impl Request {
@@ -72,8 +73,10 @@ impl Request {
         let Some(control) = descriptor(wire::CONTROL)? else { return Ok(None) };
         let answers = descriptor(wire::ANSWERS)?.ok_or(io::ErrorKind::UnexpectedEof)?;
         let folder = descriptor(wire::FOLDER)?.ok_or(io::ErrorKind::UnexpectedEof)?;
-        let order = wire::receive(socket)?;
-        Ok(Some(Self { order, control: control.into(), answers: answers.into(), folder }))
+        let order: Order = wire::receive(socket)?;
+        let file = |(name, length): &(Raw, u64)| Ok((name.clone(), wire::receive_bytes(socket, *length)?));
+        let files = order.files.iter().map(file).collect::<io::Result<_>>()?;
+        Ok(Some(Self { order, control: control.into(), answers: answers.into(), folder, files }))
     }
 }
 
@@ -97,15 +100,14 @@ fn settle(order: &Order) -> Result<Side, Failure> {
     }
     mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(stage("make namespaces"))?;
     view::prepare(order)?;
-    let prepared = Prepared::of(order, PROGRAM)?;
-    Ok(Side::Keeper(Keeper { held: Some(held), prepared, alone }))
+    let prepared = Prepared::of(order, PROGRAM, alone)?;
+    Ok(Side::Keeper(Keeper { held: Some(held), prepared }))
 }
 
 struct Keeper {
     /// Every run takes it, in its own copy of this.
     held: Option<Held>,
     prepared: Prepared,
-    alone: SingleThread,
 }
 
 impl Keeper {
@@ -129,7 +131,7 @@ impl Keeper {
         let folder = wire::path(&request.order.folder);
         let namespaces = libc::CLONE_NEWPID | libc::CLONE_NEWNS | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
         // The place for the folder is there only as long as its run.
-        let forked = std::fs::create_dir_all(&folder).and_then(|()| mounts::fork_into(&self.alone, namespaces));
+        let forked = std::fs::create_dir_all(&folder).and_then(|()| self.prepared.fork_into(namespaces));
         match forked {
             Ok(Fork::Child) => sys::exit_now(self.supervise(request).into()),
             Ok(Fork::Parent(supervisor)) => {
@@ -145,12 +147,12 @@ impl Keeper {
 
     /// What the run's supervisor does; the answer is its exit code.
     fn supervise(&mut self, request: Request) -> u8 {
-        let Request { order, control, mut answers, folder } = request;
+        let Request { order, control, mut answers, folder, files } = request;
         let Some(held) = self.held.take() else { return 1 };
         let bound =
             sys::die_with_parent().map_err(|error| Failure::new("bind the supervisor's life to its keeper's", &error));
         let finished = bound
-            .and_then(|()| view::complete(&order, folder.as_fd()))
+            .and_then(|()| view::complete(&order, folder.as_fd(), &files))
             .and_then(|()| Run::start(order, control, held, &self.prepared))
             .and_then(|run| run.finish(&mut answers));
         run::tell(finished, &mut answers)

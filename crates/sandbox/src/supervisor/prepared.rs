@@ -2,11 +2,14 @@
 
 use std::io;
 use std::os::fd::BorrowedFd;
+use std::rc::Rc;
 
 use landlock::RulesetCreated;
 
 use super::group::Group;
 use super::{child, filter, slot, walls};
+use crate::mounts;
+use crate::sys::{self, Fork, SingleThread};
 use crate::wire::{Failure, Order};
 
 /// What a run has to itself on this machine, for as long as this is held.
@@ -32,17 +35,37 @@ impl Held {
 pub(super) struct Prepared {
     places: Option<walls::Places>,
     pub(super) filters: Option<child::Filters>,
+    ignored: Option<Rc<[i32]>>,
+    /// That the supervisor has one thread.
+    alone: Option<SingleThread>,
 }
 
 impl Prepared {
-    /// For orders like this one, whose programs have this number.
-    pub(super) fn of(order: &Order, number: i32) -> Result<Self, Failure> {
+    /// For orders like this one, whose programs have this number, in a process that has one thread.
+    pub(super) fn of(order: &Order, number: i32, alone: SingleThread) -> Result<Self, Failure> {
         let open = || walls::Places::of(order).out_of_the_way();
         let purpose = child::purpose(order, order.walls.own_user, None, number);
         let filters =
             filter::filters(purpose).map_err(|error| Failure::new("compile the system call filter", &error))?;
         let places = order.walls.landlock.then(open).flatten();
-        Ok(Self { places, filters: Some(child::Filters::new((purpose, filters))) })
+        let filters = Some(child::Filters::new((purpose, filters)));
+        Ok(Self { places, filters, ignored: Some(sys::ignored_signals().into()), alone: Some(alone) })
+    }
+
+    /// The signals that are ignored.
+    pub(super) fn ignored(&self) -> Rc<[i32]> {
+        self.ignored.clone().unwrap_or_else(|| sys::ignored_signals().into())
+    }
+
+    /// Forks into new namespaces.
+    pub(super) fn fork_into(&self, namespaces: i32) -> io::Result<Fork> {
+        let alone = self.alone.as_ref().ok_or_else(|| io::Error::other("nothing is prepared"))?;
+        mounts::fork_into(alone, namespaces)
+    }
+
+    /// Forks.
+    pub(super) fn fork(&self) -> io::Result<Fork> {
+        self.alone.as_ref().map_or_else(sys::fork, sys::fork_alone)
     }
 
     /// The file rules of an order, if there are to be any.

@@ -113,7 +113,11 @@ impl Run {
         let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
-        let folder_before = contents(&order, folder.as_fd());
+        // What was just laid out in memory, the kernel has counted.
+        let folder_before = match order.volatile {
+            true => folder::in_use(folder.as_fd()),
+            false => contents(&order, folder.as_fd()),
+        };
         let volatile_pipe = match &order.pipe {
             Some(name) if order.volatile => {
                 Some(make_pipe(folder.as_fd(), name).map_err(stage("make the trace pipe"))?)
@@ -162,6 +166,7 @@ impl Run {
             entrance,
             rules,
             filters: prepared.filters.clone(),
+            ignored: prepared.ignored(),
             groups: group.as_ref().map_or(Ok(Vec::new()), Group::entrances).map_err(stage("open the control group"))?,
             user: slot.as_ref().map(|(slot, _)| slot.user),
             input: File::open("/dev/null").map_err(stage("open /dev/null"))?.into(),
@@ -171,7 +176,7 @@ impl Run {
             order: order.clone(),
         };
         let began = Instant::now();
-        let child = match sys::fork().map_err(stage("fork"))? {
+        let child = match prepared.fork().map_err(stage("fork"))? {
             Fork::Child => child::become_program(plan),
             Fork::Parent(pid) => pid,
         };
@@ -228,9 +233,18 @@ impl Run {
         self.stdout.take_rest();
         self.stderr.take_rest();
         self.hear();
-        let shallow = folder::open_up(self.folder.as_fd());
-        let after = contents(&self.order, self.folder.as_fd());
-        if let Some((_, (owner, group))) = &self.slot {
+        let mut after = contents(&self.order, self.folder.as_fd());
+        // Most programs make no folders.
+        let shallow = match after.over || after.folders > 0 {
+            true => {
+                let shallow = folder::open_up(self.folder.as_fd());
+                after = contents(&self.order, self.folder.as_fd());
+                shallow
+            }
+            false => true,
+        };
+        // What a submission leaves in memory nobody looks at but root.
+        if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
             folder::give(self.folder.as_fd(), *owner, *group)
                 .map_err(|error| Failure::new("take the working folder back", &error))?;
         }

@@ -2,7 +2,8 @@
 //!
 //! The kernel goes through a filter once for each call that exists when it is installed, and again for each call of the program
 //! whose answer depends on more than the number. The compiler's chain of comparisons is four instructions for a call; a search
-//! that halves what is left takes some twenty for any, and what a run spends on its filters becomes a small part of it.
+//! that halves what is left takes some twenty for any. What a run spends on its filters then follows their length, because the
+//! kernel checks and translates them each time; so calls that are answered alike share one answer.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -40,18 +41,10 @@ pub(super) fn filter(answers: &BTreeMap<u32, Answer>, otherwise: u32, mut frame:
     frame.push(sock_filter { code: LOAD_ABSOLUTE, jt: 0, jf: 0, k: 0 });
     let mut fragments = Vec::new();
     let leaves = leaves(answers, otherwise, &mut fragments);
-    let tree = tree(&leaves);
-    let mut starts = Vec::new();
-    let mut next = tree.len();
-    for fragment in &fragments {
-        starts.push(next);
-        next += fragment.len();
-    }
-    frame.extend(tree.into_iter().enumerate().map(|(at, node)| match node {
-        Node::Instruction(instruction) => instruction,
-        Node::Go(fragment) => jump(starts[fragment] - at - 1),
-    }));
-    frame.extend(fragments.into_iter().flatten());
+    let mut tail = Tail::new(&fragments);
+    let first = tail.search(&leaves);
+    tail.begin_at(first);
+    frame.extend(tail.reversed.into_iter().rev());
     Ok(frame)
 }
 
@@ -77,8 +70,13 @@ fn leaves(answers: &BTreeMap<u32, Answer>, otherwise: u32, fragments: &mut Vec<B
             match answer {
                 Answer::Constant(answer) => Leaf::Answer(*answer),
                 Answer::Asked(programs) => {
-                    fragments.push(one_after_the_other(programs));
-                    Leaf::Go(fragments.len() - 1)
+                    let fragment = one_after_the_other(programs);
+                    // Many calls are asked the same.
+                    let known = fragments.iter().position(|known| *known == fragment);
+                    Leaf::Go(known.unwrap_or_else(|| {
+                        fragments.push(fragment);
+                        fragments.len() - 1
+                    }))
                 }
             },
         );
@@ -100,30 +98,89 @@ fn one_after_the_other(programs: &[BpfProgram]) -> BpfProgram {
     joined
 }
 
-enum Node {
-    Instruction(sock_filter),
-    /// A jump to the fragment of this index.
-    Go(usize),
+/// The end of a filter, which grows towards its beginning: so it is known how far each comparison has to jump, and answers and
+/// fragments are shared by all comparisons from which they can be reached.
+struct Tail {
+    /// The instructions, the last one first.
+    reversed: BpfProgram,
+    /// The nearest place that leads to a leaf, counted from the end.
+    places: Vec<(Leaf, usize)>,
 }
 
-/// The search among the leaves.
-fn tree(leaves: &[(u32, Leaf)]) -> Vec<Node> {
-    if let [(_, leaf)] = leaves {
-        return vec![match leaf {
-            Leaf::Answer(word) => Node::Instruction(answer(*word)),
-            Leaf::Go(fragment) => Node::Go(*fragment),
-        }];
+impl Tail {
+    fn new(fragments: &[BpfProgram]) -> Self {
+        let mut tail = Self { reversed: BpfProgram::new(), places: Vec::new() };
+        for (index, fragment) in fragments.iter().enumerate() {
+            tail.reversed.extend(fragment.iter().rev().cloned());
+            tail.places.push((Leaf::Go(index), tail.last()));
+        }
+        tail
     }
-    let (low, high) = leaves.split_at(leaves.len() / 2);
-    let least = high[0].0;
-    let (low, high) = (tree(low), tree(high));
-    let compare =
-        |jt: usize, jf: usize| sock_filter { code: JUMP_IF_GREATER_OR_EQUAL, jt: jt as u8, jf: jf as u8, k: least };
-    let first = match low.len() {
-        near @ ..=FARTHEST => vec![compare(near, 0)],
-        far => vec![compare(0, 1), jump(far)],
-    };
-    first.into_iter().map(Node::Instruction).chain(low).chain(high).collect()
+
+    /// The place of the instruction that was added last.
+    fn last(&self) -> usize {
+        self.reversed.len() - 1
+    }
+
+    /// What an instruction that is added now passes over to get to the place.
+    fn distance(&self, place: usize) -> usize {
+        self.last() - place
+    }
+
+    /// Adds the search among these leaves; the answer is the place where it begins.
+    fn search(&mut self, leaves: &[(u32, Leaf)]) -> usize {
+        if let [(_, leaf)] = leaves {
+            return self.leaf(*leaf);
+        }
+        let (low, high) = leaves.split_at(leaves.len() / 2);
+        let least = high[0].0;
+        let (mut above, mut below) = (self.search(high), self.search(low));
+        // A jump that has to be added puts the other place farther away.
+        while self.distance(above).max(self.distance(below)) > FARTHEST {
+            let far = if self.distance(above) > FARTHEST { &mut above } else { &mut below };
+            *far = self.jump_to(*far);
+        }
+        let (jt, jf) = (self.distance(above) as u8, self.distance(below) as u8);
+        self.reversed.push(sock_filter { code: JUMP_IF_GREATER_OR_EQUAL, jt, jf, k: least });
+        self.last()
+    }
+
+    /// A place near by that leads to the leaf.
+    fn leaf(&mut self, leaf: Leaf) -> usize {
+        let known = self.places.iter().position(|(known, _)| *known == leaf);
+        if let Some(index) = known {
+            let place = self.places[index].1;
+            if self.distance(place) <= FARTHEST {
+                return place;
+            }
+        }
+        let place = match (leaf, known) {
+            (Leaf::Go(_), Some(index)) => self.jump_to(self.places[index].1),
+            (Leaf::Go(fragment), None) => unreachable!("fragment {fragment} lies at the end"),
+            (Leaf::Answer(word), _) => {
+                self.reversed.push(answer(word));
+                self.last()
+            }
+        };
+        match known {
+            Some(index) => self.places[index].1 = place,
+            None => self.places.push((leaf, place)),
+        }
+        place
+    }
+
+    fn jump_to(&mut self, place: usize) -> usize {
+        let over = self.distance(place);
+        self.reversed.push(jump(over));
+        self.last()
+    }
+
+    /// Makes the place the first instruction.
+    fn begin_at(&mut self, place: usize) {
+        if place != self.last() {
+            self.jump_to(place);
+        }
+    }
 }
 
 /// Passes over so many instructions.

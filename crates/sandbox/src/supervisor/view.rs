@@ -16,7 +16,7 @@ use std::path::{Component, Path, PathBuf};
 use super::{volatile, walls};
 use crate::mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY};
 use crate::sys;
-use crate::wire::{self, Failure, Order};
+use crate::wire::{self, Failure, Order, Raw};
 
 /// Where the new root is put together: a folder that every Linux has. It is in sight again once the roots have changed.
 const SITE: &str = "/proc";
@@ -74,20 +74,22 @@ pub(super) fn prepare(order: &Order) -> Result<(), Failure> {
     leave_host()
 }
 
-/// Adds a run's own to a copy of a root that was prepared: a working folder with what lies in the open one, and its processes. The
-/// place of the folder is there.
+/// Adds a run's own to a copy of a root that was prepared: a working folder with what lies in the open one and these files, and its
+/// processes. The place of the folder is there.
 ///
 /// # Errors
 ///
 /// As for [`build`].
-pub(super) fn complete(order: &Order, folder: BorrowedFd<'_>) -> Result<(), Failure> {
+pub(super) fn complete(order: &Order, folder: BorrowedFd<'_>, files: &[(Raw, Vec<u8>)]) -> Result<(), Failure> {
     add_processes()?;
     if sys::user() != 0 {
         mounts::detach(&text(Path::new(WITNESS))?).map_err(stage("leave other processes"))?;
     }
     let real = wire::path(&order.folder);
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
-    lay_out(&real, &from, order).map_err(stage("lay the working folder out in memory"))?;
+    lay_out(&real, &from, order)
+        .and_then(|()| volatile::add(&real, files))
+        .map_err(stage("lay the working folder out in memory"))?;
     hide_own(order, &real)?;
     close_root()
 }

@@ -8,7 +8,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::Path;
 
-use crate::wire::Order;
+use crate::wire::{self, Order, Raw};
 
 /// A little more than the limit, so that a program that passes it is seen to.
 const SPARE_BYTES: u64 = 1 << 20;
@@ -41,6 +41,19 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
     Ok(())
 }
 
+/// Adds files to the folder.
+///
+/// # Errors
+///
+/// Also for names that lead elsewhere.
+pub(super) fn add(folder: &Path, files: &[(Raw, Vec<u8>)]) -> io::Result<()> {
+    for (name, content) in files {
+        let plain = wire::plain_name(name).ok_or(io::ErrorKind::InvalidInput)?;
+        std::fs::write(folder.join(plain), content)?;
+    }
+    Ok(())
+}
+
 /// Copies a file that had this length a moment ago.
 fn copy_file(from: &mut File, to: &Path, expected: u64) -> io::Result<()> {
     let mut target = File::create_new(to)?;
@@ -66,6 +79,17 @@ fn copy_file(from: &mut File, to: &Path, expected: u64) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_are_added_under_plain_names_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let add = |name: &[u8]| add(folder.path(), &[(name.to_vec(), b"text".to_vec())]);
+        add(b"scene.xml").unwrap();
+        assert_eq!(std::fs::read(folder.path().join("scene.xml")).unwrap(), b"text");
+        for name in [&b""[..], b".", b"..", b"../other", b"/other", b"a\0b"] {
+            assert!(add(name).is_err(), "{name:?}");
+        }
+    }
 
     #[test]
     fn files_and_folders_are_copied_with_their_bits_and_holes() {
