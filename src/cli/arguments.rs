@@ -1,6 +1,7 @@
 //! The command line as typed. What it means is decided by the commands.
 use super::{
     grading::{Demo, Doctor, Grade, Merge, Selftest, Suite},
+    later::Later,
     pictures::{Detect, Render},
     scenes::Scene,
     values::{Rules, TextOrJson, at_least_one},
@@ -38,29 +39,50 @@ Exit codes:
 SCENE is a file, or asset:Group/name for a scene that comes with the program.
 TRACE is a file (.zst files are unpacked), - for standard input, or asset:Group/name for its recording.";
 
+// What help says of each among the others stands here, all else with its arguments.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    Simulate(Simulate),
-    Check(Check),
-    Explain(Explain),
-    Detect(Box<Detect>),
-    Render(Box<Render>),
+    /// Simulates a scene, and records its trace.
+    Simulate(Later<Simulate>),
+    /// Grades a trace by the original's rules and by fair ones: what is wrong, and where.
+    Check(Later<Check>),
+    /// Says what is likely wrong with the program that left a trace, or with a program at hand.
+    Explain(Later<Explain>),
+    /// Computes what detection makes of one pair: polynomials, zeros, intervals, decision, time of impact, normal.
+    Detect(Box<Later<Detect>>),
+    /// Draws a scene's motion: a picture per step, an animated PNG, a GIF, or a movie.
+    Render(Box<Later<Render>>),
+    /// Looks into traces.
     #[command(subcommand)]
-    Trace(Trace),
-    Record(Record),
-    Grade(Grade),
-    Merge(Merge),
+    Trace(Later<Trace>),
+    /// Records the traces of all scenes of a folder, or checks that they are still the same.
+    Record(Later<Record>),
+    /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
+    Grade(Later<Grade>),
+    /// Puts together what `grade --shard` left: the results are those of a grading in one go.
+    Merge(Later<Merge>),
+    /// Writes and explains suites: what is graded, with what limits and points.
     #[command(subcommand)]
-    Suite(Suite),
+    Suite(Later<Suite>),
+    /// Lists the scenes that come with the program, prints one, or writes them into a folder.
     #[command(subcommand)]
-    Scene(Scene),
-    Demo(Demo),
-    Doctor(Doctor),
-    Selftest(Selftest),
-    Serve(Serve),
-    Original(Original),
-    Completions(Completions),
-    Man(Man),
+    Scene(Later<Scene>),
+    /// Shows the whole thing: grades a right and a wrong sample program in the sandbox.
+    Demo(Later<Demo>),
+    /// Says which layers of the sandbox hold on this machine, and what to install.
+    Doctor(Later<Doctor>),
+    /// Runs the suite of hostile programs on this machine, and prints which promises hold.
+    Selftest(Later<Selftest>),
+    /// Runs a course's grading server: the program fosssim-server, which stands beside this one
+    Serve(Later<Serve>),
+    /// Behaves as the original program: same flags, same output, same files, same exit codes.
+    ///
+    /// The same happens when the program is called under a name that starts with FOSSSimOracle.
+    Original(Later<Original>),
+    /// Prints a completion script for a shell.
+    Completions(Later<Completions>),
+    /// Prints the manual page, or that of a command.
+    Man(Later<Man>),
 }
 
 /// The number of a step.
@@ -100,7 +122,6 @@ pub(super) struct Quiet {
     pub(super) quiet: bool,
 }
 
-/// Simulates a scene, and records its trace.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -121,7 +142,6 @@ pub(super) struct Simulate {
     pub(super) quiet: Quiet,
 }
 
-/// Grades a trace by the original's rules and by fair ones: what is wrong, and where.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -187,7 +207,6 @@ impl From<Hints> for config::Hints {
     }
 }
 
-/// Says what is likely wrong with the program that left a trace, or with a program at hand.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -219,7 +238,6 @@ pub(super) struct Explain {
     pub(super) quiet: Quiet,
 }
 
-/// Looks into traces.
 #[derive(Debug, Subcommand)]
 #[command(after_help = "\
 Example:
@@ -284,7 +302,6 @@ pub(super) struct TraceDiff {
     pub(super) quiet: Quiet,
 }
 
-/// Records the traces of all scenes of a folder, or checks that they are still the same.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -308,9 +325,6 @@ pub(super) struct Record {
     pub(super) quiet: Quiet,
 }
 
-/// Behaves as the original program: same flags, same output, same files, same exit codes.
-///
-/// The same happens when the program is called under a name that starts with FOSSSimOracle.
 #[derive(Debug, Args)]
 #[command(
     disable_help_flag = true,
@@ -324,7 +338,6 @@ pub(super) struct Original {
     pub(super) words: Vec<OsString>,
 }
 
-/// Runs a course's grading server: the program fosssim-server, which stands beside this one
 #[derive(Debug, Args)]
 #[command(
     disable_help_flag = true,
@@ -338,7 +351,6 @@ pub(super) struct Serve {
     pub(super) words: Vec<OsString>,
 }
 
-/// Prints a completion script for a shell.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -348,7 +360,6 @@ pub(super) struct Completions {
     pub(super) shell: Shell,
 }
 
-/// Prints the manual page, or that of a command.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

@@ -26,7 +26,6 @@ fn help_of_built_in() -> String {
     format!("A suite that comes with the program ({}), instead of the commented template", built_in())
 }
 
-/// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -157,7 +156,6 @@ impl From<Audience> for page::Audience {
     }
 }
 
-/// Puts together what `grade --shard` left: the results are those of a grading in one go.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -207,7 +205,6 @@ impl From<Level> for config::Hints {
     }
 }
 
-/// Writes and explains suites: what is graded, with what limits and points.
 #[derive(Debug, Subcommand)]
 #[command(after_help = "\
 Example:
@@ -257,7 +254,6 @@ Example:
   fosssim-oracle suite scenes")]
 pub(super) struct SuiteScenes {}
 
-/// Shows the whole thing: grades a right and a wrong sample program in the sandbox.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -278,14 +274,12 @@ pub(super) struct Demo {
     pub(super) program: Option<PathBuf>,
 }
 
-/// Says which layers of the sandbox hold on this machine, and what to install.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle doctor")]
 pub(super) struct Doctor {}
 
-/// Runs the suite of hostile programs on this machine, and prints which promises hold.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

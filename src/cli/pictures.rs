@@ -19,7 +19,6 @@ pub(super) enum RenderFormat {
     Mp4,
 }
 
-/// Draws a scene's motion: a picture per step, an animated PNG, a GIF, or a movie.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -73,7 +72,6 @@ pub(super) enum DetectFormat {
     Svg,
 }
 
-/// Computes what detection makes of one pair: polynomials, zeros, intervals, decision, time of impact, normal.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

@@ -2,7 +2,6 @@
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
-/// Lists the scenes that come with the program, prints one, or writes them into a folder.
 #[derive(Debug, Subcommand)]
 #[command(after_help = "\
 Example:

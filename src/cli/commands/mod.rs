@@ -43,9 +43,11 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Explain(arguments) => explain::run(arguments),
         Command::Detect(arguments) => detect::run(arguments),
         Command::Render(arguments) => render::run(arguments),
-        Command::Trace(Trace::Info(arguments)) => trace::info(arguments),
-        Command::Trace(Trace::Show(arguments)) => trace::show(arguments),
-        Command::Trace(Trace::Diff(arguments)) => trace::diff(arguments),
+        Command::Trace(arguments) => match &**arguments {
+            Trace::Info(arguments) => trace::info(arguments),
+            Trace::Show(arguments) => trace::show(arguments),
+            Trace::Diff(arguments) => trace::diff(arguments),
+        },
         Command::Record(arguments) => record::run(arguments),
         Command::Grade(arguments) => grade::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),
@@ -67,7 +69,7 @@ fn is_quiet(command: &Command) -> bool {
         Command::Simulate(arguments) => arguments.quiet.quiet,
         Command::Check(arguments) => arguments.quiet.quiet,
         Command::Explain(arguments) => arguments.quiet.quiet,
-        Command::Trace(Trace::Diff(arguments)) => arguments.quiet.quiet,
+        Command::Trace(arguments) => matches!(&**arguments, Trace::Diff(arguments) if arguments.quiet.quiet),
         Command::Record(arguments) => arguments.quiet.quiet,
         _ => false,
     }
