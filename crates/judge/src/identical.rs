@@ -4,13 +4,15 @@
 //! what is read. Where they are equal, every comparison of the two books is known to find nothing; where anything hangs on
 //! more than that, or differs, the step goes the long way.
 use super::{
+    alike::Alike,
     fair::{Context, StepJudgement},
-    tally::{SAFE_SUM, rejects_itself},
+    tally::{Pending, SAFE_SUM, rejects_itself},
+    watch::Watch,
 };
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, SearchCounts, Simulation, State},
-    trace::{Layout, Lenient, StepBytes},
+    trace::{Layout, Lenient},
 };
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 use std::io::Read;
@@ -21,11 +23,15 @@ const LONGEST_PAUSE: u32 = 63;
 /// Looks for such steps.
 pub(super) struct Identical {
     simulation: Simulation,
-    bytes: StepBytes,
-    /// Steps that are not tried, because those before them differed: none after one that did not, and about twice as many
-    /// with each that did.
-    pause: u32,
-    /// How many of them are left.
+    watch: Watch,
+    alike: Alike,
+    /// What the trace has in the place of the step's records.
+    theirs: Vec<u8>,
+    /// What the original finds about that.
+    pending: Pending,
+    /// So many steps in a row have differed. None is not tried after the first of them, and then about twice as many with each.
+    misses: u32,
+    /// How many steps are still not tried.
     skipped: u32,
     /// Counts of the steps that were found.
     searches: SearchCounts,
@@ -37,6 +43,8 @@ pub(super) struct Found {
     pub(super) work: u64,
     /// Bytes of its records.
     pub(super) bytes: usize,
+    /// Whether these are the reference's.
+    pub(super) is_own: bool,
     /// What the fair rules say about it, if they are asked.
     pub(super) fair: Option<StepJudgement>,
 }
@@ -46,8 +54,11 @@ impl Identical {
     pub(super) fn new(scene: &Scene, root_search: RootSearch) -> Self {
         Self {
             simulation: Simulation::new(scene, root_search),
-            bytes: StepBytes::new(Layout::of(scene)),
-            pause: 0,
+            watch: Watch::new(Layout::of(scene)),
+            alike: Alike::new(scene),
+            theirs: Vec::new(),
+            pending: Pending::default(),
+            misses: 0,
             skipped: 0,
             searches: SearchCounts::default(),
         }
@@ -61,6 +72,11 @@ impl Identical {
     /// Counts of root searches, of the steps that were found.
     pub(super) fn searches(&self) -> SearchCounts {
         self.searches
+    }
+
+    /// What the original finds about the polynomials of the step that was found.
+    pub(super) fn pending(&mut self) -> &mut Pending {
+        &mut self.pending
     }
 
     /// The state at the end of the step that was found.
@@ -83,19 +99,32 @@ impl Identical {
             return None;
         }
         let counts = self.simulation.search_counts();
-        let is_found = self.step(step, before, context, counts.work().saturating_add(most_work))
-            && !self.hangs_on_size()
-            && reader.passes(&self.bytes);
+        let is_sound =
+            self.step(step, before, context, counts.work().saturating_add(most_work)) && !self.hangs_on_size();
+        let Self { watch, alike, theirs, pending, .. } = self;
+        pending.clear();
+        let is_own = is_sound && reader.passes(&watch.bytes);
+        let mut fair = None;
+        let is_found = is_own
+            || is_sound
+                && reader.passes_like(&watch.bytes, theirs, &mut |lists| {
+                    pending.clear();
+                    fair = alike.accepts(watch, step, context, lists, pending);
+                    fair.is_some()
+                });
         if !is_found {
-            self.pause = (2 * self.pause + 1).min(LONGEST_PAUSE);
-            self.skipped = self.pause;
+            self.skipped = ((1 << self.misses) - 1).min(LONGEST_PAUSE);
+            self.misses = (self.misses + 1).min(LONGEST_PAUSE.ilog2() + 1);
             return None;
         }
-        self.pause = 0;
+        self.misses = 0;
         let now = self.simulation.search_counts();
         self.searches += now - counts;
-        let fair = context.map(|context| StepJudgement::identical(context, step, self.bytes.polynomials()));
-        Some(Found { work: now.work() - counts.work(), bytes: self.bytes.len(), fair })
+        let bytes = &self.watch.bytes;
+        if is_own {
+            fair = context.map(|context| StepJudgement::identical(context, step, bytes.polynomials()));
+        }
+        Some(Found { work: now.work() - counts.work(), bytes: bytes.len(), is_own, fair })
     }
 
     /// Whether the step has a result and its states are nothing out of the ordinary.
@@ -107,17 +136,17 @@ impl Identical {
         self.simulation.limit_work(most_work);
         let is_ordinary = |state: &State| context.is_none_or(|context| context.ordinary.holds(state));
         is_ordinary(before)
-            && self.simulation.step(&mut self.bytes).is_ok()
-            && self.bytes.is_finite()
-            && self.bytes.mid().is_none_or(is_ordinary)
+            && self.simulation.step(&mut self.watch).is_ok()
+            && self.watch.bytes.is_finite()
+            && self.watch.bytes.mid().is_none_or(is_ordinary)
             && is_ordinary(self.simulation.state())
     }
 
     /// Whether the original rejects a polynomial although it is the reference's.
     fn hangs_on_size(&self) -> bool {
         // Written so that what is not small for certain is looked at, one by one.
-        let all_small = self.bytes.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
-        !all_small && self.bytes.any(rejects_itself)
+        let all_small = self.watch.bytes.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
+        !all_small && self.watch.bytes.any(rejects_itself)
     }
 }
 
@@ -138,6 +167,17 @@ mod tests {
         <halfplane px="0" py="0" nx="0.37" ny="1.23"/>
     </scene>"#;
 
+    /// An edge that turns while balls hit it and each other, so that both forms of its approach polynomials differ.
+    const SPIN: &str = r#"<scene>
+        <duration time="0.8"/><integrator type="explicit-euler" dt="0.1"/>
+        <collision type="continuous-time" COR="0.7"/>
+        <particle m="1" px="0" py="0" vx="0.3" vy="-1" fixed="0" radius="0.1"/>
+        <particle m="2" px="1" py="0.1" vx="0.1" vy="1.3" fixed="0" radius="0.1"/>
+        <particle m="1" px="0.4" py="0.5" vx="0.2" vy="-2" fixed="0" radius="0.1"/>
+        <particle m="1" px="0.7" py="0.9" vx="-0.3" vy="-2" fixed="0" radius="0.1"/>
+        <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-0.3" nx="0.1" ny="1"/>
+    </scene>"#;
+
     /// Everything that both ways say, as text: it compares NaN, too.
     fn judged(scene: &Scene, trace: &[u8]) -> [String; 2] {
         [false, true].map(|one_by_one| {
@@ -148,9 +188,20 @@ mod tests {
 
     type Change = fn(&mut Vec<Frame>);
 
+    /// Coefficients that are off by some roundings, each in its own direction.
+    fn rounded(own: &[f64], roundings: f64) -> Vec<f64> {
+        let signs = [1.0, -1.0, 0.5, 1.0, -0.5, -1.0];
+        own.iter().zip(signs).map(|(c, sign)| c * (1.0 + sign * roundings * f64::EPSILON)).collect()
+    }
+
+    /// Coefficients with this factor, as the course's library keeps them.
+    fn lost(own: &[f64], factor: f64) -> Vec<f64> {
+        own.iter().map(|c| factor * c).skip_while(|c| c.abs() < 1e-12).collect()
+    }
+
     #[test]
     fn both_ways_say_the_same_to_the_last_field() {
-        let changes: [Change; 14] = [
+        let changes: [Change; 20] = [
             |_| {},
             |frames| frames.truncate(3),
             |frames| frames.push(frames[1].clone()),
@@ -169,8 +220,20 @@ mod tests {
                     own.iter().map(|c| if index == 0 { f64::NAN } else { c * 1.25 }).collect()
                 })
             },
+            // Other roundings, in one polynomial or in all of them.
+            |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| rounded(own, 1.0))),
+            |frames| frames[2..4].iter_mut().for_each(|frame| relog(frame, |_, own| rounded(own, 40.0))),
+            // Factors with which leading coefficients are lost, here and there or everywhere.
+            |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| lost(own, 1e-12))),
+            |frames| {
+                let small = |index: usize, own: &[f64]| lost(own, if index.is_multiple_of(3) { 1e-11 } else { 1.0 });
+                frames.iter_mut().for_each(|frame| relog(frame, small));
+            },
+            // A polynomial that differs in the mid record only.
+            |frames| relog(&mut frames[1], |index, own| rounded(own, if index == 1 { 1.0 } else { 0.0 })),
+            |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| 2e4 * c).collect())),
         ];
-        for text in [BOUNCE, ZONES, LARGE] {
+        for text in [BOUNCE, ZONES, LARGE, SPIN] {
             let scene = scene(text);
             for (number, change) in changes.into_iter().enumerate() {
                 let trace = changed(&scene, change);

@@ -291,8 +291,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.beyond_limit = false;
         (slot.is_done, slot.work) = (false, 0);
         (slot.before_at, slot.begin_at) = (self.state_at, self.reader.offset());
-        slot.is_own = self.read_identical(slot);
-        if slot.is_own {
+        slot.is_own = false;
+        if self.read_at_once(slot) {
             return Ok(());
         }
         copy_state(&mut slot.before, &self.state);
@@ -322,8 +322,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         Ok(())
     }
 
-    /// Reads a step and judges it, if it is the reference's byte for byte.
-    fn read_identical(&mut self, slot: &mut Slot) -> bool {
+    /// Reads a step and judges it, if it is the reference's byte for byte, or but for polynomials that are right at once.
+    fn read_at_once(&mut self, slot: &mut Slot) -> bool {
         let (context, rest) = (self.shape.fair.as_ref(), self.budget.rest());
         let Some(found) = self.identical.find(&mut self.reader, slot.step, &self.state, context, rest) else {
             return false;
@@ -332,7 +332,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.state_at = self.reader.record_offset();
         (slot.end_at, slot.behind) = (self.state_at, self.reader.offset());
         self.steps_read += 1;
-        slot.result.set_identical();
+        slot.result.set_states_right(found.is_own, self.identical.pending());
+        slot.is_own = found.is_own;
         slot.fair = found.fair.unwrap_or_default();
         (slot.bytes, slot.work, slot.is_done) = (found.bytes, found.work, true);
         (slot.is_extraordinary, slot.is_put_off) = (false, false);

@@ -3,11 +3,14 @@
 //! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list at the end of
 //! its pass, so nothing of the reference's log is stored but one pass. Only at the end of the step is it known whether the
 //! two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
+mod pending;
+
+pub(super) use pending::Pending;
+
 use super::{
     contacts::{Contacts, key, logged_key},
     counts::FindingCounts,
-    differing::{differing, factor},
-    finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, Rescaled, Role},
+    finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, Role},
     parity::Residuals,
     progress::Remark,
 };
@@ -17,7 +20,7 @@ use fosssim_model::{
     trace::{LenientFrame, LoggedImpulse},
 };
 use fosssim_num::{
-    polynomial::{MAX_COEFFICIENTS, Polynomial},
+    polynomial::MAX_COEFFICIENTS,
     tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL, PARITY_ZERO_POLYNOMIAL},
     vector::{Vec2, at, length},
 };
@@ -45,10 +48,12 @@ pub(super) struct StepResult {
 }
 
 impl StepResult {
-    /// Of a step that is the reference's bit for bit, where the original finds nothing: no residual is above zero.
-    pub(super) fn set_identical(&mut self) {
+    /// Of a step whose states and impulses are the reference's bit for bit, so that no residual is above zero; `identical` says that
+    /// the polynomials are so, too. If they are not, this is what the original finds about them.
+    pub(super) fn set_states_right(&mut self, identical: bool, pending: &mut Pending) {
         self.clear();
-        self.identical = true;
+        self.identical = identical;
+        pending.settle(self);
     }
 
     fn clear(&mut self) {
@@ -74,30 +79,6 @@ impl StepResult {
             self.firsts.push(finding);
         }
         self.counts.add(kind, 1);
-    }
-}
-
-/// The findings about polynomials, held back until the two lists are known to have the same length.
-#[derive(Debug, Default)]
-struct Pending {
-    runs: Vec<(FindingKind, u32)>,
-    firsts: Vec<Finding>,
-}
-
-impl Pending {
-    fn clear(&mut self) {
-        self.runs.clear();
-        self.firsts.clear();
-    }
-
-    fn record(&mut self, kind: FindingKind, finding: impl FnOnce() -> Finding) {
-        if !self.firsts.iter().any(|first| first.kind() == kind) {
-            self.firsts.push(finding());
-        }
-        match self.runs.last_mut() {
-            Some((last, count)) if *last == kind => *count = count.saturating_add(1),
-            _ => self.runs.push((kind, 1)),
-        }
     }
 }
 
@@ -254,11 +235,7 @@ impl<'a> Tally<'a> {
             self.result.record(self.finding(detail));
             return;
         }
-        for &(kind, count) in &self.buffers.pending.runs {
-            self.result.remarks.push(Remark::Polynomials(kind, count));
-            self.result.counts.add(kind, u64::from(count));
-        }
-        self.result.firsts.append(&mut self.buffers.pending.firsts);
+        self.buffers.pending.settle(self.result);
     }
 
     /// Oracle-behaviour.md 6.3: Euclidean residuals per particle.
@@ -302,67 +279,10 @@ impl<'a> Tally<'a> {
             return;
         }
         self.identical = self.identical && equal(expected, actual);
-        if passes(expected, actual) {
-            return;
+        if !passes(expected, actual) {
+            let at = (self.step, self.frame_number);
+            self.buffers.pending.compare(at, expected, actual, place);
         }
-        let (own, expected) = (expected, &Polynomial::untrimmed(expected));
-        let (step, frame) = (self.step, self.frame_number);
-        let finding = |detail| Finding { step, frame, detail };
-        let shown = Polynomial::untrimmed(&actual[..actual.len().min(MAX_COEFFICIENTS)]);
-        if own.len() != actual.len() {
-            self.buffers.pending.record(FindingKind::PolynomialDegree, || {
-                let (expected, actual_size) = (*expected, actual.len());
-                finding(FindingDetail::PolynomialDegree { place: place(), expected, actual_size, actual: shown })
-            });
-            return;
-        }
-        let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
-        if sum_actual < PARITY_ZERO_POLYNOMIAL && sum_own < PARITY_ZERO_POLYNOMIAL {
-            return;
-        }
-        if sum_own < PARITY_ZERO_POLYNOMIAL {
-            self.buffers.pending.record(FindingKind::VanishingPolynomial, || {
-                finding(FindingDetail::VanishingPolynomial { place: place(), expected: *expected, actual: shown })
-            });
-            return;
-        }
-        for (number, (&own_coefficient, &coefficient)) in own.iter().zip(actual).enumerate() {
-            let rescaled = (own_coefficient * sum_actual) / sum_own;
-            let residual = (coefficient - rescaled).abs();
-            // Parity's exception: NaN passes, because the original asks whether the distance is larger.
-            if residual > PARITY_COEFFICIENT {
-                self.buffers.pending.record(FindingKind::Coefficient, || {
-                    let power = own.len() - 1 - number;
-                    let rescaled = Rescaled { power, expected: rescaled, actual: coefficient, residual };
-                    finding(wrong_coefficient(place(), rescaled, expected, &shown))
-                });
-            }
-        }
-    }
-}
-
-/// A wrong coefficient, under the name that a person would give it.
-fn wrong_coefficient(
-    place: PolynomialPlace,
-    rescaled: Rescaled,
-    expected: &Polynomial,
-    actual: &Polynomial,
-) -> FindingDetail {
-    let (own, logged) = (expected.coefficients(), actual.coefficients());
-    let factor = factor(own, logged);
-    // What the original's bound alone rejects is named as the original does.
-    let power = differing(own, logged, factor).first().copied().unwrap_or(rescaled.power);
-    let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
-    let (right, wrong) = (factor * of(own), of(logged));
-    FindingDetail::Coefficient {
-        place,
-        power,
-        expected: right,
-        actual: wrong,
-        residual: (wrong - right).abs(),
-        rescaled: Some(rescaled),
-        expected_polynomial: *expected,
-        actual_polynomial: *actual,
     }
 }
 
@@ -471,7 +391,7 @@ pub(super) fn rejects_itself(coefficients: &[f64]) -> bool {
 
 /// Whether the original finds nothing about a polynomial (oracle-behaviour.md 6.2): it is right up to a factor, or zero, or
 /// holds what is no number.
-fn passes(own: &[f64], actual: &[f64]) -> bool {
+pub(super) fn passes(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
     if own.len() != actual.len() {
         return false;

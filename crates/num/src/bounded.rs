@@ -116,6 +116,55 @@ impl Mul<Bounded> for f64 {
     }
 }
 
+/// The most that a number's modulus can be: differences count as sums. With it a formula yields how large its results and their
+/// bounds are at most, whatever the signs.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Size(pub f64);
+
+impl Modulus for Size {
+    fn modulus(self) -> Self {
+        self
+    }
+}
+
+impl Add for Size {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Sub for Size {
+    type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "whatever the signs, a difference is no larger than the sum")]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Mul for Size {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+}
+
+impl Neg for Size {
+    type Output = Self;
+    fn neg(self) -> Self {
+        self
+    }
+}
+
+/// A factor without error.
+impl Mul<Bounded<Size>> for f64 {
+    type Output = Bounded<Size>;
+    fn mul(self, other: Bounded<Size>) -> Bounded<Size> {
+        let value = Size(self.abs() * other.value.0);
+        Bounded { value, bound: Size(self.abs() * other.bound.0) + value }
+    }
+}
+
 /// A factor without error.
 impl<S: Simd> Mul<Bounded<Lanes<S>>> for f64 {
     type Output = Bounded<Lanes<S>>;
@@ -145,6 +194,21 @@ mod tests {
         let left = (a + b) - a;
         assert!((left.value - 0.1).abs() > 1e-8);
         assert!((left.value - 0.1).abs() <= left.bound * UNIT_ROUNDOFF);
+    }
+
+    /// Whatever the signs of the inputs, neither value nor bound is larger than what sizes say.
+    #[test]
+    fn sizes_are_the_most_that_values_and_bounds_can_be() {
+        let number = |value: f64| Bounded { value, bound: 2.0 * value.abs() };
+        let size = |value: f64| Bounded { value: Size(value), bound: Size(2.0 * value) };
+        let (a, b, c) = (size(0.7), size(1.3), size(0.1));
+        let most = -2.0 * (a * b - c * a) + b;
+        for signs in 0..8 {
+            let sign = |bit: u32| if signs >> bit & 1 == 1 { -1.0 } else { 1.0 };
+            let (a, b, c) = (number(sign(0) * 0.7), number(sign(1) * 1.3), number(sign(2) * 0.1));
+            let found = -2.0 * (a * b - c * a) + b;
+            assert!(found.value.abs() <= most.value.0 && found.bound <= most.bound.0 * (1.0 + 1e-15), "{signs}");
+        }
     }
 
     #[test]

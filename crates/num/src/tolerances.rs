@@ -80,6 +80,10 @@ pub const FAIR_UNITS: f64 = 64.0;
 /// coefficients by interpolation need it; it is far below what changes a decision on [0, 1].
 pub const FAIR_NORM_UNITS: f64 = 16.0;
 
+/// Fair: coefficients that are off by this part of [`FAIR_NORM_UNITS`] of their sum of moduli are right at once. Larger values
+/// say less of how much of the tolerances a program uses, smaller ones have more looked at closely.
+pub const FAIR_CLEAR: f64 = 0.25;
+
 /// Fair: what a root finder may be off by at the time of impact, in units of the polynomials' error bounds there. Covers
 /// deflation and other solvers than the course's.
 pub const FAIR_ROOT_UNITS: f64 = 1024.0;
@@ -87,6 +91,10 @@ pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 /// Fair: a time of impact may be off by this fraction of the step, whatever the polynomials: what a careful root finder
 /// that is not the course's may leave.
 pub const FAIR_TIME: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// Fair: two times of impact between which nothing moves by more than this many roundings of its position are one moment. Larger
+/// values bring the responses to them apart by more than round-off.
+pub const FAIR_MOMENT: f64 = 8.0;
 
 /// Fair: leading coefficients below this many times [`LEADING_COEFFICIENT`] may be lost without a word: factors near 1 move
 /// others across that bound than the course's own formulas do. Larger values let factors change times of impact.

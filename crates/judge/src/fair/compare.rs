@@ -3,7 +3,7 @@ use super::formulas::BoundedCoefficients;
 use fosssim_num::{
     bounded::{Bounded, UNIT_ROUNDOFF},
     polynomial::MAX_COEFFICIENTS,
-    tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
+    tolerances::{FAIR_CLEAR, FAIR_LOSS, FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
 };
 
 fosssim_model::drops_leading!();
@@ -13,7 +13,7 @@ fosssim_model::drops_leading!();
 pub struct Match {
     /// The positive factor by which the logged one is larger; `None` where round-off is all there is.
     pub scale: Option<f64>,
-    /// The largest share of the tolerance that a coefficient uses, 0 to 1.
+    /// The largest share of the tolerance that a coefficient uses, 0 to 1; at least so, where it is right [at once](Likeness).
     pub share: f64,
 }
 
@@ -43,10 +43,80 @@ pub enum Mismatch {
 /// the logged one has none either.
 #[inline]
 pub fn compare(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
-    match fits(expected, actual) {
+    match is_clear(expected, actual).or_else(|| fits(expected, actual)) {
         Some(found) => Ok(found),
         None => compare_closely(expected, actual, hints),
     }
+}
+
+/// How two lists of coefficients compare that have lost the same ones, without a look at bounds.
+///
+/// The factor is that of the sums of moduli. Bounds are at least as large as the values, so whatever is off by less than
+/// [`FAIR_NORM_UNITS`] of the sum of moduli is right; what is off by a small part of that, as nearly all right coefficients
+/// are, is right at once.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Likeness {
+    /// The sum of the expected coefficients' moduli.
+    pub sum: f64,
+    /// That of the logged ones.
+    pub logged: f64,
+    /// The factor.
+    pub scale: f64,
+    /// How far a coefficient is off at most.
+    pub worst: f64,
+}
+
+/// Sums of coefficients between these neither overflow nor underflow on the way; beyond, a close look is taken.
+pub(super) const LEAST: f64 = 1e-100;
+pub(super) const MOST: f64 = 1e100;
+
+impl Likeness {
+    /// Of what is not compared.
+    pub const NONE: Self = Self { sum: 0.0, logged: 0.0, scale: 0.0, worst: 0.0 };
+
+    /// Of these expected coefficients, each with the logged one.
+    #[inline(always)]
+    pub fn of(both: impl Iterator<Item = (f64, f64)> + Clone) -> Self {
+        let (mut sum, mut logged) = (0.0, 0.0);
+        for (own, theirs) in both.clone() {
+            sum += own.abs();
+            logged += theirs.abs();
+        }
+        let scale = logged / sum;
+        let worst = both.fold(0.0_f64, |worst, (own, theirs)| worst.max((theirs - scale * own).abs()));
+        Self { sum, logged, scale, worst }
+    }
+
+    /// How far coefficients may be off at least.
+    #[inline(always)]
+    pub fn tolerance(&self) -> f64 {
+        FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged
+    }
+
+    /// Whether they are right at once. Coefficients that both have lost are small with factors near 1 only.
+    #[inline(always)]
+    pub fn is_clear(&self, is_whole: bool) -> bool {
+        let is_moderate = |sum: f64| (LEAST..MOST).contains(&sum);
+        is_moderate(self.sum)
+            & is_moderate(self.logged)
+            & (is_whole | (self.scale <= FAIR_LOSS))
+            & (self.worst <= FAIR_CLEAR * self.tolerance())
+    }
+}
+
+/// [`compare`], where bounds need not be asked how far the coefficients may be off; `None` leaves it open.
+fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
+    let lost = expected.iter().take_while(|r| r.value.abs() < LEADING_COEFFICIENT).count();
+    let kept = &expected[lost..];
+    if kept.len() != actual.len() {
+        return None;
+    }
+    if kept.is_empty() {
+        return Some(Match { scale: None, share: 0.0 });
+    }
+    let likeness = Likeness::of(kept.iter().zip(actual).map(|(own, theirs)| (own.value, *theirs)));
+    let is_right = likeness.is_clear(lost == 0) && norm(expected).is_finite() && !says_nothing(expected);
+    is_right.then(|| Match { scale: Some(likeness.scale), share: likeness.worst / likeness.tolerance() })
 }
 
 /// Whether a logged polynomial is certainly wrong with every factor, found without looking for the best one. `false` leaves it
@@ -344,6 +414,42 @@ mod tests {
             }
         }
         assert!(answered > 5000, "{answered}");
+    }
+
+    /// What is right at once is right in a close look, too, and by the same factor but for round-off.
+    #[test]
+    fn what_is_right_at_once_is_right() {
+        let mut seed = 1_u64;
+        let mut next = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut answered = 0;
+        for round in 0..40_000 {
+            let length = 2 + round % 5;
+            let expected: Vec<Bounded> = (0..length)
+                .map(|_| {
+                    let value = (next() - 0.5) * [1.0, 1e-9, 1e3, 1e-13][(next() * 4.0) as usize];
+                    Bounded { value, bound: value.abs() * (1.0 + 40.0 * next()) }
+                })
+                .collect();
+            let factor = [1.0, 0.25, 1.0 / 3.0, 3.0, 1e7][round / 5 % 5];
+            let noise = [0.0, 1e-16, 1e-15, 4e-15][round / 25 % 4];
+            let size: f64 = expected.iter().map(|r| r.value.abs()).sum();
+            let kept = expected.iter().skip_while(|r| r.value.abs() < LEADING_COEFFICIENT);
+            let actual: Vec<f64> = kept.map(|r| factor * (r.value + noise * (next() - 0.5) * size)).collect();
+            let Some(found) = is_clear(&expected, &actual) else { continue };
+            if let Some(scale) = found.scale {
+                let close = compare_closely(&expected, &actual, &[1.0]);
+                // A factor near 1 may have moved lost coefficients to four times the library's bound.
+                let has_lost = actual.len() < expected.len();
+                assert!(has_lost || close.is_ok(), "{expected:?} {actual:?}");
+                assert!((scale / factor - 1.0).abs() < 1e-14 && found.share <= FAIR_CLEAR, "{found:?}");
+                answered += 1;
+            }
+        }
+        assert!(answered > 15_000, "{answered}");
+        assert_eq!(is_clear(&parabola(), &parabola().map(|c| -c.value)), None);
     }
 
     fn parabola() -> [Bounded; 3] {

@@ -138,6 +138,13 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     (Vec2::new(normal.x.value, normal.y.value), FAIR_UNITS * UNIT_ROUNDOFF * bound)
 }
 
+/// The share of the tolerance that a contact's normal uses; `None` if that is wrong.
+pub(super) fn normal_share(motion: &BoundedPairMotion, contact: Impulse) -> Option<f64> {
+    let (expected, tolerance) = normal(motion, contact.time);
+    let residual = length(contact.normal - expected);
+    (residual <= tolerance).then(|| if residual > 0.0 { residual / tolerance } else { 0.0 })
+}
+
 /// The tolerance of contact normals that come from positions at once.
 fn simple_tolerance(context: &Context<'_>, records: &Records<'_>) -> f64 {
     FAIR_UNITS * UNIT_ROUNDOFF * context.size(records.before)

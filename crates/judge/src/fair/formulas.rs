@@ -14,7 +14,7 @@ use fosssim_num::{
     bounded::{Bounded, Bounded2, UNIT_ROUNDOFF},
     decision::all_exact,
     polynomial::MAX_COEFFICIENTS,
-    tolerances::{FAIR_SENSITIVITY, FAIR_UNITS},
+    tolerances::{FAIR_MOMENT, FAIR_SENSITIVITY, FAIR_UNITS},
     vector::{Vec2, at},
 };
 
@@ -190,6 +190,22 @@ impl BoundedPairMotion {
         expected
     }
 
+    /// Whether two times within the step are one moment: the points are where they are, but for some roundings of the size of
+    /// their positions.
+    pub fn is_moment(&self, one: f64, other: f64) -> bool {
+        let ways = match self {
+            Self::Particles(ways, _) => &ways[..],
+            Self::Edge(ways, _) => &ways[..],
+            Self::HalfPlane(way, ..) => std::slice::from_ref(way),
+        };
+        let is_so = |way: &BoundedPointMotion| {
+            let (start, shift) = (way.start, way.shift);
+            let [x, y] = [shift.x, shift.y].map(|shift| (one - other).abs() * shift.value.abs());
+            x.max(y) <= FAIR_MOMENT * UNIT_ROUNDOFF * start.x.bound.min(start.y.bound)
+        };
+        one <= 1.0 && other <= 1.0 && ways.iter().all(is_so)
+    }
+
     /// The contact normal at time `t`, not normalised.
     pub fn normal(&self, t: f64) -> Bounded2 {
         let t = Bounded::exact(t);
@@ -229,6 +245,19 @@ pub(super) fn extent(v: Vec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Times between which a point moves by a rounding or two are one moment, others are not.
+    #[test]
+    fn a_moment_is_as_long_as_nothing_moves() {
+        let point =
+            |x: f64, dx: f64| BoundedPointMotion::between([Vec2::new(x, 1.0), Vec2::new(x + dx, 1.0)], x, false);
+        let slow = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 0.0)], Bounded::exact(0.5));
+        let fast = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 2.0)], Bounded::exact(0.5));
+        let (time, other) = (0.5, 0.5 + 1e-13);
+        assert!(slow.is_moment(time, other) && !fast.is_moment(time, other));
+        assert!(fast.is_moment(time, 0.5 + 1e-15));
+        assert!(!slow.is_moment(1.0, 1.0 + f64::EPSILON) && !slow.is_moment(0.5, f64::NAN));
+    }
     use fosssim_model::{scene::original, sim::Simulation};
 
     const SCENE: &str = r#"<scene>

@@ -5,7 +5,8 @@
 //!
 //! 1. It rebuilds what the submission should have logged from *its own* states, and follows the submission: its
 //!    polynomials are what is searched, its logged contacts are what is answered, its mid record is what the geometric
-//!    part starts from. So a mistake is charged once, at the stage where it is made.
+//!    part starts from. So a mistake is charged once, at the stage where it is made. Where the time of impact that its
+//!    polynomials give is the reference's but for round-off, the reference's is taken.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running
 //!    error bound. A small leading coefficient may be missing, because the course's library drops it. NaN fails.
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; where that is too little, by
@@ -18,12 +19,14 @@
 //!    last record.
 //! 6. A step from or to a state that leads nowhere is never right.
 //!
-//! A step whose records are the reference's bit for bit needs none of this.
+//! A step whose records are the reference's bit for bit needs none of this, and one where only polynomials differ, which are right
+//! at once, only what `alike` looks at.
 //!
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS
 //! [`FAIR_SENSITIVITY`]: fosssim_num::tolerances::FAIR_SENSITIVITY
 
 mod ahead;
+mod alike;
 mod borderline;
 mod cause;
 pub mod compare;
@@ -44,8 +47,10 @@ mod step;
 mod step_judgement;
 
 pub(super) use ahead::Ahead;
+pub(super) use alike::AlikeStep;
 pub use borderline::borderline;
 pub use cause::{Cause, cause};
+pub(super) use compare::Likeness;
 pub use contact::decides;
 pub(super) use context::{Context, Records};
 pub use judgement::{FairRefusal, FairVerdict, Form, Judgement};

@@ -18,6 +18,8 @@ const MOST_THREADS: usize = 8;
 struct Worker {
     simulation: Simulation,
     buffers: Buffers,
+    /// Root searches of the reference.
+    searches: SearchCounts,
     /// Looks at many calls at a time, unless each is to be looked at by itself.
     ahead: Option<Ahead>,
 }
@@ -59,7 +61,7 @@ impl<'a> Crew<'a> {
                 simulation.forgo_lanes();
             }
             let ahead = (!self.one_by_one).then(|| Ahead::new(self.scene));
-            Worker { simulation, buffers: Buffers::new(self.scene), ahead }
+            Worker { simulation, buffers: Buffers::new(self.scene), searches: SearchCounts::default(), ahead }
         };
         self.workers.resize_with(workers.max(self.workers.len()), worker);
     }
@@ -81,10 +83,10 @@ impl<'a> Crew<'a> {
         pool.install(|| rayon::join(|| judge_batch(batch, workers, shape, rest), other));
     }
 
-    /// Counts of root searches.
+    /// Counts of root searches of the reference.
     pub(super) fn searches(&self) -> SearchCounts {
         let mut sum = SearchCounts::default();
-        self.workers.iter().for_each(|worker| sum += worker.simulation.search_counts());
+        self.workers.iter().for_each(|worker| sum += worker.searches);
         sum
     }
 }
@@ -126,7 +128,7 @@ fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
     let Slot {
         step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, ..
     } = slot;
-    let Worker { simulation, buffers, ahead } = worker;
+    let Worker { simulation, buffers, searches, ahead } = worker;
     copy_state(simulation.state_mut(), before);
     simulation.set_steps_done(*step - 1);
     let layout = shape.layout;
@@ -134,7 +136,10 @@ fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
     let mid = layout.polynomials.then_some(&*mid);
     (*error, *beyond_limit) = (None, false);
     let mut tally = Tally::new((*step, frame), end, mid.map(|mid| &mid.state), shape.logs_impulses, buffers, result);
-    match simulation.step(&mut tally) {
+    let begin = simulation.search_counts();
+    let end_of_step = simulation.step(&mut tally);
+    *searches += simulation.search_counts() - begin;
+    match end_of_step {
         Ok(()) => {
             *beyond_limit = layout.polynomials && tally.needs_more();
             tally.finish(simulation.state(), layout.impulses, layout.polynomials);

@@ -17,6 +17,8 @@ pub trait Observer {
     fn begin_step(&mut self, _step: u32) {}
     /// A detection pass begins.
     fn begin_pass(&mut self, _pass: Pass) {}
+    /// Where particles start and end (2N each) as the pass begins to see them, right after `begin_pass`.
+    fn pass_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
     /// What this observer wants to know of the pass's pairs; asked once or more in each pass. Unless it wants
     /// [`Wanted::Calls`], `solve`, `decide` and `detection` are not called, and pairs are computed many at a time.
     #[inline]
@@ -84,6 +86,9 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     fn begin_pass(&mut self, pass: Pass) {
         (**self).begin_pass(pass);
     }
+    fn pass_positions(&mut self, q_start: &[f64], q_end: &[f64]) {
+        (**self).pass_positions(q_start, q_end);
+    }
     #[inline]
     fn wanted(&mut self) -> Wanted<'_> {
         (**self).wanted()
@@ -131,6 +136,10 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     fn begin_pass(&mut self, pass: Pass) {
         self.0.begin_pass(pass);
         self.1.begin_pass(pass);
+    }
+    fn pass_positions(&mut self, q_start: &[f64], q_end: &[f64]) {
+        self.0.pass_positions(q_start, q_end);
+        self.1.pass_positions(q_start, q_end);
     }
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         self.0.solve(pair, q_start, q_end, polynomials);

@@ -15,6 +15,8 @@ pub struct PolynomialBytes {
     used: usize,
     count: usize,
     largest: f64,
+    /// The numbers of the first polynomials of pairs whose zeros were searched, ascending.
+    searched: Vec<u32>,
 }
 
 /// Bytes of the largest polynomial that a detection logs.
@@ -34,6 +36,7 @@ impl PolynomialBytes {
     /// Begins a new list behind those that are there.
     pub(crate) fn begin(&mut self) {
         (self.begin, self.count, self.largest) = (self.used, 0, 0.0);
+        self.searched.clear();
     }
 
     /// Where the list stands among [all](Self::all) that are there.
@@ -75,6 +78,13 @@ impl PolynomialBytes {
         self.largest
     }
 
+    /// The numbers of the first polynomials of those pairs for which the certificate was not enough, ascending: of all other
+    /// pairs these polynomials exclude an impact.
+    #[must_use]
+    pub fn searched(&self) -> &[u32] {
+        &self.searched
+    }
+
     /// Appends one polynomial, highest power first.
     ///
     /// # Panics
@@ -111,6 +121,12 @@ impl PolynomialBytes {
     pub(super) fn added(&mut self, bytes: usize, polynomials: usize) {
         self.used += bytes;
         self.count += polynomials;
+    }
+
+    /// Notes that the zeros of a pair were searched whose polynomials will stand behind this many more.
+    #[cold]
+    pub(super) fn search(&mut self, behind: usize) {
+        self.searched.extend(u32::try_from(self.count + behind));
     }
 
     /// Notes that a coefficient has this modulus, or that none has a larger one.

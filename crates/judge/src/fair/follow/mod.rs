@@ -195,15 +195,32 @@ impl Observer for Follower<'_> {
             self.note_course_form(pair, q_start, q_end, index);
             return;
         }
+        let can_be_searched = (0..polynomials.len()).all(|number| contact::is_searchable(logged(number)));
         if self.review(pair, q_start, q_end, index, polynomials.len()) {
             let lengths =
                 || polynomials.iter().enumerate().map(|(number, own)| (own.coefficients().len(), logged(number).len()));
             self.judged.lost += u64::from(lengths().any(|(own, logged)| logged != own));
             let lost = lengths().any(|(own, logged)| logged < own);
             self.own = contact::time_of(polynomials).map(|time| Own { time, lost });
+            if let (Some(Own { time, lost: false }), Some(Seen { motion, .. })) = (self.own, &self.seen)
+                && time <= 1.0
+                && can_be_searched
+            {
+                let logged: [Polynomial; PairKind::MOST_POLYNOMIALS] = std::array::from_fn(|number| {
+                    if number < polynomials.len() {
+                        Polynomial::untrimmed(logged(number))
+                    } else {
+                        Polynomial::default()
+                    }
+                });
+                if contact::time_of(&logged[..polynomials.len()]).is_some_and(|other| motion.is_moment(time, other)) {
+                    // Round-off is all that the submission's own time would bring.
+                    return;
+                }
+            }
         }
         // What the submission solved is what decides, even if it is wrong: a wrong polynomial is charged once.
-        if (0..polynomials.len()).all(|number| contact::is_searchable(logged(number))) {
+        if can_be_searched {
             for (number, own) in polynomials.iter_mut().enumerate() {
                 *own = Polynomial::untrimmed(logged(number));
             }

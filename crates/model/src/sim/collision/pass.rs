@@ -111,6 +111,7 @@ impl Detector {
         mut react: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     ) -> Result<(), StepError> {
         observer.begin_pass(pass);
+        observer.pass_positions(q_start, q_end);
         self.passes += 1;
         self.displacements.clear();
         self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
@@ -305,7 +306,11 @@ impl Detector {
     {
         polynomials.iter_mut().for_each(Polynomial::trim);
         way.observer.solve(pair, way.q_start, way.q_end, polynomials);
-        let decision = match time_of_impact(self.search, &mut self.counts, self.step, pair, polynomials)? {
+        let time = time_of_impact(self.search, &mut self.counts, self.step, pair, polynomials)?;
+        if let (Time::Found(_), Wanted::Bytes(bytes)) = (time, way.observer.wanted()) {
+            bytes.search(0);
+        }
+        let decision = match time {
             Time::Found(time) if time <= 1.0 => match normal(time) {
                 Some(normal) => Decision::Hit { time, normal },
                 None => Decision::Miss { time: Time::Found(time) },

@@ -42,10 +42,11 @@ impl Work for Pairs<'_> {
             let mut bytes = self.bytes.take();
             let mut output = Output::new(bytes.as_mut().map_or(&mut [], |bytes| bytes.room(pairs)));
             let ends = self.row(simd, &mut rows, &mut output);
-            let Output { used, polynomials, excluded, largest, found, .. } = output;
+            let Output { used, polynomials, excluded, largest, searched, found, .. } = output;
             self.counts.calls += excluded;
             self.counts.excluded += excluded;
             if let Some(bytes) = &mut bytes {
+                searched.into_iter().for_each(|behind| bytes.search(behind));
                 bytes.added(used, polynomials);
                 bytes.raise(largest.max(self.group.largest));
             }
@@ -156,7 +157,7 @@ fn of_edge(
     output: &mut Output<'_>,
 ) -> bool {
     let known = row[EDGE_KNOWN].to_bits();
-    let ends = known & OPEN != 0 && output.takes(decide_edge(with.0, with.1, pair, row), pair, place);
+    let ends = known & OPEN != 0 && output.asks(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
     if known & OPEN == 0 {
         output.excluded += 1;
     }
@@ -174,7 +175,7 @@ fn of_two(
     output: &mut Output<'_>,
 ) -> bool {
     let known = row[TWO_KNOWN].to_bits();
-    let ends = known & OPEN != 0 && output.takes(decide_two(with.0, with.1, pair, row), pair, place);
+    let ends = known & OPEN != 0 && output.asks(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);
     if known & OPEN == 0 {
         output.excluded += 1;
     }

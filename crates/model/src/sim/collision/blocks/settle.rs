@@ -35,6 +35,8 @@ pub(super) struct Output<'a> {
     pub excluded: u64,
     /// The largest modulus of coefficients.
     pub largest: f64,
+    /// Numbers of polynomials: of each pair whose zeros were searched the first.
+    pub searched: Vec<usize>,
     /// The hit that was found, or why the search has no end. Handed on here, since it is seldom there and large.
     pub found: Result<Option<Impulse>, StepError>,
 }
@@ -43,13 +45,31 @@ impl<'a> Output<'a> {
     /// Nothing is written yet.
     #[inline(always)]
     pub fn new(room: &'a mut [u8]) -> Self {
-        Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
+        let searched = Vec::new();
+        Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, searched, found: Ok(None) }
+    }
+
+    /// Has a pair decided about. Whether that yields something, as [`Output::takes`] says.
+    #[inline(always)]
+    pub fn asks(
+        &mut self,
+        counts: &mut SearchCounts,
+        decide: impl FnOnce(&mut SearchCounts) -> Result<Option<Impulse>, StepError>,
+        pair: Pair,
+        place: &mut Place,
+    ) -> bool {
+        let searched = counts.searched;
+        let found = decide(counts);
+        if counts.searched > searched {
+            self.searched.push(self.polynomials);
+        }
+        self.takes(found, pair, place)
     }
 
     /// Takes what was found of a pair. Whether this is a hit, behind which the place is then, or a search without end, which
     /// is not logged.
     #[inline(always)]
-    pub fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut Place) -> bool {
+    fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut Place) -> bool {
         if matches!(found, Ok(None)) {
             return false;
         }

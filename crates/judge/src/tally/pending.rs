@@ -1,0 +1,112 @@
+//! What the original finds about polynomials (oracle-behaviour.md 6.2).
+use super::{StepResult, sum_of_moduli};
+use crate::{
+    differing::{differing, factor},
+    finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, Rescaled},
+    progress::Remark,
+};
+use fosssim_num::{
+    polynomial::{MAX_COEFFICIENTS, Polynomial},
+    tolerances::{PARITY_COEFFICIENT, PARITY_ZERO_POLYNOMIAL},
+};
+
+/// The findings about polynomials, held back until the two lists are known to have the same length.
+#[derive(Debug, Default)]
+pub(crate) struct Pending {
+    runs: Vec<(FindingKind, u32)>,
+    firsts: Vec<Finding>,
+}
+
+impl Pending {
+    /// Forgets all.
+    pub(crate) fn clear(&mut self) {
+        self.runs.clear();
+        self.firsts.clear();
+    }
+
+    fn record(&mut self, kind: FindingKind, finding: impl FnOnce() -> Finding) {
+        if !self.firsts.iter().any(|first| first.kind() == kind) {
+            self.firsts.push(finding());
+        }
+        match self.runs.last_mut() {
+            Some((last, count)) if *last == kind => *count = count.saturating_add(1),
+            _ => self.runs.push((kind, 1)),
+        }
+    }
+
+    /// Notes what is wrong about a polynomial of this step and frame, which does not [pass](super::passes).
+    pub(crate) fn compare(
+        &mut self,
+        (step, frame): (u32, u64),
+        own: &[f64],
+        actual: &[f64],
+        place: impl Fn() -> PolynomialPlace,
+    ) {
+        let expected = &Polynomial::untrimmed(own);
+        let finding = |detail| Finding { step, frame, detail };
+        let shown = Polynomial::untrimmed(&actual[..actual.len().min(MAX_COEFFICIENTS)]);
+        if own.len() != actual.len() {
+            self.record(FindingKind::PolynomialDegree, || {
+                let (expected, actual_size) = (*expected, actual.len());
+                finding(FindingDetail::PolynomialDegree { place: place(), expected, actual_size, actual: shown })
+            });
+            return;
+        }
+        let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
+        if sum_actual < PARITY_ZERO_POLYNOMIAL && sum_own < PARITY_ZERO_POLYNOMIAL {
+            return;
+        }
+        if sum_own < PARITY_ZERO_POLYNOMIAL {
+            self.record(FindingKind::VanishingPolynomial, || {
+                finding(FindingDetail::VanishingPolynomial { place: place(), expected: *expected, actual: shown })
+            });
+            return;
+        }
+        for (number, (&own_coefficient, &coefficient)) in own.iter().zip(actual).enumerate() {
+            let rescaled = (own_coefficient * sum_actual) / sum_own;
+            let residual = (coefficient - rescaled).abs();
+            // Parity's exception: NaN passes, because the original asks whether the distance is larger.
+            if residual > PARITY_COEFFICIENT {
+                self.record(FindingKind::Coefficient, || {
+                    let power = own.len() - 1 - number;
+                    let rescaled = Rescaled { power, expected: rescaled, actual: coefficient, residual };
+                    finding(wrong_coefficient(place(), rescaled, expected, &shown))
+                });
+            }
+        }
+    }
+
+    /// Hands all on, where the lists have the same length.
+    pub(crate) fn settle(&mut self, result: &mut StepResult) {
+        for &(kind, count) in &self.runs {
+            result.remarks.push(Remark::Polynomials(kind, count));
+            result.counts.add(kind, u64::from(count));
+        }
+        result.firsts.append(&mut self.firsts);
+    }
+}
+
+/// A wrong coefficient, under the name that a person would give it.
+fn wrong_coefficient(
+    place: PolynomialPlace,
+    rescaled: Rescaled,
+    expected: &Polynomial,
+    actual: &Polynomial,
+) -> FindingDetail {
+    let (own, logged) = (expected.coefficients(), actual.coefficients());
+    let factor = factor(own, logged);
+    // What the original's bound alone rejects is named as the original does.
+    let power = differing(own, logged, factor).first().copied().unwrap_or(rescaled.power);
+    let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
+    let (right, wrong) = (factor * of(own), of(logged));
+    FindingDetail::Coefficient {
+        place,
+        power,
+        expected: right,
+        actual: wrong,
+        residual: (wrong - right).abs(),
+        rescaled: Some(rescaled),
+        expected_polynomial: *expected,
+        actual_polynomial: *actual,
+    }
+}
