@@ -403,15 +403,13 @@ fn write_files(job: &Job) -> Result<(), SandboxError> {
 
 /// The working folder in memory, and the reading end of its trace pipe.
 fn handed_over(control: &UnixStream, with_pipe: bool) -> io::Result<(OwnedFd, Option<OwnedFd>)> {
-    let next = |word: u8| -> io::Result<OwnedFd> {
-        let mut byte = [0];
-        match sys::receive_descriptor(control, &mut byte)? {
-            (1, Some(fd)) if byte[0] == word => Ok(fd),
-            _ => Err(io::ErrorKind::InvalidData.into()),
-        }
-    };
-    let folder = next(wire::FOLDER)?;
-    Ok((folder, with_pipe.then(|| next(wire::TRACE)).transpose()?))
+    let mut byte = [0];
+    let (_, descriptors) = sys::receive_descriptors(control, &mut byte)?;
+    let mut descriptors = descriptors.into_iter();
+    match (byte[0], descriptors.next(), descriptors.next()) {
+        (wire::FOLDER, Some(folder), pipe) if pipe.is_some() == with_pipe => Ok((folder, pipe)),
+        _ => Err(io::ErrorKind::InvalidData.into()),
+    }
 }
 
 /// The order for a job, with absolute paths, to a supervisor that is this program.

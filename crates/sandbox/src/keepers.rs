@@ -72,11 +72,10 @@ impl Keeper {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
         let (answers, told) = io::pipe()?;
-        sys::send_descriptor(&self.socket, wire::CONTROL, theirs.as_fd())?;
-        sys::send_descriptor(&self.socket, wire::ANSWERS, told.as_fd())?;
-        sys::send_descriptor(&self.socket, wire::FOLDER, folder.as_fd())?;
-        wire::send(&self.socket, order)?;
-        files.iter().try_for_each(|(_, content)| (&self.socket).write_all(content))?;
+        let mut packet = wire::packet(order)?;
+        files.iter().for_each(|(_, content)| packet.extend_from_slice(content));
+        sys::send_descriptors(&self.socket, wire::RUN, [theirs.as_fd(), told.as_fd(), folder.as_fd()])?;
+        (&self.socket).write_all(&packet)?;
         Ok((control, OwnedFd::from(answers).into()))
     }
 

@@ -523,37 +523,44 @@ pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, result: Result<(), i32>)
     check(i64::from(done)).map(drop)
 }
 
-/// Space for one descriptor in a control message, aligned as the kernel needs it.
+/// Space for some descriptors in a control message, aligned as the kernel needs it.
 #[repr(C, align(8))]
 struct ControlSpace([u8; 64]);
 
-/// Sends one byte and, along with it, a descriptor.
-pub(super) fn send_descriptor(to: &UnixStream, mut byte: u8, fd: BorrowedFd<'_>) -> io::Result<()> {
+/// Sends one byte and, along with it, descriptors.
+pub(super) fn send_descriptors<const N: usize>(
+    to: &UnixStream,
+    mut byte: u8,
+    fds: [BorrowedFd<'_>; N],
+) -> io::Result<()> {
+    const { assert!(N > 0 && N <= 8, "they fit into the control space") };
+    let numbers = fds.map(|fd| fd.as_raw_fd());
+    let size = size_of_val(&numbers);
     let mut space = ControlSpace([0; 64]);
     let mut part = libc::iovec { iov_base: (&raw mut byte).cast(), iov_len: 1 };
     // SAFETY: an all-zero header is valid; its pointers are set to values that outlive the call, the control space is
-    // larger than CMSG_SPACE of one descriptor, so that the first header and its data lie within it.
+    // larger than CMSG_SPACE of so many descriptors, so that the first header and its data lie within it.
     unsafe {
         let mut message: libc::msghdr = std::mem::zeroed();
         message.msg_iov = &raw mut part;
         message.msg_iovlen = 1;
         message.msg_control = space.0.as_mut_ptr().cast();
-        message.msg_controllen = libc::CMSG_SPACE(size_of::<RawFd>() as u32) as _;
+        message.msg_controllen = libc::CMSG_SPACE(size as u32) as _;
         let header = libc::CMSG_FIRSTHDR(&raw const message);
         (*header).cmsg_level = libc::SOL_SOCKET;
         (*header).cmsg_type = libc::SCM_RIGHTS;
-        (*header).cmsg_len = libc::CMSG_LEN(size_of::<RawFd>() as u32) as _;
-        std::ptr::write_unaligned(libc::CMSG_DATA(header).cast::<RawFd>(), fd.as_raw_fd());
+        (*header).cmsg_len = libc::CMSG_LEN(size as u32) as _;
+        std::ptr::copy_nonoverlapping(numbers.as_ptr().cast(), libc::CMSG_DATA(header), size);
         check(libc::sendmsg(to.as_raw_fd(), &raw const message, libc::MSG_NOSIGNAL) as i64).map(drop)
     }
 }
 
-/// Receives bytes and, if one came along, a descriptor. No bytes mean that the other side is closed.
-pub(super) fn receive_descriptor(from: &UnixStream, buffer: &mut [u8]) -> io::Result<(usize, Option<OwnedFd>)> {
+/// Receives bytes and the descriptors that came along. No bytes mean that the other side is closed.
+pub(super) fn receive_descriptors(from: &UnixStream, buffer: &mut [u8]) -> io::Result<(usize, Vec<OwnedFd>)> {
     let mut space = ControlSpace([0; 64]);
     let mut part = libc::iovec { iov_base: buffer.as_mut_ptr().cast(), iov_len: buffer.len() };
-    // SAFETY: as in `send_descriptor`; the kernel writes only within the lengths given, and a header is read only when
-    // it says that it holds a descriptor, which is then ours alone.
+    // SAFETY: as in `send_descriptors`; the kernel writes only within the lengths given, and a header is read only when
+    // it says that it holds descriptors, which are then ours alone.
     unsafe {
         let mut message: libc::msghdr = std::mem::zeroed();
         message.msg_iov = &raw mut part;
@@ -562,12 +569,12 @@ pub(super) fn receive_descriptor(from: &UnixStream, buffer: &mut [u8]) -> io::Re
         message.msg_controllen = space.0.len() as _;
         let length = check(libc::recvmsg(from.as_raw_fd(), &raw mut message, libc::MSG_CMSG_CLOEXEC) as i64)?;
         let header = libc::CMSG_FIRSTHDR(&raw const message);
-        let holds = !header.is_null()
-            && (*header).cmsg_level == libc::SOL_SOCKET
-            && (*header).cmsg_type == libc::SCM_RIGHTS
-            && (*header).cmsg_len as usize >= libc::CMSG_LEN(size_of::<RawFd>() as u32) as usize;
-        let fd = holds.then(|| OwnedFd::from_raw_fd(std::ptr::read_unaligned(libc::CMSG_DATA(header).cast::<RawFd>())));
-        Ok((length as usize, fd))
+        let holds =
+            !header.is_null() && (*header).cmsg_level == libc::SOL_SOCKET && (*header).cmsg_type == libc::SCM_RIGHTS;
+        let size = if holds { ((*header).cmsg_len as usize).saturating_sub(libc::CMSG_LEN(0) as usize) } else { 0 };
+        let fd = |at| std::ptr::read_unaligned(libc::CMSG_DATA(header).cast::<RawFd>().add(at));
+        let fds = (0..size / size_of::<RawFd>()).map(|at| OwnedFd::from_raw_fd(fd(at))).collect();
+        Ok((length as usize, fds))
     }
 }
 
@@ -584,11 +591,6 @@ pub(super) fn landlock_version() -> i32 {
     let answer =
         unsafe { libc::syscall(libc::SYS_landlock_create_ruleset, std::ptr::null::<u8>(), 0_usize, version_flag) };
     i32::try_from(answer).unwrap_or(0).max(0)
-}
-
-/// Asks to be the first that the kernel ends when memory runs out. Best effort: some containers forbid it.
-pub(super) fn first_to_go() {
-    let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
 }
 
 #[cfg(test)]

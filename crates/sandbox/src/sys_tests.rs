@@ -3,20 +3,22 @@ use std::os::fd::AsFd;
 use super::*;
 
 #[test]
-fn a_descriptor_travels_through_a_socket() {
+fn descriptors_travel_through_a_socket() {
     let (left, right) = UnixStream::pair().unwrap();
     let (mut reader, writer) = io::pipe().unwrap();
-    send_descriptor(&left, b'L', writer.as_fd()).unwrap();
+    let null = std::fs::File::open("/dev/null").unwrap();
+    send_descriptors(&left, b'L', [null.as_fd(), writer.as_fd()]).unwrap();
     drop((left, writer));
     let mut buffer = [0; 16];
-    let (length, fd) = receive_descriptor(&right, &mut buffer).unwrap();
-    assert_eq!(&buffer[..length], b"L");
-    io::Write::write_all(&mut std::fs::File::from(fd.unwrap()), b"through").unwrap();
+    let (length, mut fds) = receive_descriptors(&right, &mut buffer).unwrap();
+    assert_eq!((&buffer[..length], fds.len()), (&b"L"[..], 2));
+    io::Write::write_all(&mut std::fs::File::from(fds.remove(1)), b"through").unwrap();
+    drop(fds);
     let mut text = String::new();
     io::Read::read_to_string(&mut reader, &mut text).unwrap();
     assert_eq!(text, "through");
-    let (length, fd) = receive_descriptor(&right, &mut buffer).unwrap();
-    assert!(length == 0 && fd.is_none(), "a closed side shows as no bytes");
+    let (length, fds) = receive_descriptors(&right, &mut buffer).unwrap();
+    assert!(length == 0 && fds.is_empty(), "a closed side shows as no bytes");
 }
 
 #[test]

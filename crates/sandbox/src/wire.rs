@@ -24,14 +24,11 @@ const USUAL_MESSAGE: u64 = 4 << 10;
 /// No message is longer than this; a longer one means that the streams are out of step.
 const LONGEST_MESSAGE: u64 = 64 << 20;
 
-/// Comes with the way of commands, to a supervisor that serves several runs.
-pub(super) const CONTROL: u8 = b'c';
-/// Comes with the way of answers, likewise.
-pub(super) const ANSWERS: u8 = b'a';
-/// Comes with the working folder: to the grader, where that lies in memory; to such a supervisor, as it lies on the disk.
+/// Comes with the ways of commands and of answers and with the working folder as it lies on the disk, to a supervisor that serves
+/// several runs.
+pub(super) const RUN: u8 = b'r';
+/// Comes with the working folder, to the grader, where that lies in memory, and with the reading end of the trace pipe if there is one.
 pub(super) const FOLDER: u8 = b'f';
-/// Comes with the reading end of the trace pipe.
-pub(super) const TRACE: u8 = b't';
 
 /// Bytes of a path or an argument.
 pub(super) type Raw = Vec<u8>;
@@ -200,11 +197,16 @@ pub(super) struct Probe {
 
 /// Writes one message.
 pub(super) fn send<T: Serialize>(mut to: impl Write, message: &T) -> io::Result<()> {
+    to.write_all(&packet(message)?)?;
+    to.flush()
+}
+
+/// One message as it is written.
+pub(super) fn packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
     let body = serde_json::to_vec(message)?;
     let mut packet = (body.len() as u64).to_le_bytes().to_vec();
     packet.extend_from_slice(&body);
-    to.write_all(&packet)?;
-    to.flush()
+    Ok(packet)
 }
 
 /// Reads as many bytes as were promised. Memory grows as they arrive.

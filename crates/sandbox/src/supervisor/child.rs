@@ -28,7 +28,7 @@ pub(super) const LISTENER: u8 = b'L';
 
 /// All that the child needs, prepared by the supervisor.
 pub(super) struct Plan {
-    pub(super) order: Order,
+    pub(super) order: Rc<Order>,
     pub(super) supervisor: u32,
     pub(super) folder: OwnedFd,
     /// The program or script, opened while we could still reach it, for a user who cannot.
@@ -80,7 +80,8 @@ fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
     sys::default_signals(&plan.ignored);
     sys::file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
-    sys::first_to_go();
+    // To be the first that the kernel ends when memory runs out. Some containers forbid it.
+    let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
     limits(&plan.order, plan.user.is_some()).map_err(stage("set the resource limits"))?;
     if let Some(user) = plan.user {
         sys::switch_user(user).map_err(stage("become the sandbox's user"))?;
@@ -177,7 +178,7 @@ fn filter_calls(plan: &Plan) -> io::Result<()> {
     for (index, program) in compiled.1.iter().enumerate() {
         let listener = sys::install_filter(program, walls.notify && index == 0)?;
         if let Some(listener) = listener {
-            sys::send_descriptor(&plan.status, LISTENER, listener.as_fd())?;
+            sys::send_descriptors(&plan.status, LISTENER, [listener.as_fd()])?;
         }
     }
     Ok(())

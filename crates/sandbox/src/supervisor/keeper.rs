@@ -62,17 +62,14 @@ struct Request {
 impl Request {
     /// The next one; `None` when the grader has no more.
     fn next(socket: &UnixStream) -> io::Result<Option<Self>> {
-        let descriptor = |word: u8| -> io::Result<Option<OwnedFd>> {
-            let mut byte = [0];
-            match sys::receive_descriptor(socket, &mut byte)? {
-                (0, _) => Ok(None),
-                (_, Some(fd)) if byte[0] == word => Ok(Some(fd)),
-                _ => Err(io::ErrorKind::InvalidData.into()),
-            }
+        let mut byte = [0];
+        let (length, descriptors) = sys::receive_descriptors(socket, &mut byte)?;
+        if length == 0 {
+            return Ok(None);
+        }
+        let (wire::RUN, Ok([control, answers, folder])) = (byte[0], <[OwnedFd; 3]>::try_from(descriptors)) else {
+            return Err(io::ErrorKind::InvalidData.into());
         };
-        let Some(control) = descriptor(wire::CONTROL)? else { return Ok(None) };
-        let answers = descriptor(wire::ANSWERS)?.ok_or(io::ErrorKind::UnexpectedEof)?;
-        let folder = descriptor(wire::FOLDER)?.ok_or(io::ErrorKind::UnexpectedEof)?;
         let order: Order = wire::receive(socket)?;
         let file = |(name, length): &(Raw, u64)| Ok((name.clone(), wire::receive_bytes(socket, *length)?));
         let files = order.files.iter().map(file).collect::<io::Result<_>>()?;

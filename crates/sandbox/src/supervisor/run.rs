@@ -6,6 +6,7 @@ use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::fs::MetadataExt;
 use std::os::unix::net::UnixStream;
 use std::process::ExitCode;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::child::{self, Opened, Plan};
@@ -79,7 +80,7 @@ pub(super) type Finished = (Report, Vec<u8>, Vec<u8>);
 
 /// A program at work, seen from its supervisor.
 pub(super) struct Run {
-    order: Order,
+    order: Rc<Order>,
     control: File,
     folder: OwnedFd,
     /// Keeps the trace pipe open until every process is dead, so that its reader sees the end then and not before.
@@ -109,7 +110,7 @@ pub(super) struct Run {
 impl Run {
     /// Prepares everything and forks.
     pub(super) fn start(order: Order, control: File, held: Held, prepared: &Prepared) -> Result<Self, Failure> {
-        let Held { slot, group } = held;
+        let (order, Held { slot, group }) = (Rc::new(order), held);
         let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
@@ -354,11 +355,11 @@ impl Run {
     fn hear(&mut self) {
         let mut buffer = [0; 4096];
         while let Some(status) = &self.status {
-            match sys::receive_descriptor(status, &mut buffer) {
-                Ok((0, _)) => self.status = None,
-                Ok((_, Some(listener))) => self.listener = Some(listener),
-                Ok((length, None)) => self.told.extend_from_slice(&buffer[..length]),
-                Err(_) => return,
+            let Ok((length, mut descriptors)) = sys::receive_descriptors(status, &mut buffer) else { return };
+            match descriptors.pop() {
+                _ if length == 0 => self.status = None,
+                Some(listener) => self.listener = Some(listener),
+                None => self.told.extend_from_slice(&buffer[..length]),
             }
         }
     }
@@ -515,12 +516,9 @@ fn make_pipe(folder: BorrowedFd<'_>, name: &[u8]) -> io::Result<OwnedFd> {
 /// Gives the grader the folder and the reading end of the pipe. Only now, with a writer, may a read wait.
 fn hand_over(control: &File, folder: BorrowedFd<'_>, pipe: Option<OwnedFd>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
-    sys::send_descriptor(&socket, wire::FOLDER, folder)?;
-    if let Some(pipe) = pipe {
-        sys::set_blocking(pipe.as_fd(), true)?;
-        sys::send_descriptor(&socket, wire::TRACE, pipe.as_fd())?;
-    }
-    Ok(())
+    let Some(pipe) = pipe else { return sys::send_descriptors(&socket, wire::FOLDER, [folder]) };
+    sys::set_blocking(pipe.as_fd(), true)?;
+    sys::send_descriptors(&socket, wire::FOLDER, [folder, pipe.as_fd()])
 }
 
 /// How long the trace pipe was full.

@@ -3,6 +3,7 @@
 //! Rules name open descriptors, so that they are made while we still are who we are, and come into force in the child
 //! after it has become another user.
 
+use std::ffi::CStr;
 use std::fs::File;
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
@@ -38,7 +39,10 @@ const LIBRARIES: [&str; 8] = [
 const MACHINE: [&str; 5] =
     ["/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo", "/etc/localtime", "/usr/share/zoneinfo"];
 /// What runtimes ask about their own process.
-const OWN_FILES: [&str; 9] = ["auxv", "cmdline", "comm", "environ", "limits", "maps", "stat", "statm", "status"];
+const OWN_FILES: [&CStr; 9] =
+    [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps", c"stat", c"statm", c"status"];
+/// Folders there that it may list: the threads' own numbers, which some runtimes count, and its descriptors.
+const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
 /// Devices without an inside.
 pub(super) const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
 /// The system's programs, for compilers and build tools.
@@ -124,9 +128,14 @@ impl Places {
 
 /// The open place, with as much of the access as makes sense there.
 fn place(path: &Path, access: BitFlags<AccessFs>) -> Option<(OwnedFd, BitFlags<AccessFs>)> {
-    let opened = File::options().read(true).custom_flags(libc::O_PATH).open(path).ok()?.into();
-    let is_folder = path.metadata().is_ok_and(|metadata| metadata.is_dir());
-    Some((opened, if is_folder { access } else { access & AccessFs::from_file(NEWEST) }))
+    let opened = at_place(path).ok()?;
+    let is_folder = opened.metadata().is_ok_and(|metadata| metadata.is_dir());
+    Some((opened.into(), if is_folder { access } else { access & AccessFs::from_file(NEWEST) }))
+}
+
+/// What lies at the path, open for being named only.
+fn at_place(path: &Path) -> io::Result<File> {
+    File::options().read(true).custom_flags(libc::O_PATH).open(path)
 }
 
 /// Prepares the rules for an order whose working folder is open as `folder`.
@@ -143,12 +152,14 @@ pub(super) fn rules(order: &Order, places: &Places, folder: BorrowedFd<'_>) -> i
 /// Adds what the process may read of its own entry in `/proc`, file by file, because the entry also shows sockets, mounts
 /// and groups of the host and which pages of a file are in memory. Only the child itself can do so.
 pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {
-    for name in OWN_FILES {
-        ruleset = add(ruleset, &Path::new("/proc/self").join(name), AccessFs::ReadFile.into())?;
+    let Ok(own) = at_place(Path::new("/proc/self")) else { return Ok(ruleset) };
+    let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));
+    for (name, access) in files.into_iter().chain(OWN_FOLDERS.map(|name| (name, AccessFs::ReadDir))) {
+        if let Ok(opened) = sys::open_beneath(own.as_fd(), name, libc::O_PATH) {
+            ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), access)).map_err(refused)?;
+        }
     }
-    // The threads' own numbers, which some runtimes count.
-    ruleset = add(ruleset, Path::new("/proc/self/task"), AccessFs::ReadDir.into())?;
-    add(ruleset, Path::new("/proc/self/fd"), AccessFs::ReadDir.into())
+    Ok(ruleset)
 }
 
 /// Puts the rules into force for this process and all that come from it.
@@ -202,13 +213,6 @@ fn in_folder(tools: bool) -> BitFlags<AccessFs> {
         | AccessFs::RemoveFile
         | AccessFs::RemoveDir;
     if tools { submission | AccessFs::Execute | AccessFs::MakeSym | AccessFs::Refer } else { submission }
-}
-
-fn add(ruleset: RulesetCreated, path: &Path, access: BitFlags<AccessFs>) -> io::Result<RulesetCreated> {
-    match place(path, access) {
-        Some((opened, access)) => ruleset.add_rule(PathBeneath::new(opened.as_fd(), access)).map_err(refused),
-        None => Ok(ruleset),
-    }
 }
 
 fn refused(error: RulesetError) -> io::Error {
