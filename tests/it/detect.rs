@@ -113,6 +113,30 @@ fn a_wrong_polynomial_of_a_trace_is_shown_beside_the_right_one() {
     assert!(run.out().contains(table), "{}", run.shown());
 }
 
+/// A factor keeps round-off that the course's library drops of the reference's polynomials: those of the trace are right all the same,
+/// and found in their places although they lead to more passes.
+#[test]
+fn what_a_factor_keeps_makes_no_polynomial_wrong() {
+    let workspace = Workspace::new();
+    let text = r#"<scene><duration time="0.4"/><integrator type="symplectic-euler" dt="0.02"/>
+        <collision type="hybrid" COR="1" maxiters="0" k="0" thickness="0"/>
+        <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0" radius="0.3"/>
+        <particle m="1" px="9.67" py="11.81" vx="0" vy="0" fixed="0" radius="0.1"/>
+        <simplegravity fx="0" fy="-3.7"/></scene>"#;
+    workspace.write("scene.xml", text);
+    let scene = fosssim_oracle::scene::read("scene", text.as_bytes()).expect("a scene").scene;
+    let row = fosssim_oracle::student::find("scale-1000").expect("a variant");
+    let student = fosssim_oracle::student::Student::new(Some(row.mistake));
+    workspace.write("trace.bin", fosssim_oracle::student::trace(&scene, student).expect("a trace"));
+    let mut kept = 0;
+    for step in 1..=20 {
+        let run = detect(&workspace, &format!("--scene scene.xml --trace trace.bin --step {step} --pair pp:0,1"));
+        assert!(!run.out().contains("differs") && !run.out().contains("missing"), "{}", run.out());
+        kept += usize::from(run.out().contains("right but for a factor and small leading coefficients"));
+    }
+    assert!(kept > 0);
+}
+
 /// From the trace's own mid record; and where the trace leaves pairs out, what it has for the others is found all the same.
 #[test]
 fn a_pair_of_a_trace_that_logs_too_little_is_found() {

@@ -4,7 +4,7 @@
 //! (collisions.md 2, root-finder.md 15 and 16). Beside the course's approach polynomial of a particle and an edge stands the
 //! mathematically right one (numerics.md 1), and beside the reference's decision whether round-off may flip it.
 use crate::{
-    fair::{decides, formulas},
+    fair::{compare::compare, decides, formulas},
     finding::Role,
 };
 use fosssim_model::sim::{Decision, PairMotion, PointMotion, Time};
@@ -167,6 +167,15 @@ impl Study {
         };
         let certain = decides(&bounded, &expected);
         Ok(Self { motion: *motion, curves, answer, certain, right_approach })
+    }
+
+    /// Whether a logged polynomial is right by the fair rules: but for a positive factor, round-off, and small leading
+    /// coefficients.
+    #[must_use]
+    pub fn is_right(&self, number: usize, logged: &[f64]) -> bool {
+        let expected = formulas::BoundedPairMotion::from(&self.motion).polynomials();
+        let own = (number < self.curves.len()).then(|| expected.polynomial(number));
+        own.into_iter().chain(expected.other_form(number)).any(|right| compare(right, logged, &[1.0]).is_ok())
     }
 }
 

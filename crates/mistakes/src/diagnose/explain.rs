@@ -256,6 +256,9 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
     }
 }
 
+/// Among so many traces one that looks as if a stage were empty is no evidence.
+const MANY: usize = 8;
+
 /// So many mistakes of a program are told.
 const MOST: usize = 3;
 
@@ -285,7 +288,7 @@ fn leave_open(open: &mut [Vec<Explanation>], covered: &mut [bool], keys: &[Strin
     }
 }
 
-/// All stages that are told to be empty, as one explanation; their keys are in [`Explanation::same_as`].
+/// All stages that are told to be empty by a trace, or by two where there are [`MANY`], as one explanation; their keys are in [`Explanation::same_as`].
 fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
     let told: Vec<&Explanation> = traces.iter().flatten().filter(|one| one.is_complete()).collect();
     let naming = |key: &str| traces.iter().filter(|list| names_completely(list, key)).count();
@@ -295,7 +298,9 @@ fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
         rivals.map(|rival| naming(rival)).max().unwrap_or(0) <= naming(row.id)
     };
     let is_told = |row: &&Row| is_empty_stage(row) && told.iter().any(|one| one.key == row.id);
-    let rows: Vec<&Row> = CATALOGUE.iter().filter(is_told).filter(is_likeliest).collect();
+    // One trace among many may look so for another reason.
+    let is_seen_again = |row: &&Row| traces.len() < MANY || naming(row.id) > 1;
+    let rows: Vec<&Row> = CATALOGUE.iter().filter(is_told).filter(is_likeliest).filter(is_seen_again).collect();
     let of_rows = || told.iter().filter(|one| rows.iter().any(|row| row.id == one.key));
     (!rows.is_empty()).then(|| Explanation {
         key: Explanation::UNFINISHED.to_owned(),

@@ -1,5 +1,6 @@
 //! Commands that look closer at the first thing that is wrong.
 use super::{super::view::FindingView, Check, first};
+use fosssim_judge::FindingDetail;
 use fosssim_model::sim::PairKind;
 
 /// The commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input and is gone.
@@ -10,7 +11,14 @@ pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     let view = FindingView::from(first);
     let kind = view.pair.and_then(|pair| PairKind::ALL.into_iter().find(|kind| kind.name() == pair.kind));
     if let (Some(pair), Some(kind), 1..) = (view.pair, kind, step) {
-        let pass = match view.polynomial.map_or(0, |polynomial| polynomial.pass.index) {
+        let pass = match first.detail {
+            FindingDetail::PassPositions { place }
+            | FindingDetail::TrimmedDecision { place, .. }
+            | FindingDetail::TrimmedTime { place, .. }
+            | FindingDetail::MixedForms { place } => place.pass.index,
+            _ => view.polynomial.map_or(0, |polynomial| polynomial.pass.index),
+        };
+        let pass = match pass {
             0 => String::new(),
             index => format!(" --pass {}", index + 1),
         };

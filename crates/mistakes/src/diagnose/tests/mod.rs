@@ -128,6 +128,32 @@ fn a_mistake_beside_another_is_told_once() {
     assert_eq!(keys, ["failsafe-empty", "pe-radii-squared-apart"], "{told:#?}");
 }
 
+/// One of many traces that looks as if a stage were empty, beside a mistake that all of them show.
+#[test]
+fn one_of_many_traces_makes_no_stage_empty() {
+    let said = |ids: &[&str]| {
+        let of = |id: &&str| student::find(id).expect("it is known");
+        let told = |row: &'static Row| Explanation {
+            key: row.id.to_owned(),
+            about: About::Mistake,
+            details: Vec::new(),
+            reproduced: 3,
+            samples: 3,
+            example: None,
+            same_as: Vec::new(),
+        };
+        ids.iter().map(of).map(told).collect::<Vec<_>>()
+    };
+    let keys = |traces: &[Vec<Explanation>]| {
+        several(traces.iter().map(Vec::as_slice), &[]).into_iter().map(|one| one.key).collect::<Vec<_>>()
+    };
+    let mut traces = vec![said(&["pp-linear-sign"]); 10];
+    traces[3] = said(&["pp-linear-sign", "failsafe-empty"]);
+    assert_eq!(keys(&traces)[0], "pp-linear-sign");
+    traces[5] = traces[3].clone();
+    assert_eq!(keys(&traces)[0], "failsafe-empty");
+}
+
 /// Reads no more at a time than a record has.
 struct Slowly<'a>(&'a [u8]);
 
