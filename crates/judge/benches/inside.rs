@@ -2,8 +2,8 @@
 //!
 //! `cargo bench -p fosssim-judge --bench inside -- [rounds] [what] SCENE...` prints a line per scene and the sum. `what` is
 //! `all`, or one of `step` (without an observer), `record` (into nothing), `parity` and `fair` (the scene's own trace), `half`
-//! and `third` (the same trace with every coefficient times 0.5 or divided by 3, by both books), `trace` (each scene is
-//! followed by the file of a trace, judged by both books).
+//! and `third` (the same trace with every coefficient times 0.5 or divided by 3, by both books), `rounded` (with a rounding more in
+//! every third coefficient), `trace` (each scene is followed by the file of a trace, judged by both books).
 //!
 //! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine changes, and
 //! shows them beside those of `instructions.txt`; with `store` behind it they are written there. `... -- growth` shows the cost
@@ -76,6 +76,10 @@ fn measure(scene: &Scene, rounds: u32, what: &str, given: Option<Vec<u8>>) -> Ve
             times.push((by_both, least(rounds, || judge(scene, &scaled, true))));
         }
     }
+    if is_wanted("rounded") {
+        let rounded = rounded(scene, &own);
+        times.push(("rounded fair", least(rounds, || judge(scene, &rounded, true))));
+    }
     if let Some(trace) = given {
         times.push(("parity", least(rounds, || judge(scene, &trace, false))));
         times.push(("fair", least(rounds, || judge(scene, &trace, true))));
@@ -117,11 +121,29 @@ fn judge(scene: &Scene, trace: &[u8], fair: bool) {
 
 /// The same trace with other coefficients.
 fn scaled(scene: &Scene, trace: &[u8], factor: f64) -> Vec<u8> {
+    with(scene, trace, |coefficient, _| factor * coefficient)
+}
+
+/// The same trace with a rounding more in every third coefficient.
+fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
+    with(
+        scene,
+        trace,
+        |coefficient, number| {
+            if number.is_multiple_of(3) { coefficient * (1.0 + f64::EPSILON) } else { coefficient }
+        },
+    )
+}
+
+/// The same trace with coefficients that follow from its own and their numbers in a record.
+fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) -> Vec<u8> {
     let layout = Layout::of(scene);
     let (mut reader, mut writer) = (Reader::of_slice(trace, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a sound trace") {
-        frame.polynomials.coefficients.iter_mut().for_each(|coefficient| *coefficient *= factor);
+        for (number, place) in frame.polynomials.coefficients.iter_mut().enumerate() {
+            *place = coefficient(*place, number);
+        }
         writer.frame(&frame);
     }
     writer.finish().expect("memory").0
@@ -136,7 +158,7 @@ fn instructions(store: bool) {
     let mut text = String::new();
     println!("| work | instructions | stored | ratio |\n|---|---:|---:|---:|");
     for scene in COUNTED {
-        for what in ["step", "record", "parity", "fair", "half"] {
+        for what in ["step", "record", "parity", "fair", "half", "rounded"] {
             let mut command = Command::new("valgrind");
             command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(&program);
             let output = command.args(["1", what]).arg(format!("{folder}/{scene}.xml")).output().expect("valgrind");

@@ -49,7 +49,7 @@ impl Alike {
             return None;
         }
         let frame = u64::from(step) * watch.records_per_step;
-        let (own, theirs) = (List(log.bytes()), List(theirs));
+        let (own, theirs) = (List::new(log.bytes()), List::new(theirs));
         let mut walk = Walk { own, theirs, number: 0, searched: log.searched(), at: (step, frame), pending };
         let mut fair = context.map(|context| AlikeStep::new(context, step, watch));
         for seen in watch.passes() {
@@ -63,25 +63,41 @@ impl Alike {
                 }
             }
         }
-        let is_over = walk.own.0.is_empty() && walk.theirs.0.is_empty();
-        if !is_over {
+        if !walk.own.is_over() || !walk.theirs.is_over() {
             return None;
         }
         fair.map_or_else(|| Some(StepJudgement::default()), |fair| fair.finish(watch))
     }
 }
 
-/// What is left of a list of polynomials.
-struct List<'a>(&'a [u8]);
+/// A list of polynomials, and where the next one begins.
+struct List<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
 
 impl<'a> List<'a> {
+    fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0 }
+    }
+
+    fn is_over(&self) -> bool {
+        self.at == self.bytes.len()
+    }
+
+    /// Where the polynomial behind the one that begins here begins.
+    #[inline(always)]
+    fn behind(&self, at: usize) -> Option<usize> {
+        let size = u32::from_le_bytes(*self.bytes.get(at..)?.first_chunk()?);
+        Some(at + 4 + 8 * size as usize)
+    }
+
     /// The bytes of the next polynomial's coefficients.
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> Option<&'a [u8]> {
-        let (size, behind) = self.0.split_first_chunk::<4>()?;
-        let own;
-        (own, self.0) = behind.split_at_checked(8 * u32::from_le_bytes(*size) as usize)?;
-        Some(own)
+        let begin = self.at;
+        self.at = self.behind(begin)?;
+        self.bytes.get(begin + 4..self.at)
     }
 }
 
@@ -117,27 +133,40 @@ impl Walk<'_> {
         if is_searched {
             self.searched = &self.searched[1..];
         }
-        let begin = self.own.0;
-        let mut both: [Both<'_>; COUNT] = [[&[]; 2]; COUNT];
-        for [own, _] in &mut both {
-            *own = self.own.next()?;
+        let begin = self.own.at;
+        let (mut last, mut end) = (begin, begin);
+        for _ in 0..COUNT {
+            (last, end) = (end, self.own.behind(end)?);
         }
-        let bytes = begin.len() - self.own.0.len();
-        if let Some((theirs, rest)) = self.theirs.0.split_at_checked(bytes)
-            && theirs == &begin[..bytes]
-        {
-            self.theirs.0 = rest;
+        let own = self.own.bytes.get(begin..end)?;
+        if self.theirs.bytes[self.theirs.at..].starts_with(own) {
+            self.own.at = end;
+            self.theirs.at += end - begin;
             return match fair {
-                Some(fair) if fair.wants_form(pair) => fair.form_of_same(pair, index, seen, both[COUNT - 1][0]),
+                Some(fair) if fair.wants_form(pair) => {
+                    fair.form_of_same(pair, index, seen, own.get(last + 4 - begin..)?)
+                }
                 _ => Some(()),
             };
         }
+        self.other_call(&Place { pair, seen, index, lengths, is_searched }, watch, fair)
+    }
+
+    /// The same of a call of which a polynomial is not the reference's.
+    #[inline(always)]
+    fn other_call<const COUNT: usize>(
+        &mut self,
+        place: &Place<'_, COUNT>,
+        watch: &Watch,
+        fair: Option<&mut AlikeStep<'_>>,
+    ) -> Option<()> {
+        let &Place { pair, seen, index, ref lengths, is_searched } = place;
+        let mut both: [Both<'_>; COUNT] = [[&[]; 2]; COUNT];
         let mut alike = [Likeness::NONE; COUNT];
         let mut has_lost = false;
         for number in 0..COUNT {
-            let own = both[number][0];
-            let theirs = self.theirs.next()?;
-            both[number][1] = theirs;
+            let (own, theirs) = (self.own.next()?, self.theirs.next()?);
+            both[number] = [own, theirs];
             // The course's library logs no small leading coefficients.
             if theirs.first_chunk().is_some_and(|c| f64::from_le_bytes(*c).abs() < LEADING_COEFFICIENT) {
                 return None;
@@ -173,8 +202,18 @@ impl Walk<'_> {
     }
 }
 
+/// A call among those of a pass.
+struct Place<'a, const COUNT: usize> {
+    pair: Pair,
+    seen: &'a SeenPass,
+    /// The number of its first polynomial.
+    index: usize,
+    lengths: [usize; COUNT],
+    is_searched: bool,
+}
+
 /// How two polynomials of the same length compare.
-#[inline]
+#[inline(always)]
 fn likeness(both: Both<'_>) -> Likeness {
     match both[0].len() / 8 {
         1 => of::<1>(both),
