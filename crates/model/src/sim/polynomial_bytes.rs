@@ -19,6 +19,21 @@ pub struct PolynomialBytes {
     searched: Vec<u32>,
 }
 
+/// Notes whose zeros are searched.
+pub(super) struct Searched<'a> {
+    list: &'a mut Vec<u32>,
+    /// Polynomials that the list holds already.
+    count: usize,
+}
+
+impl Searched<'_> {
+    /// Those of the pair whose polynomials will stand behind this many more.
+    #[cold]
+    pub(super) fn note(&mut self, behind: usize) {
+        self.list.extend(u32::try_from(self.count + behind));
+    }
+}
+
 /// Bytes of the largest polynomial that a detection logs.
 const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 
@@ -123,10 +138,14 @@ impl PolynomialBytes {
         self.count += polynomials;
     }
 
-    /// Notes that the zeros of a pair were searched whose polynomials will stand behind this many more.
-    #[cold]
-    pub(super) fn search(&mut self, behind: usize) {
-        self.searched.extend(u32::try_from(self.count + behind));
+    /// The same room, and where it is noted whose zeros are searched.
+    #[inline]
+    pub(super) fn parts(&mut self, bytes: usize) -> (&mut [u8], Searched<'_>) {
+        if self.bytes.len() - self.used < bytes {
+            self.grow(bytes);
+        }
+        let Self { bytes, used, count, searched, .. } = self;
+        (&mut bytes[*used..], Searched { list: searched, count: *count })
     }
 
     /// Notes that a coefficient has this modulus, or that none has a larger one.

@@ -308,7 +308,7 @@ impl Detector {
         way.observer.solve(pair, way.q_start, way.q_end, polynomials);
         let time = time_of_impact(self.search, &mut self.counts, self.step, pair, polynomials)?;
         if let (Time::Found(_), Wanted::Bytes(bytes)) = (time, way.observer.wanted()) {
-            bytes.search(0);
+            bytes.parts(0).1.note(0);
         }
         let decision = match time {
             Time::Found(time) if time <= 1.0 => match normal(time) {

@@ -40,13 +40,19 @@ impl Work for Pairs<'_> {
             let first = self.place.first;
             let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
             let mut bytes = self.bytes.take();
-            let mut output = Output::new(bytes.as_mut().map_or(&mut [], |bytes| bytes.room(pairs)));
+            let (room, searched) = match &mut bytes {
+                Some(bytes) => {
+                    let (room, searched) = bytes.parts(pairs);
+                    (room, Some(searched))
+                }
+                None => (&mut [][..], None),
+            };
+            let mut output = Output::new(room, searched);
             let ends = self.row(simd, &mut rows, &mut output);
-            let Output { used, polynomials, excluded, largest, searched, found, .. } = output;
+            let Output { used, polynomials, excluded, largest, found, .. } = output;
             self.counts.calls += excluded;
             self.counts.excluded += excluded;
             if let Some(bytes) = &mut bytes {
-                searched.into_iter().for_each(|behind| bytes.search(behind));
                 bytes.added(used, polynomials);
                 bytes.raise(largest.max(self.group.largest));
             }

@@ -8,6 +8,7 @@ use crate::sim::{
     observer::{Impulse, Time},
     pair::{Pair, PairKind},
     pairs::Place,
+    polynomial_bytes::Searched,
     search::{RootSearch, SearchCounts},
     step_error::StepError,
 };
@@ -35,8 +36,8 @@ pub(super) struct Output<'a> {
     pub excluded: u64,
     /// The largest modulus of coefficients.
     pub largest: f64,
-    /// Numbers of polynomials: of each pair whose zeros were searched the first.
-    pub searched: Vec<usize>,
+    /// Where it is noted whose zeros were searched; nowhere where nobody wants to know.
+    pub searched: Option<Searched<'a>>,
     /// The hit that was found, or why the search has no end. Handed on here, since it is seldom there and large.
     pub found: Result<Option<Impulse>, StepError>,
 }
@@ -44,8 +45,7 @@ pub(super) struct Output<'a> {
 impl<'a> Output<'a> {
     /// Nothing is written yet.
     #[inline(always)]
-    pub fn new(room: &'a mut [u8]) -> Self {
-        let searched = Vec::new();
+    pub fn new(room: &'a mut [u8], searched: Option<Searched<'a>>) -> Self {
         Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, searched, found: Ok(None) }
     }
 
@@ -60,8 +60,10 @@ impl<'a> Output<'a> {
     ) -> bool {
         let searched = counts.searched;
         let found = decide(counts);
-        if counts.searched > searched {
-            self.searched.push(self.polynomials);
+        if counts.searched > searched
+            && let Some(searched) = &mut self.searched
+        {
+            searched.note(self.polynomials);
         }
         self.takes(found, pair, place)
     }
