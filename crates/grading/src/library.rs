@@ -72,19 +72,27 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
 
 /// A file of an assignment by its path within the assignment's folder, or by its whole path.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
-    Assignment::ALL
-        .into_iter()
-        .find_map(|assignment| below(root.get_dir(assignment.key())?, path))
-        .or_else(|| below(root, path))
+    let of = |assignment: Assignment| below(inner(root, assignment.key())?, path);
+    Assignment::ALL.into_iter().find_map(of).or_else(|| below(root, path))
 }
 
 /// The file of this path below a folder. [`Dir::get_file`] compares the path with that of every entry, part by part.
 fn below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
-    let is_called = |path: &Path, name: &str| path.file_name().is_some_and(|last| last == name);
     match path.split_once('/') {
-        Some((first, rest)) => below(folder.dirs().find(|inner| is_called(inner.path(), first))?, rest),
+        Some((first, rest)) => below(inner(folder, first)?, rest),
         None => folder.files().find(|file| is_called(file.path(), path)),
     }
+}
+
+/// The folder of this name in a folder.
+fn inner(folder: &'static Dir<'static>, name: &str) -> Option<&'static Dir<'static>> {
+    folder.dirs().find(|inner| is_called(inner.path(), name))
+}
+
+/// Whether the last part of the path is this name.
+fn is_called(path: &Path, name: &str) -> bool {
+    let before = path.as_os_str().as_encoded_bytes().strip_suffix(name.as_bytes());
+    before.is_some_and(|before| before.is_empty() || before.ends_with(b"/"))
 }
 
 #[cfg(test)]
