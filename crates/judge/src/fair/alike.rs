@@ -1,7 +1,7 @@
 //! What the fair rules say about a step whose records are the reference's but for polynomials that are right.
 //!
 //! It follows [`Follower`](super::follow::Follower): decisions, states and impulses are the reference's, so what is left is whether
-//! each polynomial is right, by which factor, and of which form. Nearly all are right [at once](Likeness); a few are
+//! each polynomial is right, by which factor, and of which form. Nearly all are right [at once](super::compare::Likeness); a few are
 //! looked at closely, and where that is not enough the step goes the long way.
 use super::{
     compare::{MOST, Match, Mismatch, compare, fits_with_no_factor},

@@ -13,7 +13,7 @@ fosssim_model::drops_leading!();
 pub struct Match {
     /// The positive factor by which the logged one is larger; `None` where round-off is all there is.
     pub scale: Option<f64>,
-    /// The largest share of the tolerance that a coefficient uses, 0 to 1; at least so, where it is right [at once](Likeness).
+    /// The largest share of the tolerance that a coefficient uses, 0 to 1; at most so, where it is right at once (a quarter or less).
     pub share: f64,
 }
 

@@ -222,7 +222,7 @@ impl<R: Read> Lenient<R> {
     /// Goes past the next records if they have the states and impulses of this step, as many polynomials, and `accepts` says that
     /// these, as bytes, will do in their place: those of the mid record, if there is one, and of the end record. Otherwise
     /// nothing is read. `buffer` takes the bytes. Nobody is asked about records that take more memory than allowed, or more
-    /// than [`MOST_LIKENED`].
+    /// than `MOST_LIKENED`.
     pub fn passes_like(
         &mut self,
         step: &StepBytes,
