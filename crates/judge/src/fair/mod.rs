@@ -6,7 +6,8 @@
 //! 1. It rebuilds what the submission should have logged from *its own* states, and follows the submission: its
 //!    polynomials are what is searched, its logged contacts are what is answered, its mid record is what the geometric
 //!    part starts from. So a mistake is charged once, at the stage where it is made. Where the time of impact that its
-//!    polynomials give is the reference's but for round-off, the reference's is taken.
+//!    polynomials give is the reference's but for round-off, the reference's is taken; where right polynomials lead the root
+//!    finder to another decision than the reference's, either will do.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running
 //!    error bound. A small leading coefficient may be missing, because the course's library drops it. NaN fails.
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; where that is too little, by

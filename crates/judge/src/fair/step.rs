@@ -70,21 +70,27 @@ fn follow(
     ahead: Option<&mut Ahead>,
     records: Records<'_>,
 ) -> Result<StepJudgement, StepError> {
-    let attempt =
-        |simulation: &mut Simulation, ahead: Option<&mut Ahead>, sensitivity: Option<&Sensitivity>, flips: &[usize]| {
-            simulation.state_mut().clone_from(records.before);
-            simulation.set_steps_done(records.step - 1);
-            let mut follower = Follower::new(context, records, ahead, sensitivity, flips);
-            simulation.step(&mut follower)?;
-            follower.finish(simulation.state());
-            Ok::<_, StepError>((follower.judged, follower.decisions, follower.borderline))
-        };
-    let (first, decisions, _) = attempt(simulation, ahead, None, &[])?;
+    let run = |simulation: &mut Simulation, mut follower: Follower<'_>| {
+        simulation.state_mut().clone_from(records.before);
+        simulation.set_steps_done(records.step - 1);
+        simulation.step(&mut follower)?;
+        follower.finish(simulation.state());
+        Ok::<_, StepError>((follower.judged, follower.decisions, follower.borderline, follower.has_disputes))
+    };
+    let attempt = |simulation: &mut Simulation, sensitivity: Option<&Sensitivity>, flips: &[usize]| {
+        run(simulation, Follower::new(context, records, None, sensitivity, flips))
+    };
+    let follower = Follower::new(context, records, ahead, None, &[]).preferring_own();
+    let (mut first, mut decisions, _, has_disputes) = run(simulation, follower)?;
+    if has_disputes && first.total() > 0 {
+        // Decisions that the root finder makes of right polynomials may as well be the submission's.
+        (first, decisions, ..) = attempt(simulation, None, &[])?;
+    }
     if !first.hangs_on_round_off() {
         return Ok(first);
     }
     let sensitivity = probe(context, simulation, &records, &decisions);
-    let (second, _, borderline) = attempt(simulation, None, Some(&sensitivity), &[])?;
+    let (second, _, borderline, _) = attempt(simulation, Some(&sensitivity), &[])?;
     if second.total() == 0 || !second.hangs_on_decisions() {
         return Ok(second);
     }
@@ -92,7 +98,7 @@ fn follow(
     for set in 1_usize..1 << borderline.len() {
         let flips: Vec<usize> =
             borderline.iter().enumerate().filter(|(bit, _)| set >> bit & 1 == 1).map(|(_, call)| *call).collect();
-        if let Ok((other, ..)) = attempt(simulation, None, Some(&sensitivity), &flips)
+        if let Ok((other, ..)) = attempt(simulation, Some(&sensitivity), &flips)
             && other.total() == 0
         {
             return Ok(other);

@@ -81,8 +81,12 @@ impl Follower<'_> {
         }
     }
 
-    /// Whether round-off may flip the decision of this call.
+    /// Whether round-off may flip the decision of this call, or has flipped it: where right polynomials lead the root finder to
+    /// another decision than the reference's, the submission may have either.
     fn is_borderline(&self, call: usize) -> bool {
+        if self.is_disputed {
+            return true;
+        }
         match &self.expected() {
             Some((motion, expected)) => contact::is_borderline(motion, expected),
             None => self.sensitivity.is_some_and(|known| known.flipped.contains(&call)),

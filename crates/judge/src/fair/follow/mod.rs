@@ -72,6 +72,12 @@ pub(super) struct Follower<'a> {
     used: Vec<bool>,
     /// What the reference's own polynomials say about the call, where the logged ones are right, and others.
     own: Option<Own>,
+    /// Whether the call's polynomials are right, and lead the root finder to another decision than the reference's.
+    is_disputed: bool,
+    /// Whether any call's were so.
+    pub has_disputes: bool,
+    /// Whether such calls are decided as the reference decides them.
+    prefers_own: bool,
     /// How the call's objects move.
     seen: Option<Seen>,
 }
@@ -115,12 +121,30 @@ impl<'a> Follower<'a> {
             contacts: Contacts::of(&records.end.impulses),
             used: vec![false; records.end.impulses.len()],
             own: None,
+            is_disputed: false,
+            has_disputes: false,
+            prefers_own: false,
             seen: None,
         };
         follower.count_passes();
         let passes = follower.logged_passes.map_or(1, |[before, after]| before + after);
         follower.decisions.reserve(passes.saturating_mul(context.pairs).min(DECISIONS));
         follower
+    }
+
+    /// Decides calls as the reference does where right polynomials lead the root finder to other decisions.
+    pub fn preferring_own(mut self) -> Self {
+        self.prefers_own = true;
+        self
+    }
+
+    /// The time of impact of so many logged polynomials from one on; none where the root finder does not end.
+    fn logged_time(&self, index: usize, count: usize) -> Option<f64> {
+        let mut logged = [Polynomial::default(); PairKind::MOST_POLYNOMIALS];
+        for (number, polynomial) in logged[..count].iter_mut().enumerate() {
+            *polynomial = Polynomial::untrimmed(self.records.end.polynomials.get(index + number));
+        }
+        contact::time_of(&logged[..count])
     }
 
     /// How the call's objects move, and what its polynomials should be.
@@ -177,6 +201,7 @@ impl Observer for Follower<'_> {
             ahead.step_over();
         }
         self.own = None;
+        self.is_disputed = false;
         self.seen = None;
         let Some(index) = self.next else { return };
         self.next = Some(index + polynomials.len());
@@ -202,18 +227,13 @@ impl Observer for Follower<'_> {
             self.judged.lost += u64::from(lengths().any(|(own, logged)| logged != own));
             let lost = lengths().any(|(own, logged)| logged < own);
             self.own = contact::time_of(polynomials).map(|time| Own { time, lost });
-            if let (Some(Own { time, lost: false }), Some(Seen { motion, .. })) = (self.own, &self.seen)
-                && time <= 1.0
-                && can_be_searched
+            if let (Some(Own { time, lost: false }), Some(Seen { motion, .. }), true) =
+                (self.own, &self.seen, can_be_searched)
+                && let Some(other) = self.logged_time(index, polynomials.len())
             {
-                let logged: [Polynomial; PairKind::MOST_POLYNOMIALS] = std::array::from_fn(|number| {
-                    if number < polynomials.len() {
-                        Polynomial::untrimmed(logged(number))
-                    } else {
-                        Polynomial::default()
-                    }
-                });
-                if contact::time_of(&logged[..polynomials.len()]).is_some_and(|other| motion.is_moment(time, other)) {
+                self.is_disputed = (time <= 1.0) != (other <= 1.0);
+                self.has_disputes |= self.is_disputed;
+                if self.is_disputed && self.prefers_own || motion.is_moment(time, other) {
                     // Round-off is all that the submission's own time would bring.
                     return;
                 }

@@ -92,7 +92,7 @@ fn compare(number: u64, scene: &Scene, compared: &mut Compared) -> u64 {
 }
 
 /// A scene: sizes, places and motions from wide and nasty distributions.
-fn draw(random: &mut Random) -> Scene {
+pub(super) fn draw(random: &mut Random) -> Scene {
     let scale = random.log(-3.0, 4.0) * if random.chance(50) { random.log(30.0, 160.0) } else { 1.0 };
     let grid = random.chance(4);
     let common = random.direction() * (scale * random.log(-6.0, 0.0));

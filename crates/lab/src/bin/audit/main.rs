@@ -13,7 +13,8 @@
 //! whatever is left is its rounding. These do not change the exit code.
 //!
 //! `audit lanes [pairs] [seed]` compares detection in lanes with detection pair by pair instead, on random scenes, and
-//! `audit judging [CORPUS or part of a sample's id]` judging of many calls at a time with judging one by one.
+//! `audit judging [CORPUS or part of a sample's id]` judging of many calls at a time with judging one by one; `audit drawn
+//! [traces] [seed]` does so on random traces.
 use std::{
     fmt::Write as _,
     process::ExitCode,
@@ -30,6 +31,7 @@ use fosssim_oracle::num::{
 use fosssim_oracle::sim::formulas;
 
 mod decisions;
+mod drawn;
 mod judging;
 mod lanes;
 
@@ -47,12 +49,16 @@ fn main() -> ExitCode {
         });
     }
     let of_lanes = words.next_if(|word| word == "lanes").is_some();
+    let of_drawn = words.next_if(|word| word == "drawn").is_some();
     let mut arguments = words.map(|argument| argument.parse::<u64>());
     let (Ok(detections), Ok(seed)) = (arguments.next().unwrap_or(Ok(1_000_000)), arguments.next().unwrap_or(Ok(1)))
     else {
-        eprintln!("usage: audit [lanes] [detections] [seed]");
+        eprintln!("usage: audit [lanes|drawn] [detections] [seed]");
         return ExitCode::from(2);
     };
+    if of_drawn {
+        return drawn::run(detections, seed);
+    }
     if of_lanes {
         return lanes::run(detections, seed);
     }
