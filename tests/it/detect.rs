@@ -208,3 +208,21 @@ fn what_can_not_be_looked_at_is_said() {
         endless.err()
     );
 }
+
+/// What is wrong in a later pass is looked at there: in the first one nothing is.
+#[test]
+fn the_pair_of_a_later_pass_is_looked_at_in_that_pass() {
+    let workspace = Workspace::new();
+    let scene = "asset:ImpulsesTests/row-of-five-one-end";
+    let file = fosssim_oracle::suite::library::scene(&scene["asset:".len()..]).expect("a scene");
+    let read = fosssim_oracle::scene::original::read(file).expect("a scene").scene;
+    let row = fosssim_oracle::student::find("loop-anew").expect("a mistake");
+    let student = fosssim_oracle::student::Student::new(Some(row.mistake));
+    workspace.write("trace.bin", fosssim_oracle::student::trace(&read, student).expect("a trace"));
+    let run = workspace.run(["check", scene, "trace.bin", "--rules", "fair"]);
+    let command = run.out().lines().find(|line| line.contains("fosssim-oracle detect ")).expect("a command").to_owned();
+    assert!(command.ends_with(" --step 2 --pair pp:0,1 --pass 3"), "{}", run.shown());
+    let words = command.split_once("fosssim-oracle ").expect("a command").1.to_owned();
+    let run = workspace.run(words.split(' '));
+    assert!(run.code == Some(0) && run.out().contains("differs"), "{}", run.shown());
+}

@@ -386,14 +386,19 @@ fn share_within_step(right: &[Bounded], logged: &[f64], missing: usize, scale: f
 mod tests {
     use super::*;
 
+    /// Numbers from 0 to 1, always the same ones.
+    fn numbers() -> impl FnMut() -> f64 {
+        let mut seed = 1_u64;
+        move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        }
+    }
+
     /// The quick answer is the long one, bit for bit.
     #[test]
     fn what_fits_at_once_is_what_a_close_look_says() {
-        let mut seed = 1_u64;
-        let mut next = move || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = numbers();
         let mut answered = 0;
         for round in 0..20_000 {
             let length = 2 + round % 5;
@@ -419,11 +424,7 @@ mod tests {
     /// What is right at once is right in a close look, too, and by the same factor but for round-off.
     #[test]
     fn what_is_right_at_once_is_right() {
-        let mut seed = 1_u64;
-        let mut next = move || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = numbers();
         let mut answered = 0;
         for round in 0..40_000 {
             let length = 2 + round % 5;
@@ -485,11 +486,7 @@ mod tests {
     /// coefficient is found to be so.
     #[test]
     fn what_fits_with_no_factor_is_wrong() {
-        let mut seed = 1_u64;
-        let mut next = move || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut next = numbers();
         let (mut wrong, mut certain) = (0, 0);
         for round in 0..40_000 {
             let length = 2 + round % 5;
