@@ -4,7 +4,7 @@
 //! are right at once by both books. Where anything hangs on more than that, the step goes the long way, and what is said here
 //! is what would be said there.
 use super::{
-    calls::{Both, Call, Numbers},
+    calls::{Both, Call, Numbers, OF_EDGE, OF_TWO},
     fair::{AlikeStep, Context, Likeness, StepJudgement},
     finding::{PolynomialPlace, Role},
     tally::{self, Pending},
@@ -15,10 +15,6 @@ use fosssim_model::{
     sim::{Pair, PairKind, Pairs, pairs},
 };
 use fosssim_num::tolerances::{LEADING_COEFFICIENT, PARITY_COEFFICIENT, PARITY_ZERO_POLYNOMIAL};
-
-/// Numbers of coefficients of a particle and an edge's complete polynomials, and of other pairs'.
-const OF_EDGE: [usize; 4] = [5, 3, 3, 6];
-const OF_TWO: [usize; 2] = [3, 2];
 
 /// Compares steps.
 #[derive(Debug)]

@@ -3,6 +3,10 @@ use super::fair::Likeness;
 use fosssim_model::sim::Pair;
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 
+/// Numbers of coefficients of a particle and an edge's complete polynomials, and of other pairs'.
+pub(super) const OF_EDGE: [usize; 4] = [5, 3, 3, 6];
+pub(super) const OF_TWO: [usize; 2] = [3, 2];
+
 /// A polynomial of both sides, as bytes of its coefficients.
 pub(super) type Both<'a> = [&'a [u8]; 2];
 

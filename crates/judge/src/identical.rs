@@ -108,7 +108,6 @@ impl Identical {
         let is_found = is_own
             || is_sound
                 && reader.passes_like(&watch.bytes, theirs, &mut |lists| {
-                    pending.clear();
                     fair = alike.accepts(watch, step, context, lists, pending);
                     fair.is_some()
                 });

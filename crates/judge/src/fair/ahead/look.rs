@@ -1,5 +1,6 @@
 //! What the calls of a kind should have logged, one call per lane, and what their polynomials decide.
 use super::{super::formulas::extent, Known, Likeness, Member, Way, fits::fits};
+use crate::calls::{OF_EDGE, OF_TWO};
 use fosssim_model::{
     scene::Scene,
     sim::{
@@ -21,9 +22,7 @@ use fosssim_num::{
     tolerances::FAIR_NORM_UNITS,
 };
 
-/// Coefficients of a pair with an edge, and of another one.
-const OF_EDGE: [usize; 4] = [5, 3, 3, 6];
-const OF_TWO: [usize; 2] = [3, 2];
+/// All coefficients of a pair with an edge.
 const MOST_COEFFICIENTS: usize = 17;
 
 /// What a lane says of a call, as bits of a small number: that the polynomials are the same; that they are right up to
