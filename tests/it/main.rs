@@ -23,6 +23,7 @@ mod ordinary_user;
 mod pages;
 mod parity;
 mod properties;
+mod prose;
 mod record;
 mod recorded;
 mod recordings;

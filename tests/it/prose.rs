@@ -1,0 +1,108 @@
+//! Documents that people read: their links lead somewhere, and their sentences are short.
+use std::path::{Path, PathBuf};
+
+/// A sentence of more words is read twice.
+const MOST_WORDS: usize = 30;
+
+/// Four kinds of readers find their commands on one page.
+const MOST_WORDS_OF_README: usize = 1_200;
+
+/// Documents whose sentences are held to [`MOST_WORDS`].
+const PLAIN: [&str; 4] = ["README.md", "docs/student.md", "docs/teacher.md", "docs/performance.md"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The documents at the top and in `docs`.
+fn documents() -> Vec<PathBuf> {
+    let folders = [root().to_owned(), root().join("docs")];
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).expect("a folder"));
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    paths.filter(|path| path.extension().is_some_and(|ending| ending == "md")).collect()
+}
+
+/// The text without code blocks and tables.
+fn paragraphs(text: &str) -> String {
+    let mut is_code = false;
+    let mut kept = String::new();
+    for line in text.lines() {
+        if line.starts_with("```") {
+            is_code = !is_code;
+            kept.push_str(".\n");
+        } else if !is_code && !line.starts_with('|') {
+            // A heading, an entry of a list, and an empty line end a sentence.
+            let starts = line.is_empty() || line.starts_with(['#', '*', '-']);
+            kept.push_str(if starts { ".\n" } else { "" });
+            kept.push_str(line);
+            kept.push('\n');
+        }
+    }
+    kept
+}
+
+/// Its sentences, in words.
+fn sentences(text: &str) -> Vec<Vec<&str>> {
+    let mut sentences = vec![Vec::new()];
+    for word in text.split_whitespace() {
+        if word != "." {
+            sentences.last_mut().expect("a sentence").push(word);
+        }
+        if word.trim_end_matches([')', '*', '`', '"']).ends_with(['.', '!', '?', ':', ';']) {
+            sentences.push(Vec::new());
+        }
+    }
+    sentences
+}
+
+#[test]
+fn sentences_end_before_they_must_be_read_twice() {
+    for name in PLAIN {
+        let text = paragraphs(&text(&root().join(name)));
+        let long: Vec<String> =
+            sentences(&text).iter().filter(|words| words.len() > MOST_WORDS).map(|words| words.join(" ")).collect();
+        assert!(long.is_empty(), "{name}: {long:#?}");
+    }
+}
+
+#[test]
+fn readme_is_one_page() {
+    let words = text(&root().join("README.md")).split_whitespace().count();
+    assert!(words <= MOST_WORDS_OF_README, "README.md has {words} words");
+}
+
+#[test]
+fn links_of_documents_lead_to_files() {
+    let mut links = 0;
+    let mut dead = Vec::new();
+    for document in documents() {
+        let folder = document.parent().expect("a folder");
+        for part in text(&document).split("](").skip(1) {
+            let target = part.split(')').next().expect("a part");
+            let file = target.split('#').next().expect("a part");
+            if file.is_empty() || file.starts_with("http") {
+                continue;
+            }
+            links += 1;
+            if !folder.join(file).exists() {
+                dead.push(format!("{}: {target}", document.display()));
+            }
+        }
+    }
+    assert!(dead.is_empty(), "{dead:#?}");
+    assert!(links > 20, "{links} links: are these the documents?");
+}
+
+/// Every page of `docs` stands in its table of contents.
+#[test]
+fn the_table_of_contents_has_every_page() {
+    let contents = text(&root().join("docs/SUMMARY.md"));
+    for document in documents().iter().filter(|path| path.starts_with(root().join("docs"))) {
+        let name = document.file_name().expect("a name").to_string_lossy();
+        assert!(name == "SUMMARY.md" || contents.contains(&format!("({name})")), "docs/SUMMARY.md has no {name}");
+    }
+}
