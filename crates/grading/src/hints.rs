@@ -147,6 +147,7 @@ mod tests {
             samples: 3,
             example: Some(example),
             same_as: vec!["other".to_owned(), "pe-square-two-eh".to_owned()],
+            denies: Vec::new(),
         }
     }
 

@@ -195,6 +195,7 @@ pub(crate) mod tests {
                     actual: vec![1.0, f64::NAN],
                 }),
                 same_as: ["a", "b", "c", "d", "e"].map(str::to_owned).into(),
+                denies: Vec::new(),
             },
             Explanation {
                 key: "unexplained".to_owned(),
@@ -204,6 +205,7 @@ pub(crate) mod tests {
                 samples: 9,
                 example: None,
                 same_as: Vec::new(),
+                denies: Vec::new(),
             },
         ]
     }

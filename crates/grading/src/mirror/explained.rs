@@ -88,6 +88,8 @@ struct ExplanationForm {
     #[serde(with = "example")]
     example: Option<Example>,
     same_as: Vec<String>,
+    #[serde(default)]
+    denies: Vec<String>,
 }
 
 #[derive(Serialize, Deserialize)]

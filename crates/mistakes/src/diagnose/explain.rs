@@ -3,7 +3,7 @@ use super::{
     Detail, Explanation,
     about::About,
     fault::StepStage,
-    known::{is_empty_stage, known_or_open, shows},
+    known::{Known, is_empty_stage, known_or_open, shows},
     polynomial, samples,
     source::Source,
     stages,
@@ -27,7 +27,7 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
 
 /// As [`explain`], whatever the trace's records are read from, more than once.
 pub(super) fn explain_source<'a>(scene: &Scene, source: &dyn Fn() -> Source<'a>) -> Vec<Explanation> {
-    let (mut known, open) = known_or_open(scene, source());
+    let Known { explanations: mut known, open, denies } = known_or_open(scene, source());
     if known.iter().any(Explanation::is_other_scene) {
         return known;
     }
@@ -77,6 +77,7 @@ pub(super) fn explain_source<'a>(scene: &Scene, source: &dyn Fn() -> Source<'a>)
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.
     all.sort_by_key(|explanation| (explanation.is_unexplained(), !explanation.is_complete()));
+    all.iter_mut().for_each(|one| one.denies.clone_from(&denies));
     all
 }
 
@@ -159,7 +160,9 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
 pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted: &[String]) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
     let named: Vec<&Row> = traces.iter().copied().flatten().filter_map(|one| find(&one.key)).collect();
-    let is_refuted = |key: &String| refuted.contains(key);
+    // A stage of which one trace shows something is not empty, whatever the others look like.
+    let denied: Vec<&String> = traces.iter().copied().flatten().flat_map(|one| &one.denies).collect();
+    let is_refuted = |key: &String| refuted.contains(key) || denied.contains(&key);
     let kept = |list: &[Explanation]| -> Vec<Explanation> {
         let settle = |explanation: &Explanation| {
             let mut keys = std::iter::once(&explanation.key).chain(&explanation.same_as).filter(|key| !is_refuted(key));
@@ -310,6 +313,7 @@ fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
         samples: of_rows().map(|one| one.samples).sum(),
         example: None,
         same_as: rows.iter().map(|row| row.id.to_owned()).collect(),
+        denies: Vec::new(),
     })
 }
 

@@ -24,6 +24,8 @@ pub struct Explanation {
     pub example: Option<Example>,
     /// Keys of other known mistakes that reproduce the same samples: this trace can't tell them apart.
     pub same_as: Vec<String>,
+    /// Keys of empty stages that the trace speaks against: it shows something of them.
+    pub denies: Vec<String>,
 }
 
 impl Explanation {
@@ -52,6 +54,7 @@ impl Explanation {
             samples: 0,
             example: None,
             same_as: Vec::new(),
+            denies: Vec::new(),
         }
     }
 

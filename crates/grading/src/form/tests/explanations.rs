@@ -35,7 +35,16 @@ pub(super) fn all() -> Vec<Explanation> {
 
 fn explanation(about: About, details: Vec<Detail>, example: Option<Example>) -> Explanation {
     let (key, same_as) = ("pp-no-two".to_owned(), vec!["other".to_owned()]);
-    Explanation { key, about, details, reproduced: 4, samples: u64::MAX, example, same_as }
+    Explanation {
+        key,
+        about,
+        details,
+        reproduced: 4,
+        samples: u64::MAX,
+        example,
+        same_as,
+        denies: vec!["failsafe-empty".to_owned()],
+    }
 }
 
 fn faults() -> Vec<StageFault> {

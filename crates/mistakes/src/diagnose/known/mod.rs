@@ -12,6 +12,7 @@ mod alignment;
 mod candidates;
 mod capture;
 mod compare;
+mod denied;
 mod example;
 mod refute;
 mod resimulate;
@@ -49,26 +50,41 @@ use std::io::Read;
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
 pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
-    known_or_open(scene, Source::whole(trace)).0
+    known_or_open(scene, Source::whole(trace)).explanations
+}
+
+/// What the catalogue says of a trace.
+#[derive(Debug, Default)]
+pub(super) struct Known {
+    /// The mistakes, the likeliest first.
+    pub(super) explanations: Vec<Explanation>,
+    /// The kept steps, where no mistake explains all of them.
+    pub(super) open: Option<Scan>,
+    /// Keys of empty stages of which the trace shows something.
+    pub(super) denies: Vec<String>,
 }
 
 /// The same, with the kept steps where no mistake explains all of them.
-pub(super) fn known_or_open(scene: &Scene, source: Source<'_>) -> (Vec<Explanation>, Option<Scan>) {
+pub(super) fn known_or_open(scene: &Scene, source: Source<'_>) -> Known {
+    let only = |one: Explanation| Known { explanations: vec![one], ..Known::default() };
     let mut scan = scan::scan(scene, source);
     if let Some(missing) = alignment::missing_record(scene, &scan) {
-        return (vec![missing], None);
+        return only(missing);
     }
     if scan.foreign {
         let layout = Layout::of(scene);
         let has_length = !scan.longer && scan.records.is_none_or(|records| records == layout.records());
-        return (vec![Explanation::of_other_scene(has_length)], None);
+        return only(Explanation::of_other_scene(has_length));
     }
-    let (found, is_settled) = of_wrong_steps(scene, &mut scan);
-    if !found.is_empty() || scan.padded == 0 {
-        return (found, (!is_settled).then_some(scan));
+    let denies = denied::denied(scene, &scan);
+    let (mut explanations, is_settled) = of_wrong_steps(scene, &mut scan);
+    explanations.retain(|one| one.is_complete() || !denies.contains(&one.key));
+    if !explanations.is_empty() || scan.padded == 0 {
+        return Known { explanations, open: (!is_settled).then_some(scan), denies };
     }
     // Reading drops what the course's library would have dropped, so such steps look right.
-    (find("log-padded").map(|row| explain(row, (scan.padded, scan.padded))).into_iter().collect(), None)
+    let padded = find("log-padded").map(|row| explain(row, (scan.padded, scan.padded)));
+    Known { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
 /// What the catalogue says, and whether that is all there is to say. May leave the steps as a program with the right approach
@@ -169,6 +185,7 @@ fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
         samples,
         example: None,
         same_as: Vec::new(),
+        denies: Vec::new(),
     }
 }
 

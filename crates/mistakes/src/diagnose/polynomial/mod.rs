@@ -96,6 +96,7 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         samples: count,
         example: None,
         same_as: Vec::new(),
+        denies: Vec::new(),
     })
 }
 
@@ -128,6 +129,7 @@ impl Suspect<'_> {
             samples,
             example: example::smallest(&self.study).map(|(_, example)| example),
             same_as: distinct(self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned())),
+            denies: Vec::new(),
         }
     }
 }
@@ -185,6 +187,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
         samples,
         example: example::smallest(study).map(|(_, example)| example),
         same_as: Vec::new(),
+        denies: Vec::new(),
     })
 }
 
@@ -206,6 +209,7 @@ fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
         example: example::smallest(&first.study).map(|(_, example)| example),
         same_as: Vec::new(),
+        denies: Vec::new(),
     })
 }
 
@@ -249,6 +253,7 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
         same_as: distinct(others.map(str::to_owned)),
+        denies: Vec::new(),
     }
 }
 

@@ -72,6 +72,7 @@ fn observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> 
         samples: samples as u64,
         example: None,
         same_as: Vec::new(),
+        denies: Vec::new(),
     }
 }
 

@@ -141,6 +141,7 @@ fn one_of_many_traces_makes_no_stage_empty() {
             samples: 3,
             example: None,
             same_as: Vec::new(),
+            denies: Vec::new(),
         };
         ids.iter().map(of).map(told).collect::<Vec<_>>()
     };
@@ -152,6 +153,24 @@ fn one_of_many_traces_makes_no_stage_empty() {
     assert_eq!(keys(&traces)[0], "pp-linear-sign");
     traces[5] = traces[3].clone();
     assert_eq!(keys(&traces)[0], "failsafe-empty");
+}
+
+/// In one scene a zone is moved, in another one nothing is: the failsafe is not empty.
+#[test]
+fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
+    let scenes = probe_scenes(Assignment::T2M2);
+    let row = |id| student::find(id).expect("it is known");
+    let said = |program: &[&Row], probe: &str| {
+        let author = program.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
+        let (_, scene) = scenes.iter().find(|(name, _)| name == probe).expect("a probe scene");
+        explain(scene, &student::trace(scene, author).unwrap_or_else(|(bytes, _)| bytes))
+    };
+    let empty = said(&[row("failsafe-empty")], "zones-turn-little-and-far");
+    assert!(empty[0].key == "failsafe-empty" && empty[0].denies.contains(&"geometric-empty".to_owned()), "{empty:#?}");
+    let partly = said(&[row("geometric-first-zone-only")], "zones-of-all-kinds");
+    assert!(partly[0].denies.contains(&"failsafe-empty".to_owned()), "{partly:#?}");
+    let told = several([empty.as_slice(), partly.as_slice()], &[]);
+    assert!(told.iter().all(|one| !one.is_unfinished() && one.key != "failsafe-empty"), "{told:#?}");
 }
 
 /// Reads no more at a time than a record has.

@@ -1,15 +1,22 @@
 //! What the letters of a formula mean, said where the formula stands.
 use fosssim_model::sim::PairKind;
 
-/// The sentence that explains the short names of differences, and of the sum of the radii, that occur in these lines;
-/// `None` where none does. The kinds are those of the pairs that the lines speak of, as far as they are known.
+/// The sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion, that occur in
+/// these lines; `None` where none does. `R` is the sum of the radii in polynomials, and the rotation where zones move. The kinds are those of the pairs that the lines speak of, as far as they are known.
 pub(super) fn of(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| difference(line, |_| true));
     let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
     let is_edge = all(PairKind::ParticleEdge)
         || lines.iter().any(|line| difference(line, |number| number == '3').is_some() || line.contains("re^2"));
-    let reach = lines.iter().any(|line| words(line).any(|word| word == "R"));
+    let has_turn = lines.iter().any(|line| line.contains("x_cm"));
+    let reach = !has_turn && lines.iter().any(|line| words(line).any(|word| word == "R"));
     let mut parts = Vec::new();
+    if has_turn {
+        parts.push("x_cm is the centre of mass at the start of the step, dx_cm its displacement".to_owned());
+        if lines.iter().any(|line| words(line).any(|word| word == "R")) {
+            parts.push("R turns a vector by the zone's angle".to_owned());
+        }
+    }
     if let Some((kind, one, two)) = example {
         let (start, shift) = (format!("x{one}{two}"), format!("d{one}{two}"));
         let told = if kind == 'x' { start } else { shift };
@@ -99,6 +106,18 @@ mod tests {
         assert!(text.contains("R is r1 + re") && text.contains("edge's ends"), "{text}");
         let text = told("t^1: R^2 has weight 1, expected 0; multiplied by 0.3").expect("it has short names");
         assert_eq!(text, "Here R is r1 + r2.");
+    }
+
+    #[test]
+    fn the_letter_r_is_the_rotation_where_zones_move() {
+        let text = told("dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).").expect("it has short names");
+        assert!(text.contains("R turns a vector by the zone's angle") && !text.contains("r1"), "{text}");
+        let text = told("sum(xs) / N stands where x_cm belongs.").expect("it has short names");
+        assert!(!text.contains("R "), "{text}");
+        let failsafe = fosssim_mistakes::student::CATALOGUE.iter().filter(|row| row.id.starts_with("failsafe-"));
+        let false_ones: Vec<&str> =
+            failsafe.filter(|row| told(row.term).is_some_and(|text| text.contains("r1"))).map(|row| row.id).collect();
+        assert!(false_ones.is_empty(), "{false_ones:?}");
     }
 
     #[test]

@@ -19,7 +19,7 @@ const OVERLAP: Reading = Reading { subject: Subject::EdgeOverlap, number: 0 };
 
 fn explanation(key: &str, about: About, details: Vec<Detail>) -> Explanation {
     let (key, same_as) = (key.to_owned(), Vec::new());
-    Explanation { key, about, details, reproduced: 0, samples: 0, example: None, same_as }
+    Explanation { key, about, details, reproduced: 0, samples: 0, example: None, same_as, denies: Vec::new() }
 }
 
 /// All guesses about the coefficients of a polynomial.

@@ -1,0 +1,65 @@
+//! Stages that a trace shows not to be empty, whatever else is wrong with it.
+use super::{
+    compare::{Difference, Logged, ROUND_OFF, state_difference},
+    scan::{Sample, Scan},
+};
+use crate::student::{CATALOGUE, Mistake};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{PairKind, pairs},
+};
+
+/// Keys of empty stages of which this trace does something: a zone is moved, a pass is made, a polynomial of the kind is
+/// right.
+pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
+    let samples = || scan.wrong.iter().chain(&scan.right);
+    let kinds: Vec<PairKind> = samples().flat_map(|sample| right_kinds(scene, sample)).collect();
+    let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
+    let is_done = |mistake: Mistake| match mistake {
+        Mistake::ParticleParticleEmpty => kinds.contains(&PairKind::ParticleParticle),
+        Mistake::ParticleEdgeEmpty => kinds.contains(&PairKind::ParticleEdge),
+        Mistake::HalfPlaneEmpty => kinds.contains(&PairKind::ParticleHalfPlane),
+        Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => is_hybrid && samples().any(has_rounds),
+        Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || moves(sample)),
+        Mistake::FailsafeEmpty => is_hybrid && samples().any(moves),
+        _ => false,
+    };
+    CATALOGUE.iter().filter(|row| is_done(row.mistake)).map(|row| row.id.to_owned()).collect()
+}
+
+/// The kinds of pairs whose first polynomials of the step are right.
+fn right_kinds(scene: &Scene, sample: &Sample) -> Vec<PairKind> {
+    let logged = sample.records.end.polynomials.len();
+    let right = match sample.difference {
+        Some(Difference::Polynomial(index)) => index.min(logged),
+        _ => logged,
+    };
+    let (mut next, mut kinds) = (0, Vec::new());
+    for pair in pairs(scene).iter() {
+        next += pair.kind.polynomials();
+        if next > right {
+            break;
+        }
+        if !kinds.contains(&pair.kind) {
+            kinds.push(pair.kind);
+        }
+    }
+    kinds
+}
+
+fn has_rounds(sample: &Sample) -> bool {
+    sample.records.mid.as_ref().is_some_and(|mid| !mid.polynomials.is_empty())
+}
+
+fn has_passes(sample: &Sample) -> bool {
+    let (mid, end) = (&sample.records.mid, &sample.records.end);
+    mid.as_ref().is_some_and(|mid| end.polynomials.len() > mid.polynomials.len())
+}
+
+/// Whether the end of the step is another state than its middle.
+fn moves(sample: &Sample) -> bool {
+    let end = &sample.records.end.state;
+    let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
+    let differs = |mid: &Logged| state_difference(&mid.state, end, &ROUND_OFF).is_some();
+    is_sound && sample.records.mid.as_ref().is_some_and(differs)
+}
