@@ -6,7 +6,7 @@ use super::{
     verdict::Verdict,
 };
 use fosssim_judge::Rules;
-use fosssim_mistakes::diagnose::{Explanation, several};
+use fosssim_mistakes::diagnose::{Explanation, settled, several};
 use serde::{Deserialize, Serialize};
 use std::{ops::Deref, time::Duration};
 
@@ -110,6 +110,19 @@ impl Grade {
         self.scenes().filter(|scene| mistake.is_named_in(&scene.explanations)).count()
     }
 
+    /// Settles by all scenes together what is said of each ([`SceneGrade::settled`]). Whoever leaves groups out of a grade asks again,
+    /// so that nothing of them is told.
+    pub fn settle(&mut self) {
+        let likely: Vec<Explanation> = match self.likely_mistake() {
+            Some(_) => self.likely_mistakes().into_iter().map(|(one, _)| one).collect(),
+            None => Vec::new(),
+        };
+        for scene in self.groups.iter_mut().flat_map(|group| &mut group.scenes) {
+            let of_scene = settled(&scene.result.explanations, &likely);
+            (scene.settled, scene.agreed) = (of_scene.explanations, of_scene.agreed);
+        }
+    }
+
     /// How many scenes have this verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
@@ -163,6 +176,12 @@ pub struct SceneGrade {
     pub max_points: f64,
     /// Whether the result was taken from an earlier run.
     pub cached: bool,
+    /// What is likely wrong here, the likeliest first: what all scenes together say of this one, else what it says alone
+    /// ([`SceneResult::explanations`], of which [`Grade::settle`] makes it). This is what reports tell.
+    #[serde(with = "mirror::explanations")]
+    pub settled: Vec<Explanation>,
+    /// So many of [`settled`](Self::settled), the first ones, are what all scenes together say.
+    pub agreed: usize,
 }
 
 impl Deref for SceneGrade {

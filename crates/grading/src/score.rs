@@ -25,7 +25,8 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         .into_iter()
         .map(|(result, cached)| {
             let points = share(marking.credit, &result, all_accepted).map(|share| each * share);
-            SceneGrade { result, points, max_points: each, cached }
+            let settled = result.explanations.clone();
+            SceneGrade { result, points, max_points: each, cached, settled, agreed: 0 }
         })
         .collect();
     // The full score is exact: sums of rounded shares would make 99.99999 of 100.
@@ -86,7 +87,7 @@ impl Grading<'_> {
             .collect();
         let refuted = self.refuted(&groups);
         let active = self.grader.backend.layers().iter().filter(|report| report.active);
-        Grade {
+        let mut grade = Grade {
             submission: self.submission.name.clone(),
             suite: plan.name.clone(),
             rules: self.grader.effective_rules(),
@@ -100,7 +101,9 @@ impl Grading<'_> {
             layers: active.map(|report| report.layer.name().to_owned()).collect(),
             wall,
             refuted,
-        }
+        };
+        grade.settle();
+        grade
     }
 
     /// Likely mistakes that accepted scenes speak against; the smallest of these are asked.

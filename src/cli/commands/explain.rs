@@ -170,12 +170,15 @@ fn program_on_probes(
         cards.push(card);
     }
     drop(bar);
-    let common = settled(&cases, &tasks);
+    let common = likely(&cases, &tasks);
+    for case in &mut cases {
+        case.explanations = diagnose::settled(&case.explanations, &common).explanations;
+    }
     Ok(Some((Diagnosis { cases, common }, cards)))
 }
 
 /// The likely mistakes of the wrong traces together, without those that right traces of the same program speak against.
-fn settled(cases: &[Case], tasks: &[SceneTask]) -> Vec<Explanation> {
+fn likely(cases: &[Case], tasks: &[SceneTask]) -> Vec<Explanation> {
     let wrong: Vec<&[Explanation]> =
         cases.iter().filter(|case| !case.accepted).map(|case| case.explanations.as_slice()).collect();
     let right: Vec<&Scene> =

@@ -383,7 +383,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         let details: String = grade::difference(scene)
             .into_iter()
             .chain(words::details(scene))
-            .chain(explain::lines(&scene.explanations))
+            .chain(explain::lines(&scene.settled))
             .map(|line| format!("{}\n", grade::plain(&line)))
             .collect();
         let text = format!(

@@ -98,7 +98,7 @@ fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
     right.truncate(WITNESSES);
     let refuted = if wrong.len() < 2 { Vec::new() } else { diagnose::refuted(&wrong, &right) };
     let name = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    Grade {
+    let mut grade = Grade {
         submission: upload::name(folder.file_name().or(name.file_name()).unwrap_or(folder.as_os_str())),
         suite: plan.name.clone(),
         rules: plan.rules,
@@ -112,7 +112,9 @@ fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
         layers: Vec::new(),
         wall: Duration::ZERO,
         refuted,
-    }
+    };
+    grade.settle();
+    grade
 }
 
 /// The result of one scene. A panic is its judge error.

@@ -17,6 +17,7 @@ mod known;
 pub mod outside;
 pub mod polynomial;
 mod samples;
+mod settled;
 mod source;
 mod stages;
 
@@ -33,6 +34,7 @@ pub use fault::{
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use known::{known, shows};
+pub use settled::{Settled, settled};
 
 #[cfg(test)]
 mod tests;

@@ -23,7 +23,7 @@ pub(super) fn scenes(grades: &[Grade]) -> String {
                     format!("{:.3}", scene.wall.as_secs_f64()),
                     safe(&words::summary(scene)),
                     scene.differs.map_or("", Cause::key).to_owned(),
-                    scene.explanations.first().map(|likeliest| safe(&likeliest.key)).unwrap_or_default(),
+                    scene.settled.first().map(|likeliest| safe(&likeliest.key)).unwrap_or_default(),
                 ]
             })
         })

@@ -32,7 +32,7 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
             let words: Vec<String> =
-                std::iter::once(words::summary(scene)).chain(explain::sentence(&scene.explanations)).collect();
+                std::iter::once(words::summary(scene)).chain(explain::sentence(&scene.settled)).collect();
             let _ = writeln!(text, "::{level} title={title}::{}", data(&words.join("; ")));
         }
         for scene in grade.scenes() {
@@ -86,7 +86,7 @@ pub(super) fn summary(grades: &[Grade]) -> String {
         for scene in wrong_first(grade.groups.iter()) {
             let name = cell(&scene.scene);
             let words: Vec<String> = std::iter::once(words::summary(scene))
-                .chain(explain::sentence(&scene.explanations))
+                .chain(explain::sentence(&scene.settled))
                 .chain(difference(scene))
                 .map(|words| cell(&words))
                 .collect();

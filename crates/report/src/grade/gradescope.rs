@@ -130,7 +130,7 @@ fn output(scene: &SceneGrade, shows_output: bool) -> String {
     let mut lines = vec![format!("{}: {}", scene.verdict, plain(&words::summary(scene)))];
     lines.extend(difference(scene));
     lines.extend(words::details(scene).iter().map(|detail| plain(detail)));
-    lines.extend(explain::lines(&scene.explanations).iter().map(|line| plain(line)));
+    lines.extend(explain::lines(&scene.settled).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(match shows_output {
             true => format!("The program's error output:\n{}", plain(&scene.stderr)),

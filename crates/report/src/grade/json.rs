@@ -142,7 +142,7 @@ fn scene(scene: &SceneGrade) -> SceneView {
         summary: plain(&words::summary(scene)),
         difference: scene.differs.map(|cause| DifferenceView { key: cause.key(), text: cause.to_string() }),
         details: words::details(scene).iter().map(|detail| plain(detail)).collect(),
-        explanations: scene.explanations.iter().map(ExplanationView::from).collect(),
+        explanations: scene.settled.iter().map(ExplanationView::from).collect(),
         points: scene.points,
         max_points: scene.max_points,
         right_steps: scene.right_steps,

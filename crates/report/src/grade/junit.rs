@@ -59,7 +59,7 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             status.set_type(verdict.words());
             status.set_message(plain(&words::summary(scene)));
             let mut description = words::details(scene);
-            description.extend(explain::lines(&scene.explanations));
+            description.extend(explain::lines(&scene.settled));
             if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
                 description.extend([words::build(&build.end), build.output.clone()]);
             }

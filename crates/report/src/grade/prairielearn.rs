@@ -79,7 +79,7 @@ pub(super) fn render(grade: &Grade) -> String {
 fn output(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = difference(scene).into_iter().collect();
     lines.extend(words::details(scene));
-    lines.extend(explain::lines(&scene.explanations));
+    lines.extend(explain::lines(&scene.settled));
     lines.join("\n")
 }
 

@@ -47,13 +47,15 @@ pub struct GradePage<'a> {
 fn for_student(grade: &Grade) -> Grade {
     let is_visible = |group: &&GroupGrade| group.visibility == Visibility::Visible;
     let groups: Vec<GroupGrade> = grade.groups.iter().filter(is_visible).cloned().collect();
-    Grade {
+    let mut visible = Grade {
         verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
         points: groups.iter().map(|group| group.points).sum(),
         max_points: groups.iter().map(|group| group.max_points).sum(),
         groups,
         ..grade.clone()
-    }
+    };
+    visible.settle();
+    visible
 }
 
 impl GradePage<'_> {
@@ -169,10 +171,9 @@ fn scenes(grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
         out += "<h2>Scenes to look at</h2>\n";
     }
     out += &room::left_out(told.iter().map(|(_, card)| card.as_ref()), &rooms);
-    let likely = likely(grade);
     let mut outputs = if grade.shows_output { OUTPUTS } else { 0 };
     for (number, ((scene, card), room)) in told.iter().zip(&rooms).enumerate() {
-        out += &article(scene, &likely, (card.as_ref(), *room), number == 0, &mut outputs);
+        out += &article(scene, (card.as_ref(), *room), number == 0, &mut outputs);
     }
     let rest: Vec<&SceneGrade> = grade.scenes().filter(|scene| !is_told(scene)).collect();
     if rest.is_empty() {
@@ -253,13 +254,7 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
     out + "</tbody></table>\n"
 }
 
-fn article(
-    scene: &SceneGrade,
-    likely: &[Explanation],
-    (card, room): (Option<&Card>, Room),
-    open: bool,
-    outputs: &mut usize,
-) -> String {
+fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, outputs: &mut usize) -> String {
     let key = key(&scene.scene);
     let look = if scene.verdict.is_accepted() { "good" } else { "bad" };
     let mut out = format!(
@@ -282,8 +277,7 @@ fn article(
             lines.iter().map(|line| format!("<li>{}</li>", text(line))).collect::<String>()
         );
     }
-    out += &over_all(scene, likely);
-    out += &mistakes(&scene.explanations);
+    out += &mistakes(&scene.settled);
     match (card, room) {
         (None, _) => {}
         (Some(card), Room::Words) if card.sizes().0 > 0 => {
@@ -305,19 +299,6 @@ fn article(
         _ => String::new(),
     };
     out + "</article>\n"
-}
-
-/// Which of the submission's likely mistakes is meant where a scene alone can't tell it apart from another, which is told first.
-fn over_all(scene: &SceneGrade, likely: &[Explanation]) -> String {
-    let meant = likely.iter().find(|one| one.is_named_in(&scene.explanations));
-    let first = scene.explanations.first();
-    match (meant, first) {
-        (Some(meant), Some(first)) if meant.key != first.key => format!(
-            "<p>All scenes together: <strong>{}</strong> This one alone does not tell it from the following:</p>\n",
-            text(&words::explanation::what(meant))
-        ),
-        _ => String::new(),
-    }
 }
 
 /// A key that another scene's name does not have.

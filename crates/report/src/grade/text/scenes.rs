@@ -108,7 +108,7 @@ impl<'a> Scenes<'a, '_> {
         }
         lines.extend(difference(scene));
         lines.extend(words::details(scene).iter().map(|line| one_line(line)));
-        lines.extend(explain::lines(&scene.explanations).iter().map(|line| one_line(line)));
+        lines.extend(explain::lines(&scene.settled).iter().map(|line| one_line(line)));
         let alike = told(scene).and_then(|words| self.alike.get(&words)).map_or(&[][..], |names| &names[1..]);
         if !alike.is_empty() {
             lines.push(the_same(alike));

@@ -1,0 +1,84 @@
+//! What a trace alone says, in the light of what all traces of its program say together.
+use super::Explanation;
+
+/// What is to be said of one trace, once all traces of its program have been heard.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Settled {
+    /// The explanations, the likeliest first.
+    pub explanations: Vec<Explanation>,
+    /// So many of them, the first ones, are what all traces together say; the others this trace says alone.
+    pub agreed: usize,
+}
+
+/// Settles a trace's own explanations by those of all traces together ([`several`](super::several)). Where any of these
+/// explains the trace, they are all that is said: in the place of the trace's own ones, which can't tell as much, but with its
+/// counts and its example. Else the trace keeps its own.
+#[must_use]
+pub fn settled(own: &[Explanation], likely: &[Explanation]) -> Settled {
+    let explanations: Vec<Explanation> = likely.iter().flat_map(|one| agreed(own, one)).collect();
+    match explanations.len() {
+        0 => Settled { explanations: own.to_vec(), agreed: 0 },
+        agreed => Settled { explanations, agreed },
+    }
+}
+
+/// This explanation as the trace shows it; nothing where the trace's own ones do not name it.
+fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
+    if likely.is_unfinished() {
+        // Each stage for itself: not every trace shows all of them.
+        return own.iter().filter(|one| likely.same_as.contains(&one.key)).cloned().collect();
+    }
+    let shown = own.iter().find(|one| likely.is_named_in(std::slice::from_ref(one)));
+    let as_shown = |one: &Explanation| Explanation {
+        reproduced: one.reproduced,
+        samples: one.samples,
+        example: one.example.clone(),
+        ..likely.clone()
+    };
+    shown.map(as_shown).into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::{About, several};
+
+    fn named(key: &str, same_as: &[&str], counts: (u64, u64)) -> Explanation {
+        Explanation {
+            key: key.to_owned(),
+            about: About::Mistake,
+            details: Vec::new(),
+            reproduced: counts.0,
+            samples: counts.1,
+            example: None,
+            same_as: same_as.iter().map(|&key| key.to_owned()).collect(),
+        }
+    }
+
+    /// One scene takes a loop that is one round short for an empty one; together they know better, and then it says so, too.
+    #[test]
+    fn a_scene_says_what_all_scenes_together_know() {
+        let short = named("loop-one-fewer", &[], (7, 7));
+        let alone = named("loop-empty", &["loop-one-fewer"], (2, 2));
+        let other = named("pp-no-two", &[], (1, 4));
+        let traces = [vec![alone.clone()], vec![short.clone()], vec![short.clone()]];
+        let likely = several(traces.iter().map(Vec::as_slice), &[]);
+        assert_eq!(likely.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
+        let of_first = settled(&traces[0], &likely);
+        assert_eq!((of_first.agreed, of_first.explanations.len()), (1, 1));
+        let told = &of_first.explanations[0];
+        assert_eq!((told.key.as_str(), told.reproduced, told.samples), ("loop-one-fewer", 2, 2));
+        // What they do not explain keeps its own.
+        assert_eq!(settled(std::slice::from_ref(&other), &likely), Settled { explanations: vec![other], agreed: 0 });
+        assert_eq!(settled(&[], &likely), Settled::default());
+    }
+
+    #[test]
+    fn of_what_is_not_written_a_scene_names_what_it_shows() {
+        let traces = [vec![named("pp-empty", &[], (3, 3))], vec![named("ph-empty", &[], (3, 3))]];
+        let likely = several(traces.iter().map(Vec::as_slice), &[]);
+        assert_eq!(likely[0].key, Explanation::UNFINISHED);
+        let of_second = settled(&traces[1], &likely);
+        assert_eq!((of_second.agreed, of_second.explanations), (1, traces[1].clone()));
+    }
+}
