@@ -81,7 +81,7 @@ pub(super) struct Grade {
     /// Show a line per submission only.
     #[arg(short, long, conflicts_with = "verbose")]
     pub(super) quiet: bool,
-    /// Show every scene, accepted ones too.
+    /// Show every scene, accepted ones too; of several submissions as well, of which only a table is shown otherwise.
     #[arg(short, long)]
     pub(super) verbose: bool,
     /// The program's name in the folder of a submission.
@@ -208,7 +208,7 @@ impl From<Level> for config::Hints {
 #[derive(Debug, Subcommand)]
 #[command(after_help = "\
 Example:
-  fosssim-oracle suite init > course.toml && fosssim-oracle suite check course.toml")]
+  fosssim-oracle suite init --output course.toml && fosssim-oracle suite check course.toml")]
 pub(super) enum Suite {
     Init(SuiteInit),
     Check(SuiteCheck),
@@ -220,10 +220,14 @@ pub(super) enum Suite {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  fosssim-oracle suite init > course.toml")]
+  fosssim-oracle suite init --output course.toml")]
 pub(super) struct SuiteInit {
     #[arg(help = help_of_built_in())]
     pub(super) name: Option<String>,
+
+    /// Where to write it, instead of to standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
 }
 
 /// Finds the faults of a suite, says what it would grade, and which decisions of its scenes hang on round-off.

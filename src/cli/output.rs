@@ -6,7 +6,10 @@ use super::{
     console,
     interrupt::{clean_up_when_interrupted, pending},
 };
-use crate::files::{Identity, open_for_writing};
+use crate::{
+    files::{Identity, open_for_writing},
+    report::grade::one_line,
+};
 use anyhow::{Context, Result, bail};
 use std::{
     ffi::OsStr,
@@ -104,6 +107,22 @@ impl Output {
         self.finish()
     }
 
+    /// As [`Output::finish_with`]; whoever looks on is told where it went, if that is a file.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub(super) fn finish_and_tell(self, bytes: &[u8], is_page: bool) -> Result<()> {
+        let file = match &self {
+            Self::File { target, .. } => Some(target.clone()),
+            _ => None,
+        };
+        self.finish_with(bytes)?;
+        if let Some(file) = file {
+            say_where(&file, is_page);
+        }
+        Ok(())
+    }
+
     fn name(&self) -> String {
         match self {
             Self::Nowhere => "nothing".to_owned(),
@@ -128,6 +147,12 @@ impl Output {
         }
         Ok(())
     }
+}
+
+/// Says where something was written; a page is for a browser.
+pub(super) fn say_where(file: &Path, is_page: bool) {
+    let what = if is_page { "to look at" } else { "written" };
+    console::remark(format!("{what}: {}\n", one_line(&file.display().to_string())).as_bytes());
 }
 
 impl Write for Output {

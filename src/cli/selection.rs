@@ -1,5 +1,5 @@
 //! Scenes selected by name, as `grade --scene` and `scene list` take them.
-use crate::suite::library;
+use crate::suite::{library, near};
 use anyhow::{Context, Result, bail};
 use glob::Pattern;
 
@@ -42,15 +42,9 @@ fn takes(pattern: &Pattern, name: &str) -> bool {
 /// So many names are given as examples.
 const EXAMPLES: usize = 3;
 
-/// A few names: those that have a word in common with what was typed, else the first ones.
+/// The names that are nearest to what was typed.
 fn near(typed: &str, names: &[&str]) -> String {
-    let words: Vec<String> =
-        typed.split(|c: char| !c.is_alphanumeric()).filter(|word| word.len() > 2).map(str::to_lowercase).collect();
-    let common = |name: &str| words.iter().filter(|word| name.to_lowercase().contains(word.as_str())).count();
-    let mut sorted: Vec<&str> = names.to_vec();
-    // Stable: names with as much in common stay in their order.
-    sorted.sort_by_key(|name| std::cmp::Reverse(common(name)));
-    let shown = sorted.iter().take(EXAMPLES).copied().collect::<Vec<_>>().join(", ");
+    let shown = near::nearest(typed, names.iter().copied(), EXAMPLES).join(", ");
     if names.len() > EXAMPLES { format!("{shown} and {} more", names.len() - EXAMPLES) } else { shown }
 }
 

@@ -263,6 +263,7 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
         std::fs::set_permissions(workspace.path(file), mode).expect("a mode");
     }
     symlink("bob", workspace.path("one/mallory")).expect("a link");
+    workspace.write("one/.dotted/FOSSSim", script);
     std::fs::hard_link(workspace.path("one/carol"), workspace.path("one/thief")).expect("a link");
     let alone = workspace.run(["grade", "one/alice", "--suite", "suite.toml", "--quiet"]);
     assert_eq!((alone.code, alone.out().lines().count()), (Some(1), 1), "{}", alone.shown());
@@ -280,7 +281,12 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
         let class = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "one/grades"]);
         assert_eq!(names(&class), expected);
         assert!(class.err().contains("passed over mallory: it is a link"), "{}", class.shown());
+        assert!(class.err().contains("passed over .dotted: its name begins with a dot"), "{}", class.shown());
+        // A row for each, and what the class comes to; the scenes stand in the folder, and are shown when asked for.
+        assert!(class.out().lines().count() < 20 && class.out().contains("Class: 4 submissions"), "{}", class.out());
     }
+    let whole = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "one/grades", "--verbose"]);
+    assert!(whole.out().contains("ImpulsesTests/off-centre-on-turning-edge"), "{}", whole.out());
     let other = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "other"]);
     assert!(other.err().contains("passed over grades: it holds the results"), "{}", other.shown());
     let table = String::from_utf8(workspace.read("other/grades.csv")).expect("text");
@@ -403,7 +409,7 @@ fn sources_are_built_in_the_sandbox_and_a_failed_build_is_a_compile_error() {
     workspace.write("build.toml", SUITE.replacen("[[group]]", build, 1));
     workspace.write("class/broken/main.c", "int main() { return undeclared; }\n");
     workspace.write("class/lazy/main.c", "int main() { return 0; }\n");
-    let run = workspace.run(["grade", "class", "--suite", "build.toml", "--output", "out"]);
+    let run = workspace.run(["grade", "class", "--suite", "build.toml", "--output", "out", "--verbose"]);
     assert_eq!(run.code, Some(1), "{}", run.shown());
     let verdicts: Vec<_> = rows(&workspace.read("out/grades.csv")).into_iter().map(|(_, verdict, _)| verdict).collect();
     assert_eq!(verdicts, ["compile error", "no output"], "{}", run.shown());

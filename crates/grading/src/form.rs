@@ -5,7 +5,7 @@ use super::{key::Key, result::SceneResult};
 use serde::{Deserialize, Serialize};
 
 /// The version of the form.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// What is written: the form's version before all that depends on it.
 #[derive(Serialize)]

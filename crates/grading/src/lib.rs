@@ -22,6 +22,7 @@ mod hints;
 mod key;
 pub mod library;
 mod mirror;
+pub mod near;
 pub mod patience;
 pub mod plan;
 pub mod recording;

@@ -12,7 +12,7 @@ use std::time::Duration;
 /// How long a submission is borne with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patience {
-    /// So many scenes in a row may run out of time; 0 for any number.
+    /// So many scenes in a row may run into a limit: of time, of memory or of output; 0 for any number.
     pub time_outs: u32,
     /// Wall time of all runs of a submission together.
     pub total: Duration,
@@ -25,10 +25,11 @@ impl Default for Patience {
 }
 
 /// The result of a scene that is left out. All but the last reason are the submission's own doing, so that such a scene
-/// counts as out of time.
+/// counts as those that were the end.
 pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
-        NotRunReason::TimeOuts(_) | NotRunReason::Total(_) => Verdict::TimeLimit,
+        NotRunReason::Limits { verdict, .. } => verdict,
+        NotRunReason::Total(_) => Verdict::TimeLimit,
         NotRunReason::FailFast => Verdict::NotRun,
     };
     SceneResult::without_run(&task.name, task.scene.steps(), verdict, Reason::LeftOut(why))
@@ -40,19 +41,23 @@ pub(super) fn end(
     fail_fast: bool,
     known: &[Option<(Verdict, Duration)>],
 ) -> Option<(usize, NotRunReason)> {
-    let (mut late, mut total) = (0, Duration::ZERO);
+    let (mut stopped, mut worst, mut total) = (0, Verdict::Accepted, Duration::ZERO);
     for (number, known) in known.iter().enumerate() {
         if total >= patience.total {
             return Some((number, NotRunReason::Total(patience.total)));
         }
         let Some((verdict, wall)) = *known else {
-            late = 0;
+            stopped = 0;
             continue;
         };
         total += wall;
-        late = if verdict == Verdict::TimeLimit { late + 1 } else { 0 };
-        if late == patience.time_outs && late > 0 {
-            return Some((number + 1, NotRunReason::TimeOuts(late)));
+        (stopped, worst) = match is_limit(verdict) {
+            true if stopped > 0 => (stopped + 1, worst.max(verdict)),
+            true => (1, verdict),
+            false => (0, verdict),
+        };
+        if stopped == patience.time_outs && stopped > 0 {
+            return Some((number + 1, NotRunReason::Limits { scenes: stopped, verdict: worst }));
         }
         if fail_fast && !matches!(verdict, Verdict::Accepted | Verdict::NotRun) {
             return Some((number + 1, NotRunReason::FailFast));
@@ -61,23 +66,39 @@ pub(super) fn end(
     None
 }
 
+/// Whether a program with this verdict was stopped at a limit. An endless loop runs into whichever comes first: of time, of
+/// memory, of what it may write.
+const fn is_limit(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const PATIENCE: Patience = Patience { time_outs: 3, total: Duration::from_secs(100) };
     const LATE: Option<(Verdict, Duration)> = Some((Verdict::TimeLimit, Duration::from_secs(20)));
+    const LARGE: Option<(Verdict, Duration)> = Some((Verdict::MemoryLimit, Duration::from_secs(1)));
+    const LONG: Option<(Verdict, Duration)> = Some((Verdict::OutputLimit, Duration::from_secs(1)));
     const FINE: Option<(Verdict, Duration)> = Some((Verdict::Accepted, Duration::from_secs(20)));
     const WRONG: Option<(Verdict, Duration)> = Some((Verdict::WrongAnswer, Duration::ZERO));
 
     #[test]
-    fn scenes_in_a_row_that_run_out_of_time_are_the_end() {
+    fn scenes_in_a_row_that_run_into_a_limit_are_the_end() {
         let end = |known: &[_]| end(&PATIENCE, false, known);
-        assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, NotRunReason::TimeOuts(3))));
+        let limits = |verdict| NotRunReason::Limits { scenes: 3, verdict };
+        assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, limits(Verdict::TimeLimit))));
+        assert_eq!(end(&[LARGE, LATE, LONG, FINE]), Some((3, limits(Verdict::TimeLimit))), "whichever they are");
+        assert_eq!(end(&[LATE, LARGE, WRONG, LARGE]), None);
+        assert_eq!(
+            end(&[LATE, WRONG, LARGE, LARGE, LONG]),
+            Some((5, limits(Verdict::MemoryLimit))),
+            "the worst of the row"
+        );
         assert_eq!(end(&[LATE, LATE, FINE, LATE]), None);
         // What is not known yet is no link of the chain, and the end can only move forward.
-        assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, NotRunReason::TimeOuts(3))));
-        assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, NotRunReason::TimeOuts(3))));
+        assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, limits(Verdict::TimeLimit))));
+        assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, limits(Verdict::TimeLimit))));
         assert_eq!(super::end(&Patience { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
     }
 

@@ -170,8 +170,13 @@ pub enum Limit {
 /// Why a scene is not run any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotRunReason {
-    /// So many scenes in a row ran out of time.
-    TimeOuts(u32),
+    /// So many scenes in a row ran into a limit, of time, of memory or of output; with the worst verdict of these.
+    Limits {
+        /// How many.
+        scenes: u32,
+        /// The worst of their verdicts.
+        verdict: Verdict,
+    },
     /// The submission has used up its time.
     Total(Duration),
     /// A scene is not accepted, and somebody has asked to stop there.

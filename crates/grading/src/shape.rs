@@ -1,6 +1,7 @@
 //! The shape of a suite file: which keys it has and what kind of value each takes.
 //!
 //! Finds every fault at once, and takes what is wrong out, so that what is right can still be looked at.
+use super::near::closest;
 use std::{borrow::Cow, ops::Range};
 use toml::{
     Spanned,
@@ -193,41 +194,4 @@ fn unknown(key: &str, keys: &[Key], place: &str) -> String {
         },
     };
     format!("unknown key `{key}` in {place}: {hint}")
-}
-
-/// The word that was probably meant: few slips away, or the same but for case and punctuation.
-fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
-    const LONGEST: usize = 40;
-    let plain = |text: &str| -> Vec<char> {
-        text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(LONGEST).collect()
-    };
-    let typed = plain(word);
-    let near = candidates.filter_map(|candidate| {
-        let known = plain(candidate);
-        let begins = typed.len() >= 3 && (known.starts_with(&typed) || typed.starts_with(&known));
-        let swapped = sorted(&typed) == sorted(&known);
-        let slips = if (begins || swapped) && known != typed { 1 } else { distance(&typed, &known) };
-        (slips <= (typed.len().max(known.len()) / 3).min(2)).then_some((slips, candidate))
-    });
-    near.min_by_key(|(slips, _)| *slips).map(|(_, candidate)| candidate)
-}
-
-fn sorted(letters: &[char]) -> Vec<char> {
-    let mut letters = letters.to_vec();
-    letters.sort_unstable();
-    letters
-}
-
-/// Letters to insert, remove or replace.
-fn distance(one: &[char], other: &[char]) -> usize {
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (number, letter) in one.iter().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], number + 1);
-        for (place, theirs) in other.iter().enumerate() {
-            let replaced = diagonal + usize::from(letter != theirs);
-            diagonal = row[place + 1];
-            row[place + 1] = replaced.min(diagonal + 1).min(row[place] + 1);
-        }
-    }
-    row[other.len()]
 }

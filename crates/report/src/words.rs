@@ -156,8 +156,12 @@ fn of_limit(reached: ReachedLimit, steps: u32) -> String {
 
 fn of_left_out(why: NotRunReason) -> String {
     match why {
-        NotRunReason::TimeOuts(1) => "not run: the scene before it ran out of time".to_owned(),
-        NotRunReason::TimeOuts(many) => format!("not run: {many} scenes in a row before it ran out of time"),
+        NotRunReason::Limits { scenes: 1, .. } => {
+            "not run: the scene before it ran into a limit of time, memory or output".to_owned()
+        }
+        NotRunReason::Limits { scenes, .. } => {
+            format!("not run: {scenes} scenes in a row before it ran into a limit of time, memory or output")
+        }
         NotRunReason::Total(total) => {
             let seconds = total.as_secs_f64();
             format!("not run: the scenes before it took {seconds} s, all that a submission has")

@@ -147,7 +147,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         }
     };
     match (target, arguments.format) {
-        (Some(target), _) => target.finish_with(text.as_bytes())?,
+        (Some(target), _) => target.finish_and_tell(text.as_bytes(), is_page)?,
         (None, CheckFormat::Text) => console::report(&text)?,
         (None, _) => console::print(text.as_bytes())?,
     }

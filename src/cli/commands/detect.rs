@@ -59,9 +59,9 @@ fn show(arguments: &Detect, study: &Study, place: Option<Place<'_>>, inputs: &[I
 fn typed(arguments: &Detect) -> Result<PairMotion> {
     const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in a scene \
                            (--scene, --step, --pair)";
-    let radii = || arguments.radii.as_deref().context("the radii are missing: add --radii, as in --radii 1,0.5");
+    let radii = arguments.radii.as_deref();
     if let Some(word) = &arguments.word {
-        return pair::motion(word, radii()?);
+        return pair::motion(word, radii);
     }
     let Points { x1, d1, e1, x2, d2, e2, x3, d3, e3, point, normal } = &arguments.points;
     let Some(x1) = x1 else { bail!(NOTHING) };
@@ -78,7 +78,7 @@ fn typed(arguments: &Detect) -> Result<PairMotion> {
         (Some(_), None, ..) => bail!("the start of the edge's second end is missing: --x3"),
         _ => bail!("the second object is missing: --x2 (and --x3 for an edge), or --point and --normal"),
     };
-    pair::motion(&word, radii()?)
+    pair::motion(&word, radii)
 }
 
 /// A pair of a scene, in a step of the reference's run or of a trace.

@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
         ExplainFormat::Html => Explained { diagnosis: &diagnosis, cards: &cards }.html(),
     };
     match target {
-        Some(target) => target.finish_with(text.as_bytes())?,
+        Some(target) => target.finish_and_tell(text.as_bytes(), arguments.format == ExplainFormat::Html)?,
         None if arguments.format == ExplainFormat::Text => console::report(&text)?,
         None => console::print(text.as_bytes())?,
     }

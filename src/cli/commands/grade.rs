@@ -286,15 +286,10 @@ impl Session<'_> {
         results.write(reports, || self.text(grades, submissions))
     }
 
-    /// The report for people who look at it now: on a terminal a class is a closing summary per submission.
+    /// The report for people who look at it now: of a class a table, and what it comes to.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let is_class = grades.len() > 1;
-        let shown = match console::width() {
-            _ if self.arguments.quiet => TextDetail::Line,
-            _ if self.arguments.verbose => TextDetail::All,
-            Some(_) if is_class => TextDetail::Closing,
-            _ => TextDetail::Wrong,
-        };
+        let shown = shown(self.arguments, is_class);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene);
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: &_| {
@@ -305,10 +300,7 @@ impl Session<'_> {
         };
         let (style, width) = (console::style(), console::width());
         let text = Text { style, shown, width, again: None, closer: Some(&closer) }.render(grades);
-        match is_class && shown > TextDetail::Line {
-            true => text + "\n" + &grade::class(grades, HARDEST, style),
-            false => text,
-        }
+        with_class(text, grades, shown, style)
     }
 
     fn exit_code(&self, grades: &[Grade]) -> u8 {
@@ -350,6 +342,24 @@ impl Session<'_> {
     }
 }
 
+/// How much is shown of each submission.
+pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
+    match (arguments.quiet, arguments.verbose) {
+        (true, _) => TextDetail::Line,
+        (_, true) => TextDetail::All,
+        _ if is_class => TextDetail::Table,
+        _ => TextDetail::Wrong,
+    }
+}
+
+/// The report on several submissions ends with what the class comes to.
+pub(super) fn with_class(text: String, grades: &[Grade], shown: TextDetail, style: Style) -> String {
+    match grades.len() > 1 && shown > TextDetail::Line {
+        true => text + "\n" + &grade::class(grades, HARDEST, style),
+        false => text,
+    }
+}
+
 /// What tells that a submission has changed: the newest change below it, and its size.
 fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
@@ -376,7 +386,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let folder = folder.join("logs").join(file_name(&grade.submission));
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     if let Some(build) = &grade.build {
-        let text = format!("{}\n\n{}\n", words::build(&build.end), grade::plain(&build.output));
+        let text = format!("{}\n\n{}\n", words::build(&build.end), grade::printed(&build.output));
         output::write(&folder.join("build.log"), &[], text.as_bytes())?;
     }
     for scene in grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun) {
@@ -390,8 +400,8 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
             "{}: {}\n{details}\n--- standard output ---\n{}\n--- standard error ---\n{}\n",
             scene.verdict,
             grade::plain(&words::summary(scene)),
-            grade::plain(&scene.stdout),
-            grade::plain(&scene.stderr),
+            grade::printed(&scene.stdout),
+            grade::printed(&scene.stderr),
         );
         output::write(&folder.join(format!("{}.log", file_name(&scene.scene))), &[], text.as_bytes())?;
     }

@@ -161,7 +161,7 @@ fn copy(from: &Path, to: &Path, depth: usize) -> Result<()> {
 
 /// The report for people who look at it now.
 fn text(grades: &[Grade], quiet: bool) -> String {
-    let shown = if quiet { TextDetail::Line } else { TextDetail::Closing };
+    let shown = if quiet { TextDetail::Line } else { TextDetail::Table };
     let (style, width) = (console::style(), console::width());
     let text = Text { style, shown, width, again: None, closer: None }.render(grades);
     if quiet || grades.len() < 2 { text } else { text + "\n" + &grade::class(grades, usize::MAX, style) }

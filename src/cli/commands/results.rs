@@ -6,6 +6,7 @@ use crate::{
         grade::{self, Format},
         page::Audience,
         style::Style,
+        wrap,
     },
     suite::{Grade, guarded},
 };
@@ -15,6 +16,9 @@ use std::{
     io::Write,
     path::{Path, PathBuf},
 };
+
+/// Lines of class.txt are no wider, in columns.
+const CLASS_WIDTH: usize = 100;
 
 /// A report that was asked for.
 pub(super) struct Report {
@@ -88,7 +92,8 @@ impl Results<'_> {
             keep(write(&folder.join("scenes.csv"), || Format::Csv.render(grades)));
             keep(write(&folder.join("grades.jsonl"), lines));
             if grades.len() > 1 {
-                keep(write(&folder.join("class.txt"), || grade::class(grades, usize::MAX, Style::Plain)));
+                let class = || wrap::wrapped(&grade::class(grades, usize::MAX, Style::Plain), CLASS_WIDTH);
+                keep(write(&folder.join("class.txt"), class));
             }
             if let Some(pages) = self.pages {
                 keep(made("the pages", || pages.write(grades, self.reader)).and_then(|written| written).map(|first| {
@@ -109,7 +114,9 @@ impl Results<'_> {
                 }
                 (None, _) => keep(made("the report", render).and_then(|text| console::print(text.as_bytes()))),
                 (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
-                (Some(file), _) => keep(write(file, render)),
+                (Some(file), _) => {
+                    keep(write(file, render).map(|()| output::say_where(file, report.format == Format::Html)))
+                }
             }
         }
         match wrong {

@@ -1,6 +1,6 @@
 //! Finds the submissions that the arguments of `grade` mean.
 use crate::{
-    cli::{console, grading::Grade},
+    cli::{console, grading::Grade, input},
     suite::{Submission, config::BuildStep, upload},
 };
 use anyhow::{Context, Result, bail};
@@ -41,6 +41,7 @@ impl<'a> Search<'a> {
         for path in &self.arguments.programs {
             let data = fs::metadata(path).with_context(|| format!("no submission at {}", path.display()))?;
             if !data.is_dir() {
+                refuse_scene(path)?;
                 found.push(Submission { name: name_of(path), path: path.clone(), program: None });
             } else if self.arguments.single {
                 found.push(self.folder(path));
@@ -86,15 +87,14 @@ impl<'a> Search<'a> {
         same(path, self.output) || RESULTS.iter().all(|name| path.join(name).is_file())
     }
 
-    /// One submission per entry, in alphabetical order. Hidden entries are passed over, and with a word about each what
-    /// can't be run, results of gradings, and links: they could lead to another's submission.
+    /// One submission per entry, in alphabetical order. With a word about each are passed over hidden entries, what can't be
+    /// run, results of gradings, and links: they could lead to another's submission.
     fn entries(&self, folder: &Path) -> Result<Vec<Submission>> {
         let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
         let mut paths: Vec<PathBuf> = listing
             .map(|entry| entry.map(|entry| entry.path()))
             .collect::<Result<_, _>>()
             .with_context(|| format!("cannot read {}", folder.display()))?;
-        paths.retain(|path| path.file_name().is_some_and(|name| !name.as_encoded_bytes().starts_with(b".")));
         paths.sort();
         if self.is_results(folder) {
             paths.retain(|path| !OWN.iter().any(|own| path.file_name().is_some_and(|name| name == *own)));
@@ -102,6 +102,9 @@ impl<'a> Search<'a> {
         let mut submissions = Vec::new();
         for path in &paths {
             match fs::symlink_metadata(path) {
+                _ if path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".")) => {
+                    pass_over(path, "its name begins with a dot; name it to grade it");
+                }
                 Ok(data) if data.is_dir() && self.is_results(path) => {
                     pass_over(path, "it holds the results of a grading");
                 }
@@ -134,6 +137,18 @@ fn entry(folder: &Path, path: &Path) -> Submission {
         Some(name) => Submission { name: name_of(path), path: folder.to_owned(), program: Some(name.to_owned()) },
         None => Submission { name: name_of(path), path: path.to_owned(), program: None },
     }
+}
+
+/// A scene in the place of the program is a slip of whoever types.
+fn refuse_scene(path: &Path) -> Result<()> {
+    if input::is_scene(path) {
+        let name = input::shown(path);
+        bail!(
+            "{name} is a scene, not a program. To run a program on it: fosssim-oracle explain --program FOSSSim {name}; \
+             to grade with it, list it in a suite (fosssim-oracle suite init) and give that with --suite"
+        );
+    }
+    Ok(())
 }
 
 fn pass_over(path: &Path, why: &str) {

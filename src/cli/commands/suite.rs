@@ -4,25 +4,28 @@ use crate::{
     cli::{
         console, exit,
         grading::{Suite, SuiteCheck, SuiteInit, SuiteList},
+        output::Output,
         values::TextOrJson,
     },
     judge::fair::borderline,
     report::suite::{Undecided, list, list_json, text},
     suite::{config, plan},
 };
-use anyhow::{Result, bail};
+use anyhow::{Context, Result};
 use rayon::prelude::*;
 
 pub(super) fn run(suite: &Suite) -> Result<u8> {
     match suite {
-        Suite::Init(SuiteInit { name: None }) => console::print(config::TEMPLATE.as_bytes())?,
-        Suite::Init(SuiteInit { name: Some(name) }) => match plan::built_in(name) {
-            Some(text) => console::print(text.as_bytes())?,
-            None => {
-                let known: Vec<_> = plan::built_in_names().collect();
-                bail!("no suite {name} comes with the program; there are {}", known.join(", "));
+        Suite::Init(SuiteInit { name, output }) => {
+            let text = match name {
+                None => config::TEMPLATE,
+                Some(name) => named(name)?,
+            };
+            match output {
+                Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false)?,
+                None => console::print(text.as_bytes())?,
             }
-        },
+        }
         Suite::Check(SuiteCheck { suite }) => {
             let plan = plan::find(suite)?;
             console::report(&text(&plan, &undecided(&plan), console::style()))?;
@@ -38,6 +41,14 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
         Suite::Scenes(_) => return scene::list(&[], false),
     }
     Ok(exit::ACCEPTED)
+}
+
+/// The text of a suite that comes with the program.
+fn named(name: &str) -> Result<&'static str> {
+    plan::built_in(name).with_context(|| {
+        let known: Vec<_> = plan::built_in_names().collect();
+        format!("no suite {name} comes with the program; there are {}", known.join(", "))
+    })
 }
 
 /// The suites that come with the program, and what each is called by.

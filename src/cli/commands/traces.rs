@@ -2,6 +2,7 @@
 //! sandbox is needed; how long a program took, and that it ended well, nobody knows.
 use super::{
     ending::exit_code,
+    grade,
     pages::{self, Pages},
     results::{Report, Results},
 };
@@ -10,7 +11,7 @@ use crate::{
     diagnose::{self, Keep, examine},
     evidence::StepRulings,
     judge::replay::Options,
-    report::grade::{Format, Text, TextDetail, rehearse},
+    report::grade::{Format, Text, rehearse},
     sandbox::RunOutcome,
     suite::{
         Grade, Reason, Run, SceneResult, SceneTask, Verdict,
@@ -63,13 +64,10 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     let (folder, reader) = (arguments.output.as_deref(), arguments.reader.into());
     let results = Results { folder, pages: pages.as_ref(), reader, is_part, grades: &grades };
     results.write(reports, || {
-        let shown = match (arguments.quiet, arguments.verbose) {
-            (true, _) => TextDetail::Line,
-            (_, true) => TextDetail::All,
-            _ => TextDetail::Wrong,
-        };
+        let shown = grade::shown(arguments, grades.len() > 1);
         let (style, width) = (console::style(), console::width());
-        Text { style, shown, width, again: None, closer: None }.render(&grades)
+        let text = Text { style, shown, width, again: None, closer: None }.render(&grades);
+        grade::with_class(text, &grades, shown, style)
     })?;
     Ok(exit_code(&grades))
 }

@@ -8,10 +8,13 @@ mod scene;
 mod trace;
 
 pub(super) use scene::{SceneInput, scene};
-pub(super) use trace::{TraceInput, trace};
+pub(super) use trace::{TraceInput, is_scene, trace};
 
 use crate::files::open_for_reading;
-use crate::{report::grade::one_line, suite::library};
+use crate::{
+    report::grade::one_line,
+    suite::{library, near},
+};
 use anyhow::{Result, bail};
 use std::{
     fs::{File, Metadata},
@@ -30,9 +33,9 @@ pub(super) fn asset(name: &Path) -> Option<&str> {
 }
 
 fn no_asset(what: &str, name: &str) -> String {
-    let close: Vec<_> = library::names().filter(|known| known.contains(name) || name.contains(*known)).collect();
-    let known = if close.is_empty() { library::names().take(3).collect() } else { close };
-    format!("no embedded {what} is called `{name}`; there are, for example, {}", known.join(", "))
+    let near = near::nearest(name.strip_suffix(".xml").unwrap_or(name), library::names(), 3).join(", ");
+    let name = one_line(name);
+    format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
 }
 
 /// A file that is not there, but would be what comes with the program, had it `asset:` before its name.

@@ -3,6 +3,7 @@ use crate::{
     num::vector::Vec2,
     scene::Scene,
     sim::{Pair, PairKind, PairMotion, PointMotion},
+    suite::near,
 };
 use anyhow::{Context, Result, bail};
 
@@ -10,29 +11,32 @@ use anyhow::{Context, Result, bail};
 ///
 /// # Errors
 /// When it is no such pair.
-pub(in crate::cli) fn motion(word: &str, radii: &str) -> Result<PairMotion> {
+pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMotion> {
     let mut points = word.split(':').collect::<Vec<_>>();
-    let kind = points.remove(0);
+    let word = points.remove(0);
+    let kind = kind_of(word)?;
     let moving = |index: usize| moving(points[index]);
     let fixed = |index: usize| vector(points[index]);
     let expect = |count: usize, what: &str| {
         if points.len() == count {
             return Ok(());
         }
-        bail!("{kind} takes {count} points ({what}), not {}", points.len())
+        bail!("{word} takes {count} points ({what}), not {}", points.len())
     };
-    Ok(match kind_of(kind)? {
+    let radii = || radii.context("the radii are missing: add --radii, as in --radii 1,0.5");
+    Ok(match kind {
         PairKind::ParticleParticle => {
             expect(2, "the two centres")?;
-            PairMotion::Particles { centres: [moving(0)?, moving(1)?], radii: radii_of(radii)? }
+            PairMotion::Particles { centres: [moving(0)?, moving(1)?], radii: radii_of(radii()?)? }
         }
         PairKind::ParticleEdge => {
             expect(3, "the particle's centre and the ends of the edge")?;
             let ends = [moving(1)?, moving(2)?];
-            PairMotion::Edge { centre: moving(0)?, ends, radii: radii_of(radii)? }
+            PairMotion::Edge { centre: moving(0)?, ends, radii: radii_of(radii()?)? }
         }
         PairKind::ParticleHalfPlane => {
             expect(3, "the particle's centre, a point on the boundary, the normal")?;
+            let radii = radii()?;
             let radius = number(radii).with_context(|| format!("the radius `{radii}`"))?;
             let normal = fixed(2)?;
             if normal == Vec2::zeros() {
@@ -82,7 +86,12 @@ pub(in crate::cli) fn of_scene(word: &str, scene: &Scene) -> Result<Pair> {
 
 fn kind_of(word: &str) -> Result<PairKind> {
     PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&word)).with_context(|| {
-        format!("`{word}` is no kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and half-plane)")
+        let names = PairKind::ALL.into_iter().flat_map(|kind| [kind.short(), kind.name()]);
+        let meant = near::closest(word, names).map(|name| format!("; did you mean {name}?")).unwrap_or_default();
+        format!(
+            "`{word}` is no kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
+             half-plane){meant}"
+        )
     })
 }
 
@@ -174,9 +183,18 @@ mod tests {
     }
 
     #[test]
+    fn the_kind_of_pair_is_looked_at_before_the_radii_are_missed() {
+        let error = |word: &str| format!("{:#}", motion(word, None).unwrap_err());
+        assert!(error("xx:1").contains("`xx` is no kind of pair"), "{}", error("xx:1"));
+        assert!(error("particle-egde:1").ends_with("did you mean particle-edge?"), "{}", error("particle-egde:1"));
+        assert!(error("pp:1,0").contains("pp takes 2 points"), "{}", error("pp:1,0"));
+        assert!(error("pp:1,0:3,0").contains("the radii are missing"), "{}", error("pp:1,0:3,0"));
+    }
+
+    #[test]
     fn each_kind_says_what_it_takes() {
-        assert!(motion("pe:3,1+4,1:5,9+2,6:5,3+5,8", "1,1").is_ok());
-        assert!(motion("ph:0,1+0,-1:0,0:0,1", "0.25").is_ok());
+        assert!(motion("pe:3,1+4,1:5,9+2,6:5,3+5,8", Some("1,1")).is_ok());
+        assert!(motion("ph:0,1+0,-1:0,0:0,1", Some("0.25")).is_ok());
         for (pair, radii, says) in [
             ("pe:3,1:5,9", "1,1", "pe takes 3 points (the particle's centre and the ends of the edge), not 2"),
             ("pq:3,1:5,9", "1,1", "`pq` is no kind of pair"),
@@ -184,7 +202,7 @@ mod tests {
             ("pp:3,1:5,9", "1,-1", "a radius is negative"),
             ("ph:3,1:0,0:0,0", "1", "the half-plane's normal is zero"),
         ] {
-            let error = format!("{:#}", motion(pair, radii).unwrap_err());
+            let error = format!("{:#}", motion(pair, Some(radii)).unwrap_err());
             assert!(error.contains(says), "{error}");
         }
     }

@@ -72,17 +72,23 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
 
 /// A scene in the place of the trace is a slip of whoever types, and no wrong trace: refused where name and content agree.
 fn refuse_scene(name: &Path, shown: &str) -> Result<()> {
+    if is_scene(name) {
+        bail!("{shown} is a scene and no trace: SCENE comes first, then TRACE");
+    }
+    Ok(())
+}
+
+/// Whether a file is a scene by its name and by how it begins.
+pub(in crate::cli) fn is_scene(name: &Path) -> bool {
     if has_extension(name, "xml")
         && let Ok((file, metadata)) = open(name)
         && metadata.is_file()
     {
         let mut start = Vec::new();
         let is_read = file.take(8).read_to_end(&mut start).is_ok();
-        if is_read && (start.starts_with(b"<?xml") || start.starts_with(b"<scene")) {
-            bail!("{shown} is a scene and no trace: SCENE comes first, then TRACE");
-        }
+        return is_read && (start.starts_with(b"<?xml") || start.starts_with(b"<scene"));
     }
-    Ok(())
+    false
 }
 
 /// Remembers what the operating system said when reading failed.

@@ -149,3 +149,50 @@ fn the_course_script_says_in_a_sentence_that_a_program_is_missing() {
         assert!(run.err().contains(says), "{}", run.err());
     }
 }
+
+#[test]
+fn a_scene_in_the_place_of_the_program_is_told_with_what_to_type() {
+    let workspace = Workspace::with_trace(DRIFT);
+    let run = workspace.run(["grade", "scene.xml"]);
+    assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
+    assert!(
+        run.err().contains("scene.xml is a scene, not a program") && run.err().contains("--suite"),
+        "{}",
+        run.err()
+    );
+    assert!(!run.err().contains("chmod"), "{}", run.err());
+}
+
+#[test]
+fn slips_in_names_of_scenes_and_pairs_find_what_was_meant() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    for (typed, meant) in [
+        ("asset:ImpulsesTests/of-centre-on-turning-edge", "ImpulsesTests/off-centre-on-turning-edge"),
+        ("asset:off-centre-on-turning-egde", "ImpulsesTests/off-centre-on-turning-edge"),
+        ("asset:GeometricTests/nothing-colildes.xml", "GeometricTests/nothing-collides"),
+    ] {
+        let run = workspace.run(["check", typed, "trace.bin"]);
+        let near = run.err().split("the nearest are ").nth(1).unwrap_or_default().to_owned();
+        assert!(near.split(',').next().is_some_and(|first| first.ends_with(meant)), "{typed}: {}", run.err());
+    }
+    let run = workspace.run(["detect", "xx:1"]);
+    assert!(run.err().contains("`xx` is no kind of pair") && !run.err().contains("radii"), "{}", run.err());
+}
+
+#[test]
+fn whoever_writes_into_a_file_is_told_where() {
+    let workspace = Workspace::with_trace(BOUNCE);
+    for (command, says) in [
+        (&["check", "scene.xml", "trace.bin", "--format", "html", "-o", "page.html"][..], "to look at: "),
+        (&["explain", "scene.xml", "trace.bin", "--format", "html", "-o", "page.html"], "to look at: "),
+        (&["check", "scene.xml", "trace.bin", "-o", "report.txt"], "written: "),
+        (&["suite", "init", "-o", "course.toml"], "written: "),
+    ] {
+        let run = workspace.run(command);
+        let file = command.last().expect("a word");
+        assert!(run.err().starts_with(says) && run.err().trim_end().ends_with(file), "{}", run.shown());
+        let quiet = workspace.run(command.iter().chain(&["--quiet"]));
+        assert!(quiet.err().is_empty() || command[0] == "suite", "{}", quiet.shown());
+    }
+    assert_eq!(workspace.read("course.toml"), workspace.run(["suite", "init"]).stdout);
+}

@@ -186,7 +186,10 @@ fn every_reason_and_every_end_reads_back() {
             .map(Reason::Trace),
     );
     let total = NotRunReason::Total(Duration::from_secs(600));
-    reasons.extend([NotRunReason::TimeOuts(3), total, NotRunReason::FailFast].map(Reason::LeftOut));
+    reasons.extend(
+        [NotRunReason::Limits { scenes: 3, verdict: Verdict::MemoryLimit }, total, NotRunReason::FailFast]
+            .map(Reason::LeftOut),
+    );
     let missing = StartProblem::MissingInterpreter { interpreter: "/bin/x".to_owned(), hint: "; install it".into() };
     for found in [FolderContents::Unreadable("no".to_owned()), FolderContents::Nothing, others] {
         reasons.push(Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found }));
@@ -230,7 +233,10 @@ fn another_version_and_damage_are_not_read() {
     let written = String::from_utf8(write(&key(), "submission", &wrong())).expect("text");
     assert!(read(written.as_bytes()).is_some());
     assert!(!written.contains('\n'), "one line");
-    assert!(read(written.replacen("\"form\":3", "\"form\":4", 1).as_bytes()).is_none());
+    assert!(
+        read(written.replacen(&format!("\"form\":{VERSION}"), &format!("\"form\":{}", VERSION + 1), 1).as_bytes())
+            .is_none()
+    );
     assert!(read(written.replacen("\"coefficient\"", "\"coeficient\"", 1).as_bytes()).is_none());
     assert!(read(written.replacen("\"end-positions\"", "\"another-mistake\"", 1).as_bytes()).is_none());
     assert!(read(written.replacen("\"R^2\"", "\"Q^2\"", 1).as_bytes()).is_none(), "no formula has such a letter");

@@ -1,5 +1,5 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
-use super::{super::explain, difference, head_lines, no_points, one_line, points, reached, wrong_first};
+use super::{super::explain, difference, head_lines, no_points, one_line, points, printed, reached, wrong_first};
 use crate::words;
 use fosssim_grading::{Grade, Verdict};
 use std::fmt::Write;
@@ -13,7 +13,7 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
         }
         if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
             let title = property(&format!("{}: {}", grade.submission, words::build(&build.end)));
-            let words: String = build.output.chars().take(4000).collect();
+            let words: String = printed(&build.output).chars().take(4000).collect();
             let _ =
                 writeln!(text, "::error title={title}::{}", words.lines().map(data).collect::<Vec<_>>().join("%0A"));
         }
@@ -74,7 +74,7 @@ pub(super) fn summary(grades: &[Grade]) -> String {
             if grade.unfit().is_none() {
                 let _ = writeln!(text, "{}\n", cell(&words::build(&build.end)));
             }
-            for line in build.output.lines().take(40) {
+            for line in printed(&build.output).lines().take(40) {
                 let _ = writeln!(text, "    {}", one_line(line));
             }
             text.push('\n');

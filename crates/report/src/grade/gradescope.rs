@@ -1,5 +1,5 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::{super::explain, difference, head_lines, plain, points};
+use super::{super::explain, difference, head_lines, plain, points, printed};
 use crate::{number::counted, words};
 use fosssim_grading::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
@@ -94,7 +94,7 @@ fn overall(grade: &Grade) -> String {
         None => out_of_time(grade),
     }];
     if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
-        lines.push(format!("{}\n{}", plain(&words::build(&build.end)), plain(&build.output)));
+        lines.push(format!("{}\n{}", plain(&words::build(&build.end)), printed(&build.output)));
     }
     // What is wrong with the upload itself tells of no scene.
     let told = grade.build.as_ref().is_some_and(|build| !build.end.is_success());
@@ -133,7 +133,7 @@ fn output(scene: &SceneGrade, shows_output: bool) -> String {
     lines.extend(explain::lines(&scene.settled).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(match shows_output {
-            true => format!("The program's error output:\n{}", plain(&scene.stderr)),
+            true => format!("The program's error output:\n{}", printed(&scene.stderr)),
             // It could tell of a hidden scene what the program kept of it.
             false => {
                 "The program's error output is kept from this report, because the suite has hidden groups.".to_owned()

@@ -1,5 +1,5 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
-use super::{super::explain::ExplanationView, plain};
+use super::{super::explain::ExplanationView, plain, printed};
 use crate::words;
 use fosssim_grading::{Grade, GroupGrade, SceneGrade};
 use serde::Serialize;
@@ -115,7 +115,7 @@ fn view(grade: &Grade) -> GradeView {
         build: grade.build.as_ref().map(|build| BuildView {
             succeeded: build.end.is_success(),
             end: plain(&words::build(&build.end)),
-            output: plain(&build.output),
+            output: printed(&build.output),
         }),
         likely_mistake: grade.likely_mistake().as_ref().map(ExplanationView::from),
         likely_mistakes: grade.likely_mistakes().iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
@@ -150,8 +150,8 @@ fn scene(scene: &SceneGrade) -> SceneView {
         cpu_seconds: scene.cpu.as_secs_f64(),
         wall_seconds: scene.wall.as_secs_f64(),
         memory_bytes: scene.memory,
-        stdout: plain(&scene.stdout),
-        stderr: plain(&scene.stderr),
+        stdout: printed(&scene.stdout),
+        stderr: printed(&scene.stderr),
         cached: scene.cached,
     }
 }

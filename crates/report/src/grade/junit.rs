@@ -1,5 +1,5 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
-use super::{super::explain, difference, head_lines, plain, wrong_first};
+use super::{super::explain, difference, head_lines, plain, printed, wrong_first};
 use crate::words;
 use fosssim_grading::{Grade, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -39,7 +39,7 @@ fn submission(grade: &Grade, unfit: &str) -> TestSuite {
     status.set_type(grade.verdict.words());
     status.set_message(plain(unfit));
     if let Some(build) = &grade.build {
-        status.set_description(plain(&build.output));
+        status.set_description(printed(&build.output));
     }
     let mut case = TestCase::new("submission", status);
     case.set_classname(plain(&grade.submission));
@@ -61,7 +61,7 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             let mut description = words::details(scene);
             description.extend(explain::lines(&scene.settled));
             if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
-                description.extend([words::build(&build.end), build.output.clone()]);
+                description.extend([words::build(&build.end), printed(&build.output)]);
             }
             if !description.is_empty() {
                 status.set_description(plain(&description.join("\n")));
@@ -73,10 +73,10 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
     case.set_classname(plain(&grade.submission));
     case.set_time(scene.wall);
     if !scene.stdout.is_empty() {
-        case.set_system_out(plain(&scene.stdout));
+        case.set_system_out(printed(&scene.stdout));
     }
     if !scene.stderr.is_empty() {
-        case.set_system_err(plain(&scene.stderr));
+        case.set_system_err(printed(&scene.stderr));
     }
     case
 }

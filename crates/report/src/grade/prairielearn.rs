@@ -1,5 +1,5 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
-use super::{super::explain, difference, head_lines, one_line, plain, wrong_first};
+use super::{super::explain, difference, head_lines, one_line, plain, printed, wrong_first};
 use crate::words;
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
@@ -64,7 +64,7 @@ pub(super) fn render(grade: &Grade) -> String {
             .iter()
             .map(|warning| format!("warning: {warning}"))
             .chain(head)
-            .chain(build.map(|build| format!("{}\n{}", words::build(&build.end), build.output)))
+            .chain(build.map(|build| format!("{}\n{}", words::build(&build.end), printed(&build.output))))
             .map(|text| cut(&text))
             .collect::<Vec<_>>()
             .join("\n"),

@@ -8,7 +8,7 @@ use super::{
     script,
 };
 use crate::{
-    grade::{difference, likely_mistakes, no_points, one_line, points, reached, score},
+    grade::{difference, likely_mistakes, no_points, one_line, points, reached, score, without_codes},
     number::counted,
     words,
 };
@@ -311,6 +311,7 @@ fn printed(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();
     }
+    let output = without_codes(output);
     let shown: String = output.chars().take(OUTPUT).collect();
     let cut = if shown.len() < output.len() { "\n[cut short]" } else { "" };
     // Hostile text grows when it is written out: what counts is its length on the page.

@@ -8,7 +8,7 @@ mod table;
 pub use changes::changes;
 pub use table::table;
 
-use super::{super::style::Style, no_points, one_line, plain, points};
+use super::{super::style::Style, no_points, one_line, plain, points, printed};
 use crate::{number::counted, style::Look, words};
 use fosssim_grading::{Grade, SceneGrade, Verdict};
 use fosssim_judge::Rules;
@@ -22,8 +22,8 @@ const SHOWN_LINES: usize = 10;
 pub enum TextDetail {
     /// A line per submission.
     Line,
-    /// What each submission's grading comes to.
-    Closing,
+    /// Of several submissions a table with a row for each; of one, what its grading comes to.
+    Table,
     /// Also every scene that is not accepted.
     #[default]
     Wrong,
@@ -54,6 +54,13 @@ impl Text<'_> {
     #[must_use]
     pub fn render(&self, grades: &[Grade]) -> String {
         let mut text = String::new();
+        if self.shown == TextDetail::Table && grades.len() > 1 {
+            let unfit = |grade: &Grade| {
+                let why = words::unfit(grade)?;
+                Some(format!("{}: {}\n", table::shortened(&one_line(&grade.submission)), one_line(&why)))
+            };
+            return table(grades, self.width, self.style) + &grades.iter().filter_map(unfit).collect::<String>();
+        }
         for grade in grades {
             if self.shown == TextDetail::Line {
                 let why = words::unfit(grade).map(|unfit| format!(": {}", one_line(&unfit))).unwrap_or_default();
@@ -141,7 +148,7 @@ const fn look(verdict: Verdict) -> Look {
 
 /// Lines of program output, marked so that they can't be taken for ours.
 fn output(output: &str, most: usize) -> String {
-    let output = plain(output);
+    let output = printed(output);
     let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();
     if output.lines().count() > most {
         lines.push("      | ...".to_owned());

@@ -20,7 +20,7 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
         let cells = std::iter::once(heading.to_owned()).chain(grades.iter().map(cell)).collect();
         Column { cells, right }
     };
-    let name = of("submission", false, &|grade| one_line(&grade.submission));
+    let name = of("submission", false, &|grade| shortened(&one_line(&grade.submission)));
     let score = of("points", true, &|grade| reached(grade.points));
     let verdict = of("verdict", false, &|grade| grade.verdict.words().to_owned());
     let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
@@ -42,6 +42,34 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let fits = |columns: &[&Column]| width.is_none_or(|width| total(columns) <= width);
     let chosen = [whole, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
     rows(&chosen, grades, style)
+}
+
+/// So many columns a name may take; of a longer one its two ends are shown.
+const NAME: usize = 40;
+
+/// A name that widens no table.
+pub(super) fn shortened(name: &str) -> String {
+    const ENDS: usize = NAME / 2 - 2;
+    if columns(name) <= NAME {
+        return name.to_owned();
+    }
+    let letters: Vec<char> = name.chars().collect();
+    // Wide letters take two columns.
+    let taken = |letters: &mut dyn Iterator<Item = &char>| -> Vec<char> {
+        let mut room = ENDS;
+        letters
+            .take_while(|letter| {
+                let wide = columns(&letter.to_string());
+                let fits = wide <= room;
+                room = room.saturating_sub(wide);
+                fits
+            })
+            .copied()
+            .collect()
+    };
+    let start: String = taken(&mut letters.iter()).into_iter().collect();
+    let end: String = taken(&mut letters.iter().rev()).into_iter().rev().collect();
+    format!("{start}...{end}")
 }
 
 fn widest(column: &Column) -> usize {
@@ -81,5 +109,20 @@ fn cell(group: &GroupGrade) -> String {
         "AC".to_owned()
     } else {
         format!("{} {accepted}/{}", group.verdict.code(), group.scenes.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_name_widens_no_table() {
+        assert_eq!(shortened("a short name"), "a short name");
+        let long = format!("team-{}-17", "x".repeat(180));
+        let shown = shortened(&long);
+        assert!(columns(&shown) <= NAME && shown.starts_with("team-x") && shown.ends_with("x-17"), "{shown}");
+        let wide = shortened(&"界".repeat(90));
+        assert!(columns(&wide) <= NAME && wide.contains("..."), "{wide}");
     }
 }

@@ -1,0 +1,90 @@
+//! Which known words are near to one that was typed.
+
+/// So many letters of a word are compared.
+const LONGEST: usize = 60;
+
+/// The word that was probably meant: few slips away, or the same but for case and punctuation.
+#[must_use]
+pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
+    let typed = plain(word);
+    let near = candidates.filter_map(|candidate| {
+        let known = plain(candidate);
+        let begins = typed.len() >= 3 && (known.starts_with(&typed) || typed.starts_with(&known));
+        let swapped = sorted(&typed) == sorted(&known);
+        let slips = if (begins || swapped) && known != typed { 1 } else { distance(&typed, &known) };
+        (slips <= (typed.len().max(known.len()) / 3).min(2)).then_some((slips, candidate))
+    });
+    near.min_by_key(|(slips, _)| *slips).map(|(_, candidate)| candidate)
+}
+
+/// The names that are nearest to what was typed, at most so many, the nearest first. A name is compared as a whole and by its
+/// last part, since its group may be what was mistyped or left out.
+#[must_use]
+pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
+    let last = |name: &str| plain(name.rsplit('/').next().unwrap_or_default());
+    let (typed, typed_last) = (plain(word), last(word));
+    let slips = |name: &str| {
+        let (known, known_last) = (plain(name), last(name));
+        // What holds the whole of it is as near as one slip.
+        let holds = typed.len() >= 3 && known.windows(typed.len()).any(|part| part == typed);
+        let of_last = distance(&typed_last, &known_last);
+        (if holds { 1 } else { of_last.min(distance(&typed, &known)) }, of_last)
+    };
+    let mut near: Vec<_> = names.map(|name| (slips(name), name)).collect();
+    // Stable: names that are as near stay in their order.
+    near.sort_by_key(|(slips, _)| *slips);
+    near.into_iter().take(most).map(|(_, name)| name).collect()
+}
+
+/// The letters and digits of a word in lower case.
+fn plain(text: &str) -> Vec<char> {
+    text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(LONGEST).collect()
+}
+
+fn sorted(letters: &[char]) -> Vec<char> {
+    let mut letters = letters.to_vec();
+    letters.sort_unstable();
+    letters
+}
+
+/// Letters to insert, remove or replace.
+fn distance(one: &[char], other: &[char]) -> usize {
+    let mut row: Vec<usize> = (0..=other.len()).collect();
+    for (number, letter) in one.iter().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], number + 1);
+        for (place, theirs) in other.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != theirs);
+            diagonal = row[place + 1];
+            row[place + 1] = replaced.min(diagonal + 1).min(row[place] + 1);
+        }
+    }
+    row[other.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NAMES: [&str; 5] = [
+        "ContinuousTimeTests/barely-closing",
+        "GeometricTests/ball-between-walls",
+        "GeometricTests/chain",
+        "ImpulsesTests/ball",
+        "ImpulsesTests/rope-bridge",
+    ];
+
+    #[test]
+    fn slips_of_the_pen_find_the_name_that_was_meant() {
+        for (typed, meant) in [
+            ("GeometricTests/chian", "GeometricTests/chain"),
+            ("chain", "GeometricTests/chain"),
+            ("ImpulseTests/rope-brigde", "ImpulsesTests/rope-bridge"),
+            ("GeometricTests/rope-bridge", "ImpulsesTests/rope-bridge"),
+            ("bridge", "ImpulsesTests/rope-bridge"),
+            ("ball-betwen-walls", "GeometricTests/ball-between-walls"),
+        ] {
+            assert_eq!(nearest(typed, NAMES.into_iter(), 1), [meant], "{typed}");
+        }
+        assert_eq!(nearest("ImpulsesTests/bal", NAMES.into_iter(), 2).len(), 2);
+    }
+}
