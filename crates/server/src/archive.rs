@@ -134,14 +134,41 @@ fn damaged(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
 }
 
+/// Whether a file manager put this into the archive by itself, and not the person who packed it: Finder's folder of attributes and its
+/// notes on windows, Explorer's on pictures.
+fn is_of_a_system(path: &Path) -> bool {
+    path.iter().any(|part| {
+        let part = part.as_encoded_bytes();
+        part == b"__MACOSX" || part.starts_with(b"._") || matches!(part, b".DS_Store" | b"Thumbs.db" | b"desktop.ini")
+    })
+}
+
+/// How many entries a zip archive says that it has, by its end record (APPNOTE 4.3.16).
+fn announced(file: &mut File) -> io::Result<Option<usize>> {
+    /// The record, and the longest comment behind it.
+    const LONGEST: u64 = 22 + 0xffff;
+    let size = file.seek(SeekFrom::End(0))?;
+    file.seek(SeekFrom::Start(size.saturating_sub(LONGEST)))?;
+    let mut end = Vec::new();
+    file.take(LONGEST).read_to_end(&mut end)?;
+    file.seek(SeekFrom::Start(0))?;
+    let record = end.windows(22).rfind(|record| record.starts_with(b"PK\x05\x06"));
+    Ok(record.map(|record| usize::from(u16::from_le_bytes([record[10], record[11]]))))
+}
+
 /// A name for a message.
 fn shown(name: &[u8]) -> String {
     String::from_utf8_lossy(name).chars().take(200).flat_map(char::escape_default).collect()
 }
 
 impl Walk<'_> {
-    fn zip(&mut self, file: File) -> Result<(), ArchiveError> {
+    fn zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
+        let announced = announced(&mut file).map_err(ArchiveError::Folder)?;
         let mut archive = zip::ZipArchive::new(BufReader::new(file)).map_err(damaged)?;
+        // The library keeps one entry of each name, and nobody could tell which one was meant.
+        if announced.is_some_and(|announced| announced > archive.len()) {
+            return Err(ArchiveError::Twice("a name".to_owned()));
+        }
         for index in 0..archive.len() {
             let mut entry = archive.by_index(index).map_err(damaged)?;
             let name = entry.name_raw().to_vec();
@@ -214,6 +241,9 @@ impl Walk<'_> {
 
     fn folder(&mut self, name: &[u8]) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
+        if is_of_a_system(&path) {
+            return Ok(());
+        }
         self.within_folders(&path.join("a file"), name)?;
         if let Target::Folder(folder) = self.target {
             fs::create_dir_all(folder.join(path)).map_err(ArchiveError::Folder)?;
@@ -223,6 +253,9 @@ impl Walk<'_> {
 
     fn file(&mut self, name: &[u8], executable: bool, input: &mut impl Read) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
+        if is_of_a_system(&path) {
+            return self.copy(input, &mut io::sink());
+        }
         self.within_folders(&path, name)?;
         if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen.insert(path.clone()) {
             return Err(ArchiveError::Twice(shown(name)));

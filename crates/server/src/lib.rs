@@ -12,6 +12,7 @@ pub mod problem;
 pub mod queue;
 pub mod retention;
 mod secret;
+pub mod storage;
 pub mod store;
 pub mod suspect;
 pub mod task;

@@ -141,6 +141,14 @@ impl Problem {
         Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too-large", "Too large", detail, remedy)
     }
 
+    /// The disk is nearly full.
+    #[must_use]
+    pub fn no_room() -> Self {
+        let detail = "the server's disk is nearly full; nothing was stored";
+        let remedy = "tell the administrator, and send it again later";
+        Self::new(StatusCode::INSUFFICIENT_STORAGE, "no-room", "No room", detail, remedy)
+    }
+
     /// The body came too slowly.
     #[must_use]
     pub fn too_slow() -> Self {

@@ -181,6 +181,17 @@ impl Store {
         Err(StoreError::Failed("this program was built without buckets: build it with --features s3".to_owned()))
     }
 
+    /// Writes a small object, and removes it: proof that more can be stored.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub async fn prove(&self) -> Result<(), StoreError> {
+        let key = Key::from(format!("{ASIDE}/proof-{}", std::process::id()));
+        self.objects.put(&key, PutPayload::from_static(b"proof")).await?;
+        self.objects.delete(&key).await?;
+        Ok(())
+    }
+
     /// Stores bytes.
     ///
     /// # Errors

@@ -52,11 +52,13 @@ pub enum Need {
     Yaml,
     /// `moto_server`, which answers like S3.
     Moto,
+    /// The right to mount a file system.
+    Mounts,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Corpus,
         Self::Sandbox,
         Self::Walls,
@@ -74,6 +76,7 @@ impl Need {
         Self::Systemd,
         Self::Yaml,
         Self::Moto,
+        Self::Mounts,
     ];
 
     /// Its name in `FOSSSIM_REQUIRE`.
@@ -97,6 +100,7 @@ impl Need {
             Self::Systemd => "systemd",
             Self::Yaml => "yaml",
             Self::Moto => "moto",
+            Self::Mounts => "mounts",
         }
     }
 }

@@ -51,6 +51,7 @@ use crate::{
     db::Database,
     lti::Lti,
     queue::{Bell, Ear, Policy},
+    storage::Storage,
     store::Store,
 };
 use std::{path::PathBuf, sync::Arc, time::Duration};
@@ -73,6 +74,8 @@ pub struct Parts {
     pub policy: Policy,
     /// The suites that come with the grader.
     pub suites: Suites,
+    /// Whether there is room, and whether it can be written.
+    pub storage: Storage,
     /// Where uploads wait until they are stored.
     pub incoming: PathBuf,
     /// The address that people know the service by.
@@ -128,6 +131,14 @@ impl House {
     #[must_use]
     pub fn incoming(&self) -> &std::path::Path {
         &self.0.incoming
+    }
+
+    /// Whether there is room for an upload.
+    ///
+    /// # Errors
+    /// When the disk is nearly full.
+    pub fn has_room(&self) -> Result<(), crate::problem::Problem> {
+        self.0.storage.has_room()
     }
 
     /// Whether learning platforms may be reached, and people come from them, without HTTPS.

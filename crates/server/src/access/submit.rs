@@ -8,7 +8,7 @@ use crate::{
     lti::score,
     problem::Problem,
     queue::{self, Bell, Lane, NewJob, Turn},
-    store::Artefact,
+    store::{Artefact, digest_of_file},
     task::{Form, Input, Task},
     values,
 };
@@ -50,23 +50,44 @@ impl Member {
         if !assignment.settings.takes(upload.form) {
             return Err(Problem::unusable(format!("this assignment takes {forms}")));
         }
+        // Nothing is stored of an upload that is refused, or was stored before.
+        let artefact = digest_of_file(upload.file).await?;
+        let mut transaction = self.house.0.database.read().await?;
+        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artefact).await? {
+            return Ok(Accepted { submission, repeated: true });
+        }
+        drop(transaction);
         let artefact = self.house.0.store.put_file(upload.file).await?;
         let mut transaction = self.house.0.database.begin().await?;
         // One after another for each student: numbers are given out here, and limits counted.
         transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
-        if let Some(key) = upload.key
-            && let Some(submission) = self.by_key(&mut transaction, key, &assignment, &artefact).await?
-        {
+        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artefact).await? {
             return Ok(Accepted { submission, repeated: true });
-        }
-        if !self.is_staff {
-            self.check_limits(&mut transaction, &assignment).await?;
         }
         let submission = self.write(&mut transaction, &assignment, upload, &artefact).await?;
         Bell::ring(&mut transaction).await?;
         transaction.commit().await?;
         self.house.0.bell.strike();
         Ok(Accepted { submission: self.submission(submission).await?, repeated: false })
+    }
+
+    /// The submission that this upload was before, or nothing where it may become one.
+    async fn admit(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        upload: &Upload<'_>,
+        artefact: &Artefact,
+    ) -> Result<Option<Submission>, Problem> {
+        if let Some(key) = upload.key
+            && let Some(submission) = self.by_key(transaction, key, assignment, artefact).await?
+        {
+            return Ok(Some(submission));
+        }
+        if !self.is_staff {
+            self.check_limits(transaction, assignment).await?;
+        }
+        Ok(None)
     }
 
     async fn by_key(

@@ -89,6 +89,9 @@ pub(super) struct Serve {
     /// After so many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
+    /// With fewer MiB than this free on the data folder's disk uploads are refused, so that what was accepted can be graded.
+    #[arg(long, value_name = "MIB", default_value_t = 512)]
+    pub(super) low_water: u64,
     /// Let people sign in with passwords, too.
     #[arg(long)]
     pub(super) passwords: bool,

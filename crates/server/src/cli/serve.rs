@@ -11,6 +11,7 @@ use crate::{
     lti::{self, Lti, PlatformWish},
     queue::Bell,
     retention,
+    storage::Storage,
     store::Store,
     web,
 };
@@ -26,6 +27,9 @@ use tokio_util::sync::CancellationToken;
 
 /// A day in seconds.
 const DAY: u64 = 24 * 3600;
+
+/// A mebibyte.
+const MIB: u64 = 1 << 20;
 
 /// How long an upload that nobody finished may lie around.
 const FORGOTTEN: Duration = Duration::from_secs(DAY);
@@ -60,6 +64,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         bell: bell.clone(),
         policy,
         suites: suites(arguments.work.grader.as_deref()).await,
+        storage: Storage::new(database.clone(), store.clone(), folders.incoming(), arguments.low_water * MIB),
         incoming: folders.incoming(),
         public: public.clone(),
         patience,
@@ -212,8 +217,10 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
     let folders = Folders::open(&arguments.place)?;
     let address = folders.database(&arguments.place);
     let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    let store = folders.store(&arguments.place)?;
     let house = House::new(Parts {
-        store: folders.store(&arguments.place)?,
+        storage: Storage::new(database.clone(), store.clone(), folders.incoming(), 0),
+        store,
         bell: Bell::default(),
         policy: crate::queue::Policy::default(),
         suites: Suites::default(),

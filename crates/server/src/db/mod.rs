@@ -19,7 +19,7 @@ pub use transaction::Transaction;
 pub use value::{Row, Value};
 
 use sqlx::{
-    ConnectOptions,
+    ConnectOptions, Connection,
     postgres::{PgConnectOptions, PgPool, PgPoolOptions},
     sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous},
 };
@@ -35,6 +35,12 @@ const CONNECTIONS: u32 = 10;
 /// statement wait for ever. The settings end with the transaction, as a pooler wants it.
 const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s'; SET LOCAL lock_timeout = '20s'; \
                      SET LOCAL statement_timeout = '60s'";
+
+/// Whether a connection's last transaction has ended. One whose COMMIT and ROLLBACK both failed, as on a full disk, counts as open
+/// for ever and could begin no other; the pool closes it and opens a new one.
+fn has_ended(connection: &impl Connection) -> bool {
+    !connection.is_in_transaction()
+}
 
 /// An open database. Cloning it is cheap and shares the connections.
 #[derive(Debug, Clone)]
@@ -83,6 +89,7 @@ impl Database {
                     .disable_statement_logging();
                 let pool = |connections| {
                     SqlitePoolOptions::new()
+                        .before_acquire(|connection, _| Box::pin(std::future::ready(Ok(has_ended(connection)))))
                         .max_connections(connections)
                         .acquire_timeout(PATIENCE)
                         .idle_timeout(None)
@@ -100,6 +107,7 @@ impl Database {
                     .application_name("fosssim-server")
                     .disable_statement_logging();
                 let pool = PgPoolOptions::new()
+                    .before_acquire(|connection, _| Box::pin(std::future::ready(Ok(has_ended(connection)))))
                     .max_connections(CONNECTIONS)
                     .acquire_timeout(PATIENCE)
                     .connect_with(options.clone())

@@ -65,6 +65,7 @@ struct Place<'a> {
 
 /// Receives the body of a request: the file itself, or a form with a field `file`.
 pub(super) async fn receive(house: &House, request: Request, most: u64) -> Result<Received, Problem> {
+    house.has_room()?;
     receive_at(&Place { incoming: house.incoming(), patience: house.patience() }, request, most).await
 }
 

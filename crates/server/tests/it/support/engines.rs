@@ -21,6 +21,13 @@ impl Fresh {
         Some(Self { database, address, _folder: Some(folder), _pooler: None, _cluster: None })
     }
 
+    /// A SQLite file in this folder, without tables.
+    pub(crate) async fn sqlite_in(folder: &std::path::Path) -> Self {
+        let address = Address::Sqlite(folder.join("fosssim.db"));
+        let database = Database::open(&address).await.expect("a database");
+        Self { database, address, _folder: None, _pooler: None, _cluster: None }
+    }
+
     /// A database in the tests' own PostgreSQL, without tables; nothing where PostgreSQL is not installed.
     pub(crate) async fn postgres() -> Option<Self> {
         let cluster = cluster::Shared::join()?;

@@ -1,5 +1,6 @@
 //! What the tests share.
 pub(crate) mod cluster;
+pub(crate) mod disk;
 pub(crate) mod engines;
 pub(crate) mod platform;
 pub(crate) mod server;

@@ -79,6 +79,16 @@ impl Server {
     /// Starts a server on a database, with further options.
     pub(crate) fn start(fresh: &Fresh, options: &[&str]) -> Self {
         let temp = tempfile::tempdir().expect("a folder");
+        let folder = temp.path().join("data");
+        Self::start_with(fresh, options, folder, temp)
+    }
+
+    /// The same, with this data folder, which is the caller's to remove.
+    pub(crate) fn start_in(fresh: &Fresh, options: &[&str], folder: PathBuf) -> Self {
+        Self::start_with(fresh, options, folder, tempfile::tempdir().expect("a folder"))
+    }
+
+    fn start_with(fresh: &Fresh, options: &[&str], folder: PathBuf, temp: tempfile::TempDir) -> Self {
         let grader = temp.path().join("grader");
         fs::write(&grader, GRADER).expect("a script");
         fs::set_permissions(&grader, fs::Permissions::from_mode(0o755)).expect("permissions");
@@ -87,7 +97,6 @@ impl Server {
             Address::Postgres(url) => url.clone(),
         };
         let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
-        let folder = temp.path().join("data");
         let (child, output, url) = Self::spawn(&folder, &grader, &database, "127.0.0.1:0", &options).expect("a server");
         Self { child, output, url, folder, options, database, _temp: temp }
     }

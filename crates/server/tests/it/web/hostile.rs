@@ -238,6 +238,12 @@ fn archives_can_not_leave_their_folder() {
             ("cut off", zip(&[("x", &[7; 5000], 0o644)])[..60].to_vec(), "damaged"),
             ("empty", tar(&[]), "neither a program"),
         ];
+        // Two entries of one name, as no library writes them.
+        let mut doubled = zip(&[("one", b"#!grade AC 1", 0o755), ("two", b"#!grade AC 2", 0o755)]);
+        let places: Vec<usize> = (0..doubled.len() - 3).filter(|&at| &doubled[at..at + 3] == b"two").collect();
+        places.iter().for_each(|&at| doubled[at..at + 3].copy_from_slice(b"one"));
+        assert_eq!(places.len(), 2);
+        let refused: Vec<_> = refused.into_iter().chain([("zip twice", doubled, "twice")]).collect();
         for (name, bytes, reason) in &refused {
             let answer = ada.send("POST", SUBMISSIONS, &[], bytes).expect(422);
             assert!(answer.text().contains(reason), "{name}: {}", answer.text());
@@ -258,6 +264,27 @@ fn archives_can_not_leave_their_folder() {
         let fine = zip(&[("mine/FOSSSim", b"#!grade AC 1\n", 0o755), ("mine/src/main.cpp", b"int main() {}", 0o644)]);
         ada.send("POST", SUBMISSIONS, &[], &fine).expect(201);
         assert_eq!(std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count(), 0);
+    });
+}
+
+/// Finder and Explorer add files of their own; the one folder that the student packed is still the submission.
+#[test]
+fn archives_of_file_managers_are_graded() {
+    run(async {
+        let (_fresh, _server, _, ada) = start(&["--workers", "1"]).await;
+        let program = b"#!grade AC 77\n".as_slice();
+        let mac = zip(&[
+            ("project/FOSSSim", program, 0o755),
+            ("__MACOSX/project/._FOSSSim", b"attributes", 0o644),
+            (".DS_Store", b"windows", 0o644),
+            ("project/.DS_Store", b"windows", 0o644),
+        ]);
+        let windows = zip(&[("project/FOSSSim", program, 0o755), ("desktop.ini", b"", 0o644)]);
+        for archive in [mac, windows] {
+            let sent = ada.send("POST", SUBMISSIONS, &[], &archive).expect(201).json();
+            let graded = ada.wait_for_grade("physics", sent["id"].as_i64().expect("a number"));
+            assert_eq!(graded["grade"]["points"], "77", "{graded}");
+        }
     });
 }
 

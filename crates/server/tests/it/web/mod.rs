@@ -8,6 +8,7 @@ mod passwords;
 mod platforms;
 mod replay;
 mod roles;
+mod storage;
 mod suspicion;
 mod upgrade;
 mod workers;

@@ -1,0 +1,95 @@
+//! Whether the server can still write, and whether it has room for more.
+//!
+//! A database that answers reads may be unable to write: a full disk, a folder that became read-only. So [`Storage::prove`]
+//! writes, to the database and to the store, and [`Storage::has_room`] refuses uploads before the disk is full, so that what
+//! was accepted can still be graded.
+use crate::{
+    db::{Database, DbError},
+    problem::Problem,
+    store::Store,
+    values,
+};
+use rustix::fs::statvfs;
+use std::{
+    path::PathBuf,
+    time::{Duration, Instant},
+};
+use tokio::sync::Mutex;
+
+/// A proof counts so long: monitors that ask more often than this cost one write.
+const PROOF_COUNTS: Duration = Duration::from_secs(2);
+
+/// Database, store and disk, as far as writing to them goes.
+#[derive(Debug)]
+pub struct Storage {
+    database: Database,
+    store: Store,
+    /// On the disk that uploads come to.
+    incoming: PathBuf,
+    /// Uploads are refused when fewer bytes are free on it.
+    low_water: u64,
+    /// When something was last proved, and what came of it: what can't be done.
+    last: Mutex<Option<(Instant, Option<&'static str>)>>,
+}
+
+impl Storage {
+    /// Storage that refuses uploads below so many free bytes.
+    #[must_use]
+    pub fn new(database: Database, store: Store, incoming: PathBuf, low_water: u64) -> Self {
+        Self { database, store, incoming, low_water, last: Mutex::default() }
+    }
+
+    /// Proves by writing that the database and the store can be written.
+    ///
+    /// # Errors
+    /// When one can't: 503, and which.
+    pub async fn prove(&self) -> Result<(), Problem> {
+        let mut last = self.last.lock().await;
+        let known = last.filter(|(at, _)| at.elapsed() < PROOF_COUNTS);
+        let fault = match known {
+            Some((_, fault)) => fault,
+            None => {
+                let fault = self.fault().await;
+                *last = Some((Instant::now(), fault));
+                fault
+            }
+        };
+        match fault {
+            None => Ok(()),
+            Some(fault) => Err(Problem::unavailable(fault)),
+        }
+    }
+
+    async fn fault(&self) -> Option<&'static str> {
+        if let Err(error) = self.write_to_database().await {
+            tracing::error!(%error, "the database can't be written");
+            return Some("the database can't be written");
+        }
+        if let Err(error) = self.store.prove().await {
+            tracing::error!(%error, "the store of files can't be written");
+            return Some("the store of files can't be written");
+        }
+        None
+    }
+
+    async fn write_to_database(&self) -> Result<(), DbError> {
+        let mut transaction = self.database.begin().await?;
+        // The row stays as it is; the commit has to write it all the same.
+        transaction.execute("UPDATE pulse SET beat_at = beat_at WHERE id = 1", values![]).await?;
+        transaction.commit().await
+    }
+
+    /// Whether there is room for an upload.
+    ///
+    /// # Errors
+    /// When less than the low-water mark is free: 507. Nothing was written.
+    pub fn has_room(&self) -> Result<(), Problem> {
+        // A disk that does not say how full it is can't be refused by.
+        let Ok(disk) = statvfs(&self.incoming) else { return Ok(()) };
+        if disk.f_bavail.saturating_mul(disk.f_frsize) < self.low_water {
+            tracing::error!(low_water = self.low_water, "uploads are refused: the disk is nearly full");
+            return Err(Problem::no_room());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,39 @@
+//! A file system that is soon full.
+use fosssim_testing::{Need, skip};
+use std::{path::Path, process::Command};
+
+/// A file system of a few MiB in memory, unmounted at the end.
+pub(crate) struct SmallDisk(tempfile::TempDir);
+
+impl SmallDisk {
+    /// One of so many bytes; nothing where this user may not mount.
+    pub(crate) fn mount(bytes: u64) -> Option<Self> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mount = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &format!("size={bytes},mode=700"), "tmpfs"])
+            .arg(folder.path())
+            .output();
+        match mount {
+            Ok(output) if output.status.success() => Some(Self(folder)),
+            Ok(output) => {
+                skip(Need::Mounts, String::from_utf8_lossy(&output.stderr));
+                None
+            }
+            Err(error) => {
+                skip(Need::Mounts, error);
+                None
+            }
+        }
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        // Lazily: a server that is just ending may still have a file open.
+        drop(Command::new("umount").arg("--lazy").arg(self.0.path()).status());
+    }
+}

@@ -1,0 +1,87 @@
+//! Disks that are full, and what is not to be kept.
+use crate::support::{
+    disk::SmallDisk,
+    engines::{Fresh, on_both_engines, run},
+    server::{JSON, Server, program},
+};
+use std::{io::Write, path::Path, time::Instant};
+
+on_both_engines!(uploads_need_room, nothing_is_stored_of_a_refused_upload);
+
+const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
+
+/// Files of the store.
+fn stored(server: &Server) -> usize {
+    fn files(folder: &Path) -> usize {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.map(|entry| if entry.path().is_dir() { files(&entry.path()) } else { 1 }).sum()
+    }
+    files(&server.folder.join("store")) + files(&server.folder.join("incoming"))
+}
+
+async fn uploads_need_room(fresh: Fresh) {
+    // More than any disk has.
+    let mut server = Server::start(&fresh, &["--workers", "0", "--low-water", "1000000000"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let answer = ada.send("POST", SUBMISSIONS, &[], &program("AC", 1)).expect(507).json();
+    assert_eq!(answer["type"], "urn:fosssim:no-room", "{answer}");
+    assert_eq!(stored(&server), 0);
+    server.visitor().get("/ready").expect(200);
+}
+
+async fn nothing_is_stored_of_a_refused_upload(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let wish = r#"{"title": "M1", "visible": true, "settings": {"attempts": 1}}"#;
+    admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let key = &[("Idempotency-Key", "one")];
+    ada.send("POST", SUBMISSIONS, key, &program("AC", 1)).expect(201);
+    let before = stored(&server);
+    for points in 2..5 {
+        ada.send("POST", SUBMISSIONS, &[], &program("AC", points)).expect(409);
+    }
+    assert_eq!(stored(&server), before);
+    // Sent twice, it is still one submission.
+    ada.send("POST", SUBMISSIONS, key, &program("AC", 1)).expect(200);
+}
+
+/// On a disk that was full and has room again the server writes again, without being started again. Its log lies there, too.
+#[test]
+fn a_full_disk_heals() {
+    run(async {
+        let Some(disk) = SmallDisk::mount(24 << 20) else { return };
+        let fresh = Fresh::sqlite_in(disk.path()).await;
+        let mut server = Server::start_in(&fresh, &["--workers", "0", "--low-water", "0"], disk.path().join("data"));
+        let admin = server.admin();
+        server.course(&admin, "physics");
+        let ada = server.member(&admin, "physics", "ada", "student");
+        ada.submit("physics", &program("AC", 1));
+        let filler = disk.path().join("filler");
+        let mut file = std::fs::File::create(&filler).expect("a file");
+        while file.write_all(&[1; 4096]).is_ok() {}
+        // Whatever is tried meanwhile is refused, and said to be.
+        for number in 0..4 {
+            let course = format!(r#"{{"slug": "full{number}", "title": "{}"}}"#, "x".repeat(150));
+            assert!(admin.post_json("/api/v1/courses", &course).status >= 500);
+            assert!(ada.send("POST", SUBMISSIONS, &[], &program("AC", 2)).status >= 500);
+        }
+        let visitor = server.visitor();
+        visitor.get("/health").expect(200);
+        let answer = visitor.get("/ready").expect(503).text();
+        assert!(answer.contains("can't be written"), "{answer}");
+        drop(file);
+        std::fs::remove_file(&filler).expect("room");
+        let start = Instant::now();
+        while visitor.get("/ready").status != 200 {
+            assert!(start.elapsed().as_secs() < 60, "{}", visitor.get("/ready").text());
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+        ada.submit("physics", &program("AC", 3));
+        let submissions = ada.get(SUBMISSIONS).expect(200).json();
+        assert_eq!(submissions.as_array().map(Vec::len), Some(2), "{submissions}");
+    });
+}
