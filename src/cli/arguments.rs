@@ -173,6 +173,10 @@ pub(super) struct Check {
     /// Show all wrong steps, not only the first one, with expected and actual values.
     #[arg(long, conflicts_with_all = ["step", "own"])]
     pub(super) all: bool,
+    /// Show the tables, too: residuals and what of each tolerance is used, all kinds of findings with their first examples.
+    #[arg(long, conflicts_with = "own")]
+    pub(super) tables: bool,
+
     /// Show these steps alone, from 1; 0 is the first record. Several are separated by commas.
     #[arg(long, short, value_name = "N", value_delimiter = ',', conflicts_with = "own", allow_negative_numbers = true, value_parser = step)]
     pub(super) step: Vec<u32>,

@@ -155,7 +155,17 @@ fn colours_only_decorate() {
     let outcome = replay::judge(&scene, &trace[..], &replay::Options::default(), &mut ());
     let steps = &WrongSteps::default();
     let (explanations, rules) = (&[][..], Rules::Both);
-    let check = Check { scene: "s", trace: "t", outcome: &outcome, explanations, rules, steps, audit: true };
+    let check = Check {
+        scene: "s",
+        trace: "t",
+        outcome: &outcome,
+        explanations,
+        rules,
+        steps,
+        audit: true,
+        tables: true,
+        looks_like: None,
+    };
     let coloured = check.text(Style::Colour);
     let mut plain = String::new();
     for piece in coloured.split('\x1b') {
@@ -558,6 +568,42 @@ fn json_says_what_the_text_says() {
             assert_eq!(text.contains(heading), !json[list].as_array().expect(list).is_empty(), "{text}");
         }
     }
+}
+
+#[test]
+fn the_cause_comes_first_and_tables_when_they_are_asked_for() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BOUNCE);
+    workspace.write("trace.bin", changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0)));
+    let short = workspace.run(["check", "scene.xml", "trace.bin"]).out();
+    let place = |words: &str| short.find(words).unwrap_or_else(|| panic!("no {words} in {short}"));
+    assert!(place("likely mistake") < place("First divergence") && place("First divergence") < place("Rule books"));
+    assert!(!short.contains("tolerance  "), "{short}");
+    let whole = workspace.run(["check", "scene.xml", "trace.bin", "--tables"]).out();
+    assert!(whole.contains("accumulated position") && whole.contains("first example"), "{whole}");
+}
+
+#[test]
+fn what_is_no_trace_is_told_in_one_line() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BOUNCE);
+    for (bytes, says) in [
+        (&b""[..], "it is empty"),
+        (b"{\"grades\": []}\n", "it looks like JSON"),
+        (b"<!DOCTYPE html>\n<html></html>", "it looks like HTML"),
+        (b"Overall success: \x1b[31;1mFailed.\n", "it looks like text"),
+        ("\u{fc}ber 600 Schritte\n".as_bytes(), "it looks like text"),
+        (b"\x7fELF\x02\x01\x01\0\0\0", "it looks like a program (ELF)"),
+        (b"\x1f\x8b\x08\0\0\0", "it looks like a gzip file"),
+    ] {
+        workspace.write("thing", bytes);
+        let run = workspace.run(["check", "scene.xml", "thing"]);
+        assert_eq!((run.code, run.out().lines().count()), (Some(1), 1), "{}", run.shown());
+        assert!(run.out().starts_with("BAD TRACE: thing is no trace: ") && run.out().contains(says), "{}", run.shown());
+    }
+    // What is cut short is a trace all the same.
+    workspace.write("thing", &trace_of(BOUNCE)[..20]);
+    assert!(!workspace.run(["check", "scene.xml", "thing"]).out().contains("is no trace"));
 }
 
 #[test]

@@ -107,10 +107,18 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         true => examined.explain(),
         false => Vec::new(),
     };
-    let (scene, trace) = (scene.name.as_str(), trace.name.as_str());
-    let audit = arguments.audit;
-    let check =
-        report::check::Check { scene, trace, outcome, explanations: &explanations, rules, steps: &wrong, audit };
+    let (scene, shown) = (scene.name.as_str(), trace.name.as_str());
+    let check = report::check::Check {
+        scene,
+        trace: shown,
+        outcome,
+        explanations: &explanations,
+        rules,
+        steps: &wrong,
+        audit: arguments.audit,
+        tables: arguments.tables,
+        looks_like: trace.looks_like,
+    };
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let evidence = || {
         let (fair, focus, budget) = (outcome.fair.is_some(), focus(outcome), evidence::BUDGET);

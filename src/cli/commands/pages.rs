@@ -179,7 +179,17 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
     };
     let steps = WrongSteps::new(StepChoice::None);
     let (name, trace) = (names.0, names.1.unwrap_or_default());
-    let check = Check { scene: name, trace, outcome, explanations, rules, steps: &steps, audit: false };
+    let check = Check {
+        scene: name,
+        trace,
+        outcome,
+        explanations,
+        rules,
+        steps: &steps,
+        audit: false,
+        tables: false,
+        looks_like: None,
+    };
     let has_trace = names.1.is_some();
     let case = Case { check, scene, evidence: Some(&evidence), what_if: what_if.as_ref(), hints, has_trace };
     Card::of(&case, depth)

@@ -19,6 +19,8 @@ pub(in crate::cli) struct TraceInput {
     pub(in crate::cli) length: Option<u64>,
     /// The file, when there is one.
     pub(in crate::cli) identity: Option<Identity>,
+    /// What it looks like, where it begins as no trace does.
+    pub(in crate::cli) looks_like: Option<&'static str>,
     failure: Failure,
 }
 
@@ -51,7 +53,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = shown(name);
     let failure = Failure::default();
     let watched = |reader| Watched { reader, failure: failure.clone() };
-    let (reader, length, identity): (Box<dyn Read + Send>, _, _) = if let Some(asset) = asset(name) {
+    let (mut reader, length, identity): (Box<dyn Read + Send>, _, _) = if let Some(asset) = asset(name) {
         let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
         (decompressed(Box::new(Cursor::new(recording)), &[], &failure)?, None, None)
     } else if name == Path::new("-") {
@@ -67,7 +69,12 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
             maybe_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure).with_context(context)?;
         (reader, plain.filter(|_| !packed), Some(Identity::of(&metadata)))
     };
-    Ok(TraceInput { name: shown, reader, length, identity, failure })
+    let mut start = Vec::new();
+    // What can't be read is told where it is read again.
+    let _ = reader.by_ref().take(LOOKED_AT).read_to_end(&mut start);
+    let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
+    let reader = Box::new(Cursor::new(start).chain(reader));
+    Ok(TraceInput { name: shown, reader, length, identity, looks_like, failure })
 }
 
 /// A scene in the place of the trace is a slip of whoever types, and no wrong trace: refused where name and content agree.
@@ -89,6 +96,45 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
         return is_read && (start.starts_with(b"<?xml") || start.starts_with(b"<scene"));
     }
     false
+}
+
+/// So many bytes show what a file is.
+const LOOKED_AT: u64 = 512;
+
+/// What a file looks like that begins with these bytes, where that is no trace: a trace begins with the bits of a position.
+fn looks_like(start: &[u8]) -> Option<&'static str> {
+    const MARKS: [(&[u8], &str); 8] = [
+        (b"\x7fELF", "looks like a program (ELF)"),
+        (b"PK\x03\x04", "looks like a zip archive"),
+        (b"\x1f\x8b", "looks like a gzip file; unpack it first"),
+        (b"\xfd7zXZ", "looks like an xz file; unpack it first"),
+        (b"%PDF", "looks like a PDF"),
+        (b"\x89PNG", "looks like a picture (PNG)"),
+        (b"\xff\xd8\xff", "looks like a picture (JPEG)"),
+        (b"GIF8", "looks like a picture (GIF)"),
+    ];
+    if start.is_empty() {
+        return Some("is empty");
+    }
+    if let Some((_, what)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
+        return Some(what);
+    }
+    let is_text = |byte: &u8| matches!(byte, b'\t' | b'\n' | b'\r' | 0x1b | 0x20..=0x7e);
+    let words = std::str::from_utf8(start).map_or_else(|error| &start[..error.valid_up_to()], str::as_bytes);
+    if words.len() + 3 < start.len() || !words.iter().all(|byte| is_text(byte) || *byte >= 0x80) {
+        return None;
+    }
+    let words = words.trim_ascii_start().to_ascii_lowercase();
+    let begins = |marks: &[&[u8]]| marks.iter().any(|mark| words.starts_with(mark));
+    Some(if begins(&[b"<!doctype html", b"<html"]) {
+        "looks like HTML"
+    } else if begins(&[b"<?xml", b"<scene"]) {
+        "looks like a scene or other XML; SCENE comes first, then TRACE"
+    } else if begins(&[b"{", b"["]) {
+        "looks like JSON"
+    } else {
+        "looks like text"
+    })
 }
 
 /// Remembers what the operating system said when reading failed.

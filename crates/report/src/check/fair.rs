@@ -14,11 +14,7 @@ use fosssim_judge::{
 pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let fair = outcome.fair.as_deref()?;
     let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
-    let (look, word) = match fair.verdict {
-        FairVerdict::Accepted => (Look::Good, "accepted"),
-        FairVerdict::Rejected => (Look::Bad, "rejected"),
-        FairVerdict::None => (Look::Notice, "no verdict"),
-    };
+    let (look, word) = verdict(fair);
     let mut line = |words: String| text += &format!("  {words}\n");
     line(format!("{}: {}", style.paint(look, word), summary(fair, outcome)));
     if let Some([low, high]) = fair.scale() {
@@ -75,6 +71,15 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         text += &format!("  {} {verdicts}:\n  {cause}\n", style.paint(Look::Notice, "The rule books differ:"));
     }
     Some(text)
+}
+
+/// The verdict's word, and its look.
+pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
+    match fair.verdict {
+        FairVerdict::Accepted => (Look::Good, "accepted"),
+        FairVerdict::Rejected => (Look::Bad, "rejected"),
+        FairVerdict::None => (Look::Notice, "no verdict"),
+    }
 }
 
 /// What the fair verdict rests on, in one line.

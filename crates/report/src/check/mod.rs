@@ -3,11 +3,14 @@
 //! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both say the
 //! same and depend on nothing but the outcome.
 
+mod advice;
+mod books;
 mod closer;
 mod divergence;
 mod fair;
 mod fair_view;
 mod first;
+pub(crate) mod follows;
 mod plots;
 mod steps;
 mod text;
@@ -48,6 +51,10 @@ pub struct Check<'a> {
     pub steps: &'a WrongSteps,
     /// Whether certificates were audited, so that the counts of root searches are worth showing.
     pub audit: bool,
+    /// Whether the text holds all tables, and not only what fits on a screen.
+    pub tables: bool,
+    /// What the file looks like that is to be a trace, where it begins like something else.
+    pub looks_like: Option<&'a str>,
 }
 
 /// The block about one finding, without colours.
@@ -66,6 +73,11 @@ impl Check<'_> {
     #[must_use]
     pub fn verdict(&self) -> &'static str {
         self.outcome.ruling(self.book()).words()
+    }
+
+    /// Whether the file is no trace at all, which is all that there is to say of it.
+    fn is_no_trace(&self) -> bool {
+        self.looks_like.is_some() && !self.accepted()
     }
 
     /// The official book.
@@ -142,7 +154,7 @@ impl Check<'_> {
                 .iter()
                 .map(|first| CountedView { count: account.counts.get(first.kind()), first: finding(first) })
                 .collect(),
-            advice: first::first(self).map_or(&[], text::advice),
+            advice: advice::lines(self),
             commands: closer::commands(self),
             notes: text::notes(self),
             explanations: self.explanations.iter().map(ExplanationView::from).collect(),
@@ -205,7 +217,7 @@ struct View<'a> {
     difference: Option<CauseView>,
     first_divergence: Option<FindingView>,
     findings: Vec<CountedView>,
-    advice: &'static [&'static str],
+    advice: Vec<&'static str>,
     commands: Vec<String>,
     notes: Vec<String>,
     explanations: Vec<ExplanationView>,

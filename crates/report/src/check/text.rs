@@ -8,63 +8,86 @@ use super::{
         table::{Align, Cell, Table},
         words,
     },
-    Check, closer, divergence, fair,
+    Check, advice, books, closer, divergence, fair,
     first::{first, is_other_scene},
-    steps,
+    follows, steps,
 };
-use fosssim_judge::{Book, BookFindings, Finding, FindingDetail, Outcome, Overall, Ruling, Stop, Unreadable, share};
+use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, share};
+
+/// So many explanations are shown without `--tables`.
+const EXPLANATIONS: usize = 2;
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let outcome = check.outcome;
     let mut parts = vec![head(check, style)];
+    if check.is_no_trace() {
+        return parts.concat();
+    }
+    parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
     if steps::only_these(check) {
-        parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
         parts.extend(steps::render(check, style));
         return parts.join("\n");
     }
-    parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
-    parts.push(residuals(outcome, style));
-    parts.extend(fair::render(outcome, style));
-    let account = outcome.findings_by(check.book());
-    // The fair section holds its own findings.
-    if !account.examples.is_empty() && check.book() == Book::Parity {
-        parts.push(findings(account, style));
+    // The cause first, then where it shows first.
+    let is_told = !is_other_scene(check);
+    parts.extend(explanations(check, style).filter(|_| is_told));
+    // It comes again where all are shown.
+    let first = first(check).filter(|_| !steps::all(check));
+    parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
+    let advice: String = advice::lines(check).iter().map(|line| format!("  - {line}\n")).collect();
+    if !advice.is_empty() {
+        parts.push(format!("{}\n{advice}", style.paint(Look::Strong, "What to look at")));
     }
-    if let Some(first) = first(check) {
-        // It comes again where all are shown.
-        if !steps::all(check) {
-            parts.push(divergence::render(first, outcome.steps, style));
+    parts.extend(steps::render(check, style).filter(|_| is_told));
+    let has_tables = check.tables;
+    if has_tables {
+        parts.push(residuals(outcome, style));
+        parts.extend(fair::render(outcome, style));
+        let account = outcome.findings_by(check.book());
+        // The fair section holds its own findings.
+        if !account.examples.is_empty() && check.book() == Book::Parity {
+            parts.push(findings(account, follows::count(outcome), style));
         }
-        let lines: String = advice(first).iter().map(|line| format!("  - {line}\n")).collect();
-        parts.push(format!("{}\n{lines}", style.paint(Look::Strong, "What to look at")));
-    }
-    if !is_other_scene(check) {
-        parts.extend(explanations(check, style));
-        parts.extend(steps::render(check, style));
+    } else {
+        parts.extend(books::render(check, style));
     }
     parts.extend(noted(check, style));
-    let commands: String = closer::commands(check).iter().map(|command| format!("  $ {command}\n")).collect();
+    let mut commands: Vec<String> = closer::commands(check).iter().map(|command| format!("  $ {command}\n")).collect();
+    if !has_tables && !commands.is_empty() {
+        commands.push("  --tables shows all kinds of findings, and how much of each tolerance is used\n".to_owned());
+    }
     if !commands.is_empty() {
-        parts.push(format!("{}\n{commands}", style.paint(Look::Strong, "Look closer")));
+        parts.push(format!("{}\n{}", style.paint(Look::Strong, "Look closer"), commands.concat()));
     }
     parts.join("\n")
 }
 
-/// What the program is likely to get wrong, before general advice is of use.
+/// What the program is likely to get wrong. The likeliest mistakes fill no more than a screen.
 fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
-    let lines: String = explain::lines(check.explanations).iter().map(|line| format!("  {line}\n")).collect();
+    let most = if check.tables { usize::MAX } else { EXPLANATIONS };
+    let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
+    let mut lines: String = explain::lines(shown).iter().map(|line| format!("  {line}\n")).collect();
+    if !more.is_empty() {
+        lines += &format!("  and {} of less weight (--tables)\n", counted(more.len() as u64, "more explanation"));
+    }
     (!lines.is_empty()).then(|| format!("{}\n{lines}", style.paint(Look::Strong, "What explains it")))
 }
 
 fn head(check: &Check<'_>, style: Style) -> String {
     let look = if check.accepted() { Look::Good } else { Look::Bad };
     let verdict = style.paint(look, &check.verdict().to_uppercase());
+    if check.is_no_trace() {
+        return format!("{verdict}: {} {}\n", check.trace, headline(check));
+    }
     format!("{verdict}: {}\n  scene {}\n  trace {}\n", headline(check), check.scene, check.trace)
 }
 
 /// What stands behind the verdict, in one line.
 pub(crate) fn headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
+    if let (Some(kind), true) = (check.looks_like, check.is_no_trace()) {
+        return format!("is no trace: it {kind}");
+    }
     if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
         return words::explanation::what(question);
     }
@@ -206,7 +229,7 @@ fn used(value: f64, bound: f64) -> String {
     }
 }
 
-fn findings(account: &BookFindings, style: Style) -> String {
+fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
     for example in &account.examples {
@@ -215,82 +238,11 @@ fn findings(account: &BookFindings, style: Style) -> String {
     }
     let plural = if account.wrong_steps == 1 { "step" } else { "steps" };
     let heading = format!("Findings: {} in {} {plural}", count(account.counts.total()), count(account.wrong_steps));
-    format!("{}\n{}", style.paint(Look::Strong, &heading), table.render(style))
-}
-
-/// What to look at, by the kind of the first finding: what comes later often follows from it.
-pub(super) fn advice(finding: &Finding) -> &'static [&'static str] {
-    match finding.detail {
-        _ if finding.step == 0 => &["the first record: the scene's own positions and velocities, before any step"],
-        FindingDetail::MissedCollision { .. } => &[
-            "the detection of this pair: the trace's own state at the start of the step leads to this impact",
-            "do its polynomials agree? then the choice of the time of impact, or the test of the normal, is wrong",
-        ],
-        FindingDetail::SuperfluousCollision { .. } => &[
-            "the detection of this pair: from the trace's own state at the start of the step it does not collide",
-            "are the objects approaching, and is the time of impact inside the step?",
-        ],
-        FindingDetail::WrongNormal { .. } => &[
-            "the contact normal: from the first object to the second, at the time of impact, not normalised",
-            "is it taken from the positions at that time, and not from those at the end of the step?",
-        ],
-        FindingDetail::PolynomialCount { actual: 0, .. } => &[
-            "the detection: in this step it asks the course's root finder about no pair; is it written yet?",
-            "it is to ask about every pair in every pass, also about pairs that are far apart",
-        ],
-        FindingDetail::PolynomialCount { expected, actual, .. } | FindingDetail::PassCount { expected, actual, .. }
-            if actual > expected =>
-        {
-            &[
-                "the loop over detection passes: it runs too often, or looks at pairs that the reference leaves out",
-                "an earlier response of this step that differs also makes the loop go on",
-            ]
-        }
-        FindingDetail::PolynomialCount { .. } | FindingDetail::PassCount { .. } => &[
-            "the loop over detection passes: it ends too early, or leaves out pairs",
-            "an earlier response of this step that differs also makes the loop end",
-        ],
-        FindingDetail::PolynomialDegree { .. } => &[
-            "the leading coefficients of this polynomial: those below 1e-12 in size are dropped, others are kept",
-            "a factor on all coefficients moves them across that bound",
-        ],
-        FindingDetail::VanishingPolynomial { .. } => {
-            &["the inputs of this polynomial: for the reference the two objects do not move relative to each other"]
-        }
-        FindingDetail::Coefficient { .. } => &[
-            "the formula of this coefficient; any positive factor of the whole polynomial is right",
-            "in a later detection pass of the step, a wrong response before it changes the coefficients, too",
-        ],
-        FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => {
-            &["the integrator, the forces, or the response: the step starts from the trace's own state, so errors of \
-             earlier steps are not to blame"]
-        }
-        FindingDetail::ContactTime { .. } => &[
-            "the time of impact that is stored with the contact: the fraction of the step at which the objects touch",
-            "is it the time that the root finder returned, and not the step's number or the simulation's time?",
-        ],
-        FindingDetail::RepeatedCollision { .. } => {
-            &["each pair is looked at once in a step: is it added to the list twice?"]
-        }
-        FindingDetail::PassPositions { .. } => &[
-            "the response (or the rigid failsafe) before this detection pass: what it does to the end positions",
-            "which positions the pass is given: those after the responses of the round before",
-        ],
-        FindingDetail::RecordsDiffer { .. } => {
-            &["what is written after the step: the course's code writes both records itself"]
-        }
-        FindingDetail::ImpossibleLog => &["the trace was not written by the course's library as it was handed out"],
-        FindingDetail::BeyondReach { .. } => {
-            &["the step that leads to this state: something divides by zero, or grows from step to step"]
-        }
-        FindingDetail::TrimmedDecision { .. } | FindingDetail::TrimmedTime { .. } => &[
-            "the factor of your polynomials: the course's library drops leading coefficients below 1e-12",
-            "polynomials in the units of the assignment's formulas are not affected",
-        ],
-        FindingDetail::MixedForms { .. } => {
-            &["the approach polynomial: one of its two accepted forms is to be used throughout"]
-        }
+    let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), table.render(style));
+    if follow > 0 {
+        text += &format!("  among them {}\n", follows::words(follow));
     }
+    text
 }
 
 fn noted(check: &Check<'_>, style: Style) -> Option<String> {

@@ -38,6 +38,8 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
         rules: Rules::Both,
         steps: &crate::check::WrongSteps::new(crate::check::StepChoice::None),
         audit: false,
+        tables: false,
+        looks_like: None,
     };
     let case = Case { check, scene, evidence: Some(&evidence), what_if: None, hints, has_trace: true };
     Page { title: trace_name, cases: vec![case] }.html()
@@ -144,6 +146,8 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
         rules: Rules::Fair,
         steps: &steps,
         audit: false,
+        tables: false,
+        looks_like: None,
     };
     let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
     let card = Card::of(&case, 3).and_then(|card| Card::from_kept(&card.kept()));

@@ -8,7 +8,7 @@ mod polynomials;
 mod stages;
 
 use fosssim_mistakes::{
-    diagnose::{About, Detail, Explanation, formula_in},
+    diagnose::{About, Detail, Explanation, OfPolynomials, formula_in},
     student::{Area, Mistake, Row, find},
 };
 
@@ -46,6 +46,19 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
         lines.extend(line);
     }
     lines
+}
+
+/// Where in the program to look for what is wrong with a stage of a step.
+pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
+    match &explanation.about {
+        About::Stage(fault) => fault.areas().first().map(|area| look(*area)),
+        _ => None,
+    }
+}
+
+/// Whether an explanation says more than that nothing is known.
+pub(crate) fn is_known(explanation: &Explanation) -> bool {
+    !matches!(explanation.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
 }
 
 /// The sentence about a known mistake; its key, if it is no known one.

@@ -1,0 +1,102 @@
+//! What to look at: the part of the program that the likely mistake is in; where none is named, what the first finding's kind
+//! suggests.
+use super::{Check, first};
+use crate::words::explanation;
+use fosssim_judge::{Finding, FindingDetail};
+
+/// What to look at; nothing where the explanations say it themselves: a known mistake says where to look, a polynomial has its name.
+pub(super) fn lines(check: &Check<'_>) -> Vec<&'static str> {
+    let Some(first) = first::first(check) else { return Vec::new() };
+    match check.explanations.iter().find(|one| explanation::is_known(one)) {
+        Some(known) if known.is_of_stage() => explanation::where_to_look(known).into_iter().collect(),
+        Some(_) => Vec::new(),
+        None => of_finding(charged(check, first)).to_vec(),
+    }
+}
+
+/// What the fair rules charge first, where a polynomial of a later pass differs first: they know a wrong formula from wrong positions.
+fn charged<'a>(check: &Check<'a>, first: &'a Finding) -> &'a Finding {
+    let is_later = match &first.detail {
+        FindingDetail::PolynomialDegree { place, .. }
+        | FindingDetail::VanishingPolynomial { place, .. }
+        | FindingDetail::Coefficient { place, .. } => place.pass.index > 0,
+        _ => false,
+    };
+    let fair = check.outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
+    fair.filter(|_| is_later).unwrap_or(first)
+}
+
+/// By the kind of the first finding: what comes later often follows from it.
+fn of_finding(finding: &Finding) -> &'static [&'static str] {
+    match finding.detail {
+        _ if finding.step == 0 => &["the first record: the scene's own positions and velocities, before any step"],
+        FindingDetail::MissedCollision { .. } => &[
+            "the detection of this pair: the trace's own state at the start of the step leads to this impact",
+            "do its polynomials agree? then the choice of the time of impact, or the test of the normal, is wrong",
+        ],
+        FindingDetail::SuperfluousCollision { .. } => &[
+            "the detection of this pair: from the trace's own state at the start of the step it does not collide",
+            "are the objects approaching, and is the time of impact inside the step?",
+        ],
+        FindingDetail::WrongNormal { .. } => &[
+            "the contact normal: from the first object to the second, at the time of impact, not normalised",
+            "is it taken from the positions at that time, and not from those at the end of the step?",
+        ],
+        FindingDetail::PolynomialCount { actual: 0, .. } => &[
+            "the detection: in this step it asks the course's root finder about no pair; is it written yet?",
+            "it is to ask about every pair in every pass, also about pairs that are far apart",
+        ],
+        FindingDetail::PolynomialCount { expected, actual, .. } | FindingDetail::PassCount { expected, actual, .. }
+            if actual > expected =>
+        {
+            &[
+                "the loop over detection passes: it runs too often, or looks at pairs that the reference leaves out",
+                "an earlier response of this step that differs also makes the loop go on",
+            ]
+        }
+        FindingDetail::PolynomialCount { .. } | FindingDetail::PassCount { .. } => &[
+            "the loop over detection passes: it ends too early, or leaves out pairs",
+            "an earlier response of this step that differs also makes the loop end",
+        ],
+        FindingDetail::PolynomialDegree { .. } => &[
+            "the leading coefficients of this polynomial: those below 1e-12 in size are dropped, others are kept",
+            "a factor on all coefficients moves them across that bound",
+        ],
+        FindingDetail::VanishingPolynomial { .. } => {
+            &["the inputs of this polynomial: for the reference the two objects do not move relative to each other"]
+        }
+        FindingDetail::Coefficient { .. } => &[
+            "the formula of this coefficient; any positive factor of the whole polynomial is right",
+            "in a later detection pass of the step, a wrong response before it changes the coefficients, too",
+        ],
+        FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => {
+            &["the integrator, the forces, or the response: the step starts from the trace's own state, so errors of \
+             earlier steps are not to blame"]
+        }
+        FindingDetail::ContactTime { .. } => &[
+            "the time of impact that is stored with the contact: the fraction of the step at which the objects touch",
+            "is it the time that the root finder returned, and not the step's number or the simulation's time?",
+        ],
+        FindingDetail::RepeatedCollision { .. } => {
+            &["each pair is looked at once in a step: is it added to the list twice?"]
+        }
+        FindingDetail::PassPositions { .. } => &[
+            "the response (or the rigid failsafe) before this detection pass: what it does to the end positions",
+            "which positions the pass is given: those after the responses of the round before",
+        ],
+        FindingDetail::RecordsDiffer { .. } => {
+            &["what is written after the step: the course's code writes both records itself"]
+        }
+        FindingDetail::ImpossibleLog => &["the trace was not written by the course's library as it was handed out"],
+        FindingDetail::BeyondReach { .. } => {
+            &["the step that leads to this state: something divides by zero, or grows from step to step"]
+        }
+        FindingDetail::TrimmedDecision { .. } | FindingDetail::TrimmedTime { .. } => &[
+            "the factor of your polynomials: the course's library drops leading coefficients below 1e-12",
+            "polynomials in the units of the assignment's formulas are not affected",
+        ],
+        FindingDetail::MixedForms { .. } => &[
+            "the approach polynomial: here it has one of its two accepted forms, elsewhere in this trace the other one",
+        ],
+    }
+}

@@ -1,0 +1,29 @@
+//! Consequences: polynomials that differ only because the positions differ that they are made of.
+use crate::number::count as number;
+use fosssim_judge::{FindingKind, Outcome, fair::FairVerdict};
+
+/// What is wrong with a formula, and not with the positions that go into it.
+const OF_FORMULAS: [FindingKind; 6] = [
+    FindingKind::PolynomialDegree,
+    FindingKind::VanishingPolynomial,
+    FindingKind::Coefficient,
+    FindingKind::ImpossibleLog,
+    FindingKind::TrimmedDecision,
+    FindingKind::MixedForms,
+];
+
+/// How many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all of them, where the
+/// fair rules, which follow the trace's own positions, charge no formula, but the positions of later passes.
+pub(crate) fn count(outcome: &Outcome) -> u64 {
+    let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
+    let charged = |kind: FindingKind| fair.findings.counts.get(kind);
+    if charged(FindingKind::PassPositions) == 0 || OF_FORMULAS.into_iter().any(|kind| charged(kind) > 0) {
+        return 0;
+    }
+    OF_FORMULAS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
+}
+
+/// Their number with their name.
+pub(super) fn words(follow: u64) -> String {
+    format!("polynomials that follow from wrong positions: {}", number(follow))
+}
