@@ -115,6 +115,16 @@ fn case(
     (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten())
 }
 
+/// A program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays, also that of a link:
+/// programs may go by the name that they are called.
+fn placed(program: &Path) -> PathBuf {
+    let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (folder.canonicalize(), program.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => program.to_owned(),
+    }
+}
+
 /// Runs a program on scenes that make every term of every formula visible, and on those that are named. Nothing when it
 /// was interrupted.
 fn program_on_probes(
@@ -122,7 +132,7 @@ fn program_on_probes(
     scenes: &[PathBuf],
     arguments: &Explain,
 ) -> Result<Option<(Diagnosis, Vec<Option<Card>>)>> {
-    let program = std::path::absolute(program).unwrap_or_else(|_| program.to_owned());
+    let program = placed(program);
     let tasks = tasks(scenes)?;
     let cancellation = cancelled_by_signals();
     let backend = backend(arguments.unsafe_no_sandbox)?;
