@@ -36,10 +36,19 @@ pub struct Run<'a> {
     pub limits: &'a RunLimits,
 }
 
+/// What is looked for in a wrong trace.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// Only where numbers end, which is quick.
+    NotFinite,
+    /// Likely mistakes, too.
+    Mistakes,
+}
+
 /// The result of one scene, cut to what its hints let through. `explain` says what is likely wrong; it is not asked where
 /// nothing of it may be told, where the fair rules find no fault, or where what the program did besides is its worse fault.
 #[must_use]
-pub fn conclude(run: &Run<'_>, explain: impl FnOnce() -> Vec<Explanation>) -> SceneResult {
+pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
     let of_program = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(judged, rules, run.trace_bytes);
@@ -54,7 +63,8 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce() -> Vec<Explanation>) -> Sc
     let reason = if untold { Reason::Wrong(Wrong::Untold) } else { reason };
     let differs = fair::cause(judged);
     let has_fault = rules == Rules::Fair || differs.is_none();
-    let is_explained = hints.explains() && has_fault && matches!(verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+    let look = if hints.explains() { Look::Mistakes } else { Look::NotFinite };
+    let is_explained = hints > Hints::None && has_fault && matches!(verdict, Verdict::WrongAnswer | Verdict::BadTrace);
     SceneResult {
         scene: run.scene.to_owned(),
         verdict,
@@ -62,7 +72,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce() -> Vec<Explanation>) -> Sc
         ended: Some(program.ended.clone()),
         differs,
         told: hints.tell(judged, rules),
-        explanations: if is_explained { hints.cut(explain()) } else { Vec::new() },
+        explanations: if is_explained { hints.cut(explain(look)) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
         cpu: program.cpu,
@@ -166,16 +176,20 @@ mod tests {
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         let program = sandbox::RunOutcome::without_run(trace.len() as u64);
         let limits = &RunLimits::default();
-        for (hints, is_asked) in [(Hints::None, false), (Hints::Where, false), (Hints::What, true), (Hints::Full, true)]
-        {
+        for (hints, expected) in [
+            (Hints::None, None),
+            (Hints::Where, Some(Look::NotFinite)),
+            (Hints::What, Some(Look::Mistakes)),
+            (Hints::Full, Some(Look::Mistakes)),
+        ] {
             let (program, judged, trace_bytes, rules) = (&program, &judged, trace.len() as u64, Rules::Fair);
             let run = Run { scene: "a/b", program, judged, trace_bytes, rules, hints, limits };
-            let mut asked = false;
-            let result = conclude(&run, || {
-                asked = true;
+            let mut asked = None;
+            let result = conclude(&run, |look| {
+                asked = Some(look);
                 Vec::new()
             });
-            assert_eq!((result.verdict, asked), (Verdict::WrongAnswer, is_asked), "{hints:?}");
+            assert_eq!((result.verdict, asked), (Verdict::WrongAnswer, expected), "{hints:?}");
         }
     }
 }

@@ -2,7 +2,7 @@
 use super::{
     cancellation::Cancellation,
     cards::{Cards, Judged},
-    conclude::{Run, conclude},
+    conclude::{Look, Run, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
@@ -142,8 +142,12 @@ impl Runner<'_> {
             limits: self.limits,
         };
         let mut explaining = guarded(|| fault::injected(Activity::Explaining, &program.program)).err();
-        let explain = || {
-            guarded(|| diagnose::explain_kept(&kept)).unwrap_or_else(|fault| {
+        let explain = |look: Look| {
+            let found = || match look {
+                Look::NotFinite => diagnose::not_finite(&kept),
+                Look::Mistakes => diagnose::explain_kept(&kept),
+            };
+            guarded(found).unwrap_or_else(|fault| {
                 explaining = Some(fault);
                 Vec::new()
             })

@@ -32,19 +32,22 @@ impl Hints {
         }
     }
 
-    /// Whether anything of explanations is told at this level.
+    /// Whether likely mistakes are told at this level.
     #[must_use]
     pub const fn explains(self) -> bool {
         matches!(self, Self::What | Self::Full)
     }
 
-    /// Cuts explanations down to this level: below [`Hints::What`] there are none. At that level each says what is wrong, in a
+    /// Cuts explanations down to this level: below [`Hints::What`] there is only where numbers end, if they do
+    /// ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At that level each says what is wrong, in a
     /// sentence without formulas, and which known mistakes can't be told apart from it; exact forms and examples need
     /// [`Hints::Full`].
     #[must_use]
     pub fn cut(self, explanations: Vec<Explanation>) -> Vec<Explanation> {
         match self {
-            Self::None | Self::Where => Vec::new(),
+            Self::None => Vec::new(),
+            // Where it is, and nothing that is guessed.
+            Self::Where => explanations.into_iter().filter(Explanation::is_not_finite).collect(),
             Self::What => explanations
                 .into_iter()
                 .map(|mut explanation| {
@@ -125,7 +128,7 @@ mod tests {
     use super::*;
     use fosssim_judge::replay;
     use fosssim_mistakes::{
-        diagnose::{self, About, Example, ExamplePlace},
+        diagnose::{self, About, Example, ExamplePlace, NanStage, NotFinite},
         student::{self, CATALOGUE, RowKind, Student},
     };
     use fosssim_model::scene::original;
@@ -161,6 +164,10 @@ mod tests {
         assert_eq!(told(Hints::Full), [explanation()]);
         for hints in [Hints::None, Hints::Where, Hints::What, Hints::Full] {
             assert_eq!(hints.explains(), !told(hints).is_empty(), "{hints:?}");
+            // Where numbers end is a place and no guess.
+            let end = NotFinite { step: Some(3), stage: NanStage::Zones, is_nan: true };
+            let end = Explanation { about: About::NotFinite(end), ..explanation() };
+            assert_eq!(hints.cut(vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");
         }
     }
 

@@ -23,6 +23,9 @@ pub fn lines(explanations: &[Explanation]) -> Vec<String> {
 /// line.
 #[must_use]
 pub fn sentence(explanations: &[Explanation]) -> Option<String> {
+    if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
+        return Some(what(first));
+    }
     let together: Vec<String> =
         explanations.iter().filter(|one| one.is_complete() && one.about == About::Mistake).map(what).collect();
     if together.len() > 1 {

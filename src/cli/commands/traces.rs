@@ -14,7 +14,7 @@ use crate::{
     report::grade::{Format, Text, rehearse},
     sandbox::RunOutcome,
     suite::{
-        Grade, Reason, Run, SceneResult, SceneTask, Verdict,
+        Grade, Look, Reason, Run, SceneResult, SceneTask, Verdict,
         cards::{Cards, Judged},
         conclude,
         config::Visibility,
@@ -150,8 +150,12 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
         hints: plan.hints,
         limits: &plan.limits,
     };
-    let explained =
-        conclude(&run, || if is_short { diagnose::explain(&task.scene, &trace) } else { examined.explain() });
+    let explained = conclude(&run, |look| match (look, is_short) {
+        (Look::NotFinite, true) => diagnose::not_finite_in(&task.scene, &trace),
+        (Look::NotFinite, false) => diagnose::not_finite(&examined.trace),
+        (Look::Mistakes, true) => diagnose::explain(&task.scene, &trace),
+        (Look::Mistakes, false) => examined.explain(),
+    });
     let mut result = SceneResult { ended: None, memory: None, ..explained };
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())

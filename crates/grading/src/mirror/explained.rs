@@ -5,9 +5,9 @@ use fosssim_mistakes::{
     assignments::t2m2::{Input, Reading, Subject, find_exchange, find_special, ingredient_name, letter_name},
     diagnose::{
         About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
-        ListGuess, LoopEnd, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
-        Stand, StepRecord, Weight, WrongDecisions, WrongMotion, WrongNumber, WrongResponses, WrongVectors,
-        WrongZoneRounds, WrongZones,
+        ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
+        StageDetail, StageFault, Stand, StepRecord, Weight, WrongDecisions, WrongMotion, WrongNumber, WrongResponses,
+        WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::{Area, CATALOGUE, find},
 };
@@ -107,6 +107,28 @@ enum AboutForm {
         found: OfPolynomials,
     },
     Stage(#[serde(with = "StageFaultForm")] StageFault),
+    NotFinite(#[serde(with = "NotFiniteForm")] NotFinite),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "NotFinite")]
+struct NotFiniteForm {
+    step: Option<u32>,
+    #[serde(with = "NanStageForm")]
+    stage: NanStage,
+    is_nan: bool,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "NanStage")]
+enum NanStageForm {
+    FirstRecord,
+    Motion,
+    Detection(#[serde(with = "kind_or_none")] Option<PairKind>),
+    ContactVectors,
+    Responses,
+    ImpulseRounds,
+    Zones,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -148,7 +170,6 @@ enum GuessForm {
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "ListGuess")]
 enum ListGuessForm {
-    NotFinite,
     AllZero,
     Constant,
     AllEqual,

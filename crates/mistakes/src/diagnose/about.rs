@@ -1,5 +1,8 @@
 //! What explanations are about.
-use super::{fault::StageFault, guess::Guess};
+use super::{
+    fault::{NotFinite, StageFault},
+    guess::Guess,
+};
 use crate::assignments::t2m2::Subject;
 use fosssim_model::sim::PairKind;
 
@@ -24,6 +27,8 @@ pub enum About {
     },
     /// A stage of a step: what it leaves is wrong, and everything before is right.
     Stage(StageFault),
+    /// What is no finite number, which is an observation and comes before all that may be guessed.
+    NotFinite(NotFinite),
 }
 
 impl About {

@@ -3,14 +3,18 @@ use super::{
     Detail, Explanation,
     about::About,
     fault::StepStage,
-    known::{Known, is_empty_stage, known_or_open, shows},
-    polynomial, samples,
+    known::{Known, Sample, is_empty_stage, known_or_open, shows},
+    not_finite, polynomial, samples,
     source::Source,
     stages,
 };
 use crate::student::{Area, CATALOGUE, Row, find};
-use fosssim_model::scene::Scene;
+use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
 use std::collections::BTreeMap;
+
+/// Scenes with more pairs than this are not explained where steps log polynomials: a step of the reference, which explanations keep
+/// whole, takes some hundred bytes a pair. Where numbers end is told all the same.
+const MOST_PAIRS: usize = 400_000;
 
 /// What is likely wrong with the program that left this trace, the likeliest first; empty when nothing is, or when
 /// nothing that is known explains it.
@@ -27,6 +31,10 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
 
 /// As [`explain`], whatever the trace's records are read from, more than once.
 pub(super) fn explain_source<'a>(scene: &Scene, source: &dyn Fn() -> Source<'a>) -> Vec<Explanation> {
+    let not_finite = not_finite::of_source(scene, source());
+    if Layout::of(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
+        return not_finite.into_iter().collect();
+    }
     let Known { explanations: mut known, open, denies } = known_or_open(scene, source());
     if known.iter().any(Explanation::is_other_scene) {
         return known;
@@ -65,18 +73,21 @@ pub(super) fn explain_source<'a>(scene: &Scene, source: &dyn Fn() -> Source<'a>)
             |other: &Explanation| other.is_complete() && find(&one.key).is_some_and(|row| other.is_in_other_words(row));
         one.is_complete() || !polynomials.iter().any(is_told)
     });
-    let stage = open.and_then(|scan| stages::explain(scene, scan.wrong.iter().chain(&scan.right)));
+    let stage = open.and_then(|scan| {
+        let is_of_numbers = |sample: &&Sample| sample.records.is_finite();
+        stages::explain(scene, scan.wrong.iter().chain(&scan.right).filter(is_of_numbers))
+    });
     if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
         // Where pairs come in another order, polynomials of one are not those of another.
         polynomials.clear();
     }
     known.iter_mut().for_each(explain_letters);
     polynomials.iter_mut().for_each(explain_letters);
-    let mut all = known;
+    let mut all: Vec<Explanation> = not_finite.into_iter().chain(known).collect();
     all.append(&mut polynomials);
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.
-    all.sort_by_key(|explanation| (explanation.is_unexplained(), !explanation.is_complete()));
+    all.sort_by_key(|one| (!one.is_not_finite(), one.is_unexplained(), !one.is_complete()));
     all.iter_mut().for_each(|one| one.denies.clone_from(&denies));
     all
 }

@@ -38,6 +38,9 @@ impl Explanation {
     /// The key of pairs that are looked at in another order.
     pub const ORDER: &'static str = fault::ORDER;
 
+    /// The key of what is no finite number.
+    pub const NOT_FINITE: &'static str = "not-a-number";
+
     /// The key of what nothing is known to explain.
     pub(super) const UNEXPLAINED: &'static str = "unexplained";
 
@@ -62,6 +65,12 @@ impl Explanation {
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
         matches!(self.about, About::Scene { .. })
+    }
+
+    /// Whether it says from where on there is what is no finite number: at every level of hints but the lowest.
+    #[must_use]
+    pub const fn is_not_finite(&self) -> bool {
+        matches!(self.about, About::NotFinite(_))
     }
 
     /// Whether it names stages that are still empty.

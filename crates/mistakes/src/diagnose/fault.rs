@@ -270,3 +270,33 @@ impl StageFault {
         }
     }
 }
+
+/// What is no finite number in a trace, from where on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NotFinite {
+    /// The step, from 1; 0 is the first record. None where several traces are told about.
+    pub step: Option<u32>,
+    /// What makes it of numbers.
+    pub stage: NanStage,
+    /// Whether the first one is NaN, and not infinite.
+    pub is_nan: bool,
+}
+
+/// The first stage of a step whose input is numbers and whose output is not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NanStage {
+    /// None: it is in the first record.
+    FirstRecord,
+    /// The step itself, before any contact.
+    Motion,
+    /// The detection of this kind of pair, as far as that is known: its coefficients.
+    Detection(Option<PairKind>),
+    /// Contact vectors and times.
+    ContactVectors,
+    /// What a contact changes.
+    Responses,
+    /// The impulse rounds; their contacts are not in the trace.
+    ImpulseRounds,
+    /// Impact zones and the rigid failsafe.
+    Zones,
+}

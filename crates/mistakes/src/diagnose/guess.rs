@@ -36,8 +36,6 @@ impl Guess {
 /// What is likely wrong with a whole list of coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListGuess {
-    /// Some are no finite numbers.
-    NotFinite,
     /// All are zero, or none is there.
     AllZero,
     /// The list holds the same single number everywhere.
@@ -75,7 +73,6 @@ pub enum ListGuess {
 impl ListGuess {
     const fn key(self) -> &'static str {
         match self {
-            Self::NotFinite => "not-finite",
             Self::AllZero => "all-zero",
             Self::Constant => "constant",
             Self::AllEqual => "all-equal",

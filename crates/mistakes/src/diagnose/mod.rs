@@ -14,6 +14,7 @@ mod explanation;
 mod fault;
 mod guess;
 mod known;
+mod not_finite;
 pub mod outside;
 pub mod polynomial;
 mod samples;
@@ -29,11 +30,12 @@ pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use explain::{common, explain, refuted, several};
 pub use explanation::Explanation;
 pub use fault::{
-    Changed, LoopEnd, Quantity, StageFault, StepStage, WrongDecisions, WrongMotion, WrongNumber, WrongResponses,
-    WrongVectors, WrongZoneRounds, WrongZones,
+    Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongMotion, WrongNumber,
+    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use known::{known, shows};
+pub use not_finite::{not_finite, not_finite_in};
 pub use settled::{Settled, settled};
 
 #[cfg(test)]

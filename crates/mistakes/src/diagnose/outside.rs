@@ -66,7 +66,8 @@ pub fn rated(wanted: impl Fn(usize) -> bool, words: impl Fn(&Explanation) -> Str
 
 /// The best of what is told, unless something misleads.
 fn overall(mutant: &Mutant, told: &[Explanation], words: &(dyn Fn(&Explanation) -> String + Sync)) -> Rating {
-    let ratings = || told.iter().map(|one| rating(mutant, one, &words(one)));
+    // That NaN is there is true of any mistake that makes it.
+    let ratings = || told.iter().filter(|one| !one.is_not_finite()).map(|one| rating(mutant, one, &words(one)));
     match ratings().max() {
         Some(Rating::Misleading) => Rating::Misleading,
         _ => ratings().min().unwrap_or(Rating::Unknown),

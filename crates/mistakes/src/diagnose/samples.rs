@@ -176,6 +176,10 @@ impl Observer for Gatherer<'_> {
             return;
         }
         let polynomials: Vec<Vec<f64>> = lists.map(|index| self.log.get(index).to_vec()).collect();
+        if polynomials.iter().flatten().any(|value| !value.is_finite()) {
+            // What is no number says nothing about a formula.
+            return;
+        }
         let expected = formulas::BoundedPairMotion::of(self.scene, pair, q_start, q_end).polynomials();
         let is_right = size == pair.kind.polynomials()
             && polynomials.iter().enumerate().all(|(number, logged)| {

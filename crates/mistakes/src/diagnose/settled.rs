@@ -52,6 +52,7 @@ mod tests {
             samples: counts.1,
             example: None,
             same_as: same_as.iter().map(|&key| key.to_owned()).collect(),
+            denies: Vec::new(),
         }
     }
 

@@ -21,7 +21,7 @@ pub fn formula_in(sentence: &str) -> Option<String> {
             '-' => !(before.is_alphabetic() && after.is_alphabetic()),
             '.' => before.is_alphanumeric() && after.is_alphanumeric(),
             '(' => before.is_alphanumeric(),
-            _ => letter.is_ascii_digit(),
+            _ => letter.is_ascii_digit() && !is_of_step(&letters[..index]),
         };
         if is_formula {
             return Some(format!("{before}{letter}{after}"));
@@ -29,8 +29,19 @@ pub fn formula_in(sentence: &str) -> Option<String> {
     }
     let is_word = |letter: char| letter.is_alphanumeric() || letter == '\'';
     text.split(|letter| !is_word(letter))
-        .find(|word| word.chars().count() == 1 && !matches!(*word, "a" | "A" | "'"))
+        .find(|word| word.chars().count() == 1 && !word.starts_with(is_plain_alone))
         .map(str::to_owned)
+}
+
+/// Whether a letter means nothing by itself; digits are looked at before.
+const fn is_plain_alone(letter: char) -> bool {
+    matches!(letter, 'a' | 'A' | '\'' | '0'..='9')
+}
+
+/// Whether a digit behind this is one of a step's number, which is a place.
+fn is_of_step(before: &[char]) -> bool {
+    let number = before.iter().rev().take_while(|letter| letter.is_ascii_digit()).count();
+    before[..before.len() - number].ends_with(&[' ', 's', 't', 'e', 'p', ' '])
 }
 
 #[cfg(test)]
@@ -52,6 +63,8 @@ mod tests {
             "0 <= alpha.",
             "The root of x.",
             "1/2 is taken.",
+            "From step 60 on 2 is missing.",
+            "A step of 2 is taken.",
             "x(t) is taken.",
         ] {
             assert!(formula_in(text).is_some(), "{text}");
@@ -64,6 +77,7 @@ mod tests {
             "The alpha > 0 polynomial is wrong, as a half-plane's is.",
             "A particle-edge pair (or another one) is left out.",
             "Particle-edge: A product is missing.",
+            "From step 60 on it is wrong.",
         ] {
             assert_eq!(formula_in(text), None, "{text}");
         }

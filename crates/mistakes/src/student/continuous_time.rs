@@ -17,7 +17,7 @@ pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepL
     let passes = if student.makes(Mistake::ContinuousTwoPasses) { 2 } else { 1 };
     for _ in 0..passes {
         let predicted = state.x.clone();
-        for &pair in &world.pairs {
+        for pair in world.pairs() {
             let q_end = if student.makes(Mistake::ContinuousOldPrediction) { &predicted } else { &state.x };
             let Some(contact) = detection::detect(world, pair, q_start, q_end, log)? else { continue };
             if student.makes(Mistake::ContinuousFirstOnly) && !log.impulses.is_empty() {

@@ -10,7 +10,7 @@ use super::{
 /// Handles all pairs in order; each sees the velocities that the pairs before it left.
 pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
     let bounce = 2.0 * ((1.0 + restitution(world)) / 2.0);
-    for &pair in &world.pairs {
+    for pair in world.pairs() {
         let n = match pair.object {
             Object::Particle(other) => particle_particle(world, state, bounce, pair.particle, other),
             Object::Edge(edge) => particle_edge(world, state, bounce, pair.particle, edge),

@@ -5,6 +5,8 @@ use fosssim_num::{
     vector::{Vec2, at, put},
 };
 
+use std::sync::Arc;
+
 use super::{
     author::Student,
     catalogue::Mistake,
@@ -12,16 +14,17 @@ use super::{
     objects::{Contact, Object, Pair, State},
 };
 
-/// Everything that stays as it is during a run.
+/// Everything that stays as it is during a run. Programs of many students share a scene, and none holds a list of its pairs,
+/// of which a large scene has millions.
 pub struct World {
     /// The scene as loaded.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// Whose program this is, that is: which mistake it makes.
     pub student: Student,
     /// The mass of each particle twice, in the order of the state.
-    pub masses: Vec<f64>,
-    /// The pairs of one detection pass, in order (collisions.md 1).
-    pub pairs: Vec<Pair>,
+    pub masses: Arc<[f64]>,
+    /// The pairs of a student who changes their list in a way that the catalogue does not have.
+    changed: Option<Vec<Pair>>,
 }
 
 /// What a step leaves for the trace.
@@ -52,13 +55,26 @@ pub fn subtract(array: &mut [f64], particle: usize, change: Vec2) {
 
 impl World {
     /// Prepares a scene for this student's program.
-    pub fn new(scene: Scene, student: Student) -> Self {
+    pub fn new(scene: impl Into<Arc<Scene>>, student: Student) -> Self {
+        let scene = scene.into();
         let masses = scene.particles.iter().flat_map(|particle| [particle.mass, particle.mass]).collect();
-        let mut pairs = pairs(&scene, student);
+        Self { scene, student: Student::default(), masses, changed: None }.of(student)
+    }
+
+    /// The same scene for another student's program.
+    #[must_use]
+    pub fn of(&self, student: Student) -> Self {
+        let mut changed = None;
         if let Some(Change::Pairs(change)) = student.change() {
-            change(&mut pairs);
+            change(changed.insert(pairs(&self.scene, student).collect()));
         }
-        Self { scene, student, masses, pairs }
+        Self { scene: Arc::clone(&self.scene), student, masses: Arc::clone(&self.masses), changed }
+    }
+
+    /// The pairs of one detection pass, in order (collisions.md 1).
+    pub fn pairs(&self) -> impl Iterator<Item = Pair> {
+        let own = self.changed.is_none().then(|| pairs(&self.scene, self.student));
+        self.changed.iter().flatten().copied().chain(own.into_iter().flatten())
     }
 
     /// The state at time zero.
@@ -96,41 +112,65 @@ fn are_connected(scene: &Scene, one: usize, two: usize) -> bool {
 
 /// All pairs in the order of detection: per particle the later particles, the edges of which it is not an endpoint,
 /// the half-planes.
-fn pairs(scene: &Scene, student: Student) -> Vec<Pair> {
-    let count = scene.particles.len();
-    let mut pairs = Vec::new();
-    for particle in 0..count {
-        let first = if student.makes(Mistake::PairsBothOrders) { 0 } else { particle + 1 };
-        let last = if student.makes(Mistake::PairsNeighboursOnly) { count.min(particle + 2) } else { count };
-        for other in (first..last).filter(|&other| other != particle) {
-            let both_fixed = scene.particles[particle].fixed && scene.particles[other].fixed;
-            let skips = (both_fixed && student.makes(Mistake::PairsFixedSkipped))
-                || (student.makes(Mistake::PairsConnectedSkipped) && are_connected(scene, particle, other));
-            if !skips {
-                pairs.push(Pair { particle, object: Object::Particle(other) });
-            }
-        }
-        for (index, edge) in scene.edges.iter().enumerate() {
-            let endpoint = edge.first == particle || edge.second == particle;
-            let still = [particle, edge.first, edge.second].iter().all(|&one| scene.particles[one].fixed);
-            if (endpoint && !student.makes(Mistake::PairsEndpointsToo))
-                || (still && student.makes(Mistake::PairsFixedSkipped))
-            {
-                continue;
-            }
-            pairs.push(Pair { particle, object: Object::Edge(index) });
-        }
-        for index in 0..scene.half_planes.len() {
-            if (index > 0 && student.makes(Mistake::PairsFirstHalfPlaneOnly))
-                || (scene.particles[particle].fixed && student.makes(Mistake::PairsFixedSkipped))
-            {
-                continue;
-            }
-            pairs.push(Pair { particle, object: Object::HalfPlane(index) });
-        }
+fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
+    let planes_first = student.makes(Mistake::PairsHalfPlanesFirst);
+    let of = OfParticle {
+        scene,
+        both_orders: student.makes(Mistake::PairsBothOrders),
+        neighbours_only: student.makes(Mistake::PairsNeighboursOnly),
+        fixed_skipped: student.makes(Mistake::PairsFixedSkipped),
+        connected_skipped: student.makes(Mistake::PairsConnectedSkipped),
+        endpoints_too: student.makes(Mistake::PairsEndpointsToo),
+        first_half_plane_only: student.makes(Mistake::PairsFirstHalfPlaneOnly),
+    };
+    let particles = 0..scene.particles.len();
+    let before = if planes_first { particles.clone() } else { 0..0 };
+    before.flat_map(move |particle| of.half_planes(particle)).chain(particles.flat_map(move |particle| {
+        let planes = (!planes_first).then(|| of.half_planes(particle));
+        of.particles(particle).chain(of.edges(particle)).chain(planes.into_iter().flatten())
+    }))
+}
+
+/// The pairs of one particle, and what a program does differently about them.
+#[derive(Clone, Copy)]
+struct OfParticle<'a> {
+    scene: &'a Scene,
+    both_orders: bool,
+    neighbours_only: bool,
+    fixed_skipped: bool,
+    connected_skipped: bool,
+    endpoints_too: bool,
+    first_half_plane_only: bool,
+}
+
+impl<'a> OfParticle<'a> {
+    fn particles(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
+        let Scene { particles, .. } = self.scene;
+        let first = if self.both_orders { 0 } else { particle + 1 };
+        let last = if self.neighbours_only { particles.len().min(particle + 2) } else { particles.len() };
+        let is_kept = move |other: &usize| {
+            let both_fixed = particles[particle].fixed && particles[*other].fixed;
+            *other != particle
+                && !(both_fixed && self.fixed_skipped)
+                && !(self.connected_skipped && are_connected(self.scene, particle, *other))
+        };
+        (first..last).filter(is_kept).map(move |other| Pair { particle, object: Object::Particle(other) })
     }
-    if student.makes(Mistake::PairsHalfPlanesFirst) {
-        pairs.sort_by_key(|pair| !matches!(pair.object, Object::HalfPlane(_)));
+
+    fn edges(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
+        let is_fixed = move |one: usize| self.scene.particles[one].fixed;
+        self.scene.edges.iter().enumerate().filter_map(move |(index, edge)| {
+            let is_endpoint = edge.first == particle || edge.second == particle;
+            let is_still = [particle, edge.first, edge.second].into_iter().all(is_fixed);
+            let is_left_out = (is_endpoint && !self.endpoints_too) || (is_still && self.fixed_skipped);
+            (!is_left_out).then_some(Pair { particle, object: Object::Edge(index) })
+        })
     }
-    pairs
+
+    fn half_planes(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
+        let is_left_out = self.scene.particles[particle].fixed && self.fixed_skipped;
+        let count = self.scene.half_planes.len().min(if self.first_half_plane_only { 1 } else { usize::MAX });
+        let count = if is_left_out { 0 } else { count };
+        (0..count).map(move |index| Pair { particle, object: Object::HalfPlane(index) })
+    }
 }

@@ -4,9 +4,9 @@ use fosssim_mistakes::{
     assignments::t2m2::{Input, Reading, Subject},
     diagnose::{
         About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
-        ListGuess, LoopEnd, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
-        Stand, StepRecord, Weight, WrongDecisions, WrongMotion, WrongNumber, WrongResponses, WrongVectors,
-        WrongZoneRounds, WrongZones,
+        ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
+        StageDetail, StageFault, Stand, StepRecord, Weight, WrongDecisions, WrongMotion, WrongNumber, WrongResponses,
+        WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::Area,
 };
@@ -26,7 +26,9 @@ pub(super) fn all() -> Vec<Explanation> {
     let subjects = vec![Subject::EdgeOverlap, Subject::HalfPlaneApproach];
     let of_polynomials = found.map(|found| About::Polynomials { subjects: subjects.clone(), found });
     let others = [About::Mistake, About::Unfinished, About::Scene { has_length: false }];
-    let abouts = of_polynomials.chain(others).chain(faults().into_iter().map(About::Stage));
+    let stages = [NanStage::Detection(Some(PairKind::ParticleEdge)), NanStage::FirstRecord, NanStage::Zones];
+    let ends = stages.map(|stage| About::NotFinite(NotFinite { step: Some(7), stage, is_nan: true }));
+    let abouts = of_polynomials.chain(others).chain(ends).chain(faults().into_iter().map(About::Stage));
     let mut all: Vec<Explanation> = abouts.map(|about| explanation(about, Vec::new(), None)).collect();
     all.extend(examples().into_iter().map(|example| explanation(About::Mistake, Vec::new(), Some(example))));
     all.push(explanation(About::Mistake, details(), None));

@@ -1,10 +1,11 @@
 //! Tries the rows of the catalogue on the kept steps.
 use super::{
     compare::{ROUND_OFF, first_difference, same_polynomial},
-    resimulate::{Correct, resimulate},
+    resimulate::{Correct, resimulate, step_work},
     scan::{Sample, Scan},
+    shown::applicable,
 };
-use crate::student::{Area, CATALOGUE, Mistake, Row, RowKind, StepLog, World};
+use crate::student::{Area, Mistake, Row, StepLog, Student, World};
 use fosssim_model::scene::Scene;
 use std::{cell::Cell, collections::BTreeSet};
 
@@ -14,9 +15,6 @@ const PROBES: usize = 8;
 const PARTIAL: usize = 16;
 /// Polynomials that may be computed in all; about a microsecond each.
 const WORK: u64 = 1_500_000;
-/// What a step costs besides its polynomials, in polynomials.
-const STEP_WORK: u64 = 10;
-
 /// A row, and how many of the wrong steps it reproduces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Score {
@@ -41,6 +39,7 @@ pub(super) struct Candidates<'a> {
     first: Option<&'a Sample>,
     right: Vec<&'a Sample>,
     work: Cell<u64>,
+    step_work: u64,
 }
 
 impl<'a> Candidates<'a> {
@@ -48,12 +47,9 @@ impl<'a> Candidates<'a> {
     ///
     /// `correct` is the program that the mistakes are added to.
     pub(super) fn new(scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
-        let candidates = CATALOGUE
-            .iter()
-            .filter(|row| row.kind != RowKind::Hostile)
-            .filter(|row| !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid))
-            .map(|row| Candidate { row, world: World::new(scene.clone(), correct.with(Some(row.mistake))) })
-            .collect();
+        let world = World::new(scene.clone(), Student::default());
+        let candidates =
+            applicable(scene).map(|row| Candidate { row, world: world.of(correct.with(Some(row.mistake))) }).collect();
         let mut signatures = BTreeSet::new();
         let (mut probes, mut others) = (Vec::new(), Vec::new());
         for sample in &scan.wrong {
@@ -67,7 +63,15 @@ impl<'a> Candidates<'a> {
         let number = probes.len();
         probes.append(&mut others);
         let (first, right) = (scan.wrong.first(), scan.right.iter().collect());
-        Self { candidates, wrong: probes, probes: number, first, right, work: Cell::new(0) }
+        Self {
+            candidates,
+            wrong: probes,
+            probes: number,
+            first,
+            right,
+            work: Cell::new(0),
+            step_work: step_work(scene),
+        }
     }
 
     /// The rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue. Empty when
@@ -141,13 +145,16 @@ impl<'a> Candidates<'a> {
         match candidate.row.mistake {
             Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.polynomials_kept,
             Mistake::LogImpulsesKept if sample.difference.is_some() => return sample.context.impulses_kept,
+            Mistake::LogNan | Mistake::LogNanContacts if sample.context.logs_nan => {
+                return logs_nan(candidate.row, sample);
+            }
             Mistake::LogSinglePrecision if sample.difference.is_some() => return sample.context.single_precision,
             _ => {}
         }
         let logged = &sample.records.end.polynomials;
         // A program that logs wrongly asks the root finder something else than it says.
         let logs_wrongly = candidate.row.area == Area::Trace;
-        let asked = Cell::new(STEP_WORK);
+        let asked = Cell::new(self.step_work);
         let guard = |index: usize, coefficients: &[f64]| {
             asked.set(asked.get() + 1);
             index < logged.len() && (logs_wrongly || same_polynomial(coefficients, logged.get(index), &ROUND_OFF))
@@ -156,5 +163,16 @@ impl<'a> Candidates<'a> {
             resimulate(&candidate.world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
         self.work.set(self.work.get() + asked.get());
         records.is_some_and(|records| first_difference(&records, &sample.records, &ROUND_OFF).is_none())
+    }
+}
+
+/// Whether NaN stands in all polynomials of the step, or in all its contact vectors, as this row has it.
+fn logs_nan(row: &Row, sample: &Sample) -> bool {
+    let end = &sample.records.end;
+    let in_polynomials = end.polynomials.coefficients.iter().all(|value| value.is_nan());
+    let in_vectors = end.impulses.iter().all(|contact| contact.normal.x.is_nan() && contact.normal.y.is_nan());
+    match row.mistake {
+        Mistake::LogNan => in_polynomials && !end.polynomials.coefficients.is_empty(),
+        _ => in_vectors && !end.impulses.is_empty(),
     }
 }

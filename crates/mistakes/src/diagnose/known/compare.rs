@@ -1,7 +1,8 @@
 //! What one step logged, and when two such logs are the same but for round-off.
 //!
 //! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
-//! vectors relative to the size of the numbers around them. NaN equals NaN: a mistake may well produce it.
+//! vectors relative to the size of the numbers around them. NaN equals nothing: whatever makes it makes it, so that it proves no
+//! mistake.
 use crate::student::{Object, Record};
 use fosssim_model::{
     sim::State,
@@ -57,6 +58,21 @@ pub(in crate::diagnose) struct Logged {
     pub(in crate::diagnose) impulses: Vec<LoggedImpulse>,
     /// The polynomial list, small leading coefficients dropped.
     pub(in crate::diagnose) polynomials: PolynomialLog,
+}
+
+impl Logged {
+    fn values(&self) -> impl Iterator<Item = f64> {
+        let of_impulse = |impulse: &LoggedImpulse| [impulse.normal.x, impulse.normal.y, impulse.time];
+        let numbers = self.state.positions.iter().chain(&self.state.velocities).chain(&self.polynomials.coefficients);
+        numbers.copied().chain(self.impulses.iter().flat_map(of_impulse))
+    }
+}
+
+impl StepRecords {
+    /// Whether all numbers are finite.
+    pub(in crate::diagnose) fn is_finite(&self) -> bool {
+        self.end.values().chain(self.mid.iter().flat_map(Logged::values)).all(f64::is_finite)
+    }
 }
 
 /// The records of one step.
@@ -233,9 +249,7 @@ pub(in crate::diagnose) fn state_difference(ours: &State, theirs: &State, by: &T
 fn same_number(ours: f64, theirs: f64, within: f64) -> bool {
     let distance = (ours - theirs).abs();
     // The bound of an infinite number is infinite; nothing but itself is near it.
-    ours.to_bits() == theirs.to_bits()
-        || (ours.is_nan() && theirs.is_nan())
-        || (distance <= within && distance.is_finite())
+    (ours.to_bits() == theirs.to_bits() && !ours.is_nan()) || (distance <= within && distance.is_finite())
 }
 
 #[cfg(test)]
@@ -262,8 +276,8 @@ mod tests {
     }
 
     #[test]
-    fn nan_equals_nan_only() {
-        assert!(same(&[f64::NAN, 1.0], &[f64::NAN, 1.0]));
+    fn nan_equals_nothing() {
+        assert!(!same(&[f64::NAN, 1.0], &[f64::NAN, 1.0]) && !same(&[f64::NAN], &[f64::NAN]));
         assert!(!same(&[f64::NAN, 1.0], &[1.0, 1.0]) && !same(&[f64::INFINITY, 1.0], &[1.0, 1.0]));
     }
 

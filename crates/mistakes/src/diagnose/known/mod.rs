@@ -18,6 +18,7 @@ mod refute;
 mod resimulate;
 mod scan;
 mod several;
+mod shown;
 
 pub(super) use capture::Capture;
 pub(super) use compare::{

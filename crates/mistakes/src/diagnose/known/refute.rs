@@ -2,7 +2,8 @@
 use super::{
     capture::Capture,
     compare::{PLAIN, first_difference, same_polynomial},
-    resimulate::resimulate,
+    resimulate::{resimulate, step_work},
+    shown::can_show,
 };
 use crate::student::{StepLog, Student, World, find};
 use fosssim_model::{
@@ -13,26 +14,24 @@ use std::cell::Cell;
 
 /// Polynomials that may be computed; about a microsecond each.
 const WORK: u64 = 200_000;
-/// What a step costs besides its polynomials, in polynomials.
-const STEP_WORK: u64 = 10;
 
 /// Whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which no judge
 /// takes for round-off. False also where looking for
 /// it would take too long.
 #[must_use]
 pub fn shows(scene: &Scene, key: &str) -> bool {
-    let Some(row) = find(key) else { return false };
+    let Some(row) = find(key).filter(|row| can_show(scene, row)) else { return false };
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut capture = Capture::new(&scene.collision);
-    let work = Cell::new(0);
+    let (work, each) = (Cell::new(0), step_work(scene));
     for _ in 0..scene.steps() {
         let before = simulation.state().clone();
         if work.get() > WORK || simulation.step(&mut capture).is_err() {
             return false;
         }
         let expected = &capture.records.end.polynomials;
-        work.set(work.get() + STEP_WORK + expected.len() as u64);
+        work.set(work.get() + each + expected.len() as u64);
         let guard = |index: usize, coefficients: &[f64]| {
             work.set(work.get() + 1);
             index < expected.len() && same_polynomial(coefficients, expected.get(index), &PLAIN)

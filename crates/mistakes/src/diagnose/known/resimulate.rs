@@ -1,6 +1,7 @@
 //! Steps of a student's program, from a submission's own state.
 use super::compare::{Logged, StepRecords};
 use crate::student::{Mistake, Record, State, StepLog, Student, World, step};
+use fosssim_model::{scene::Scene, sim::pairs};
 
 /// What a submission does right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +21,11 @@ impl Correct {
             Self::RightApproach => student.with_right_approach(),
         }
     }
+}
+
+/// What a step costs besides its polynomials, in polynomials: forces between all pairs are many times cheaper than these.
+pub(super) fn step_work(scene: &Scene) -> u64 {
+    10 + pairs(scene).count() as u64 / 128
 }
 
 /// The records that a program writes in a step from this state; `None` when it fails or writes another number of them.

@@ -5,11 +5,15 @@
 use super::{
     compare::{Difference, ROUND_OFF, first_difference, same_polynomial},
     plausibility,
-    resimulate::{Correct, resimulate},
+    resimulate::{Correct, resimulate, step_work},
     scan::{Sample, Scan},
+    shown::applicable,
 };
-use crate::student::{Area, CATALOGUE, Mistake, Object, Row, RowKind, StepLog, Student, World};
-use fosssim_model::scene::{Collision, Scene};
+use crate::student::{Area, CATALOGUE, Mistake, Row, RowKind, StepLog, Student, World};
+use fosssim_model::{
+    scene::Scene,
+    sim::{PairKind, pairs},
+};
 use std::{cell::Cell, collections::BTreeSet};
 
 /// Besides empty stages, so many mistakes are looked for.
@@ -18,8 +22,6 @@ const MOST: usize = 3;
 const PROBES: usize = 8;
 /// Polynomials that may be computed in all; about a microsecond each.
 const WORK: u64 = 700_000;
-/// What a step costs besides its polynomials, in polynomials.
-const STEP_WORK: u64 = 10;
 
 /// Rows that reproduce a trace together.
 pub(super) struct Several {
@@ -55,6 +57,9 @@ pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
 
 struct Search<'a> {
     scene: &'a Scene,
+    /// The scene, for programs of all students.
+    world: World,
+    step_work: u64,
     correct: Correct,
     wrong: Vec<&'a Sample>,
     probes: Vec<&'a Sample>,
@@ -70,12 +75,14 @@ impl<'a> Search<'a> {
         let mut probes: Vec<&Sample> = scan.wrong.iter().filter(is_probe).take(PROBES).collect();
         probes.sort_by_key(|sample| sample.records.end.polynomials.len());
         let wrong = scan.wrong.iter().collect();
-        Self { scene, correct, wrong, probes, right: scan.right.iter().collect(), work: Cell::new(0) }
+        let world = World::new(scene.clone(), Student::default());
+        let step_work = step_work(scene);
+        Self { scene, world, step_work, correct, wrong, probes, right: scan.right.iter().collect(), work: Cell::new(0) }
     }
 
     fn world(&self, rows: &[&'static Row]) -> World {
         let student: Student = rows.iter().fold(self.correct.with(None), |student, row| student.and(Some(row.mistake)));
-        World::new(self.scene.clone(), student)
+        self.world.of(student)
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a handful")]
@@ -93,7 +100,7 @@ impl<'a> Search<'a> {
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     fn reached(&self, world: &World, logs_wrongly: bool, sample: &Sample) -> f64 {
         let logged = &sample.records.end.polynomials;
-        let (asked, failed) = (Cell::new(STEP_WORK), Cell::new(None));
+        let (asked, failed) = (Cell::new(self.step_work), Cell::new(None));
         let guard = |index: usize, coefficients: &[f64]| {
             asked.set(asked.get() + 1);
             let goes_on =
@@ -176,15 +183,15 @@ impl<'a> Search<'a> {
 
     /// The detections that the scene asks for when they are left empty, and how many polynomials a pass of each logs.
     fn sizes(&self) -> Vec<(&'static Row, usize)> {
-        let world = self.world(&[]);
+        let counts = pairs(self.scene).counts();
         let of = |row: &'static Row| {
-            let size = |object: &Object| match (row.mistake, object) {
-                (Mistake::ParticleParticleEmpty, Object::Particle(_))
-                | (Mistake::HalfPlaneEmpty, Object::HalfPlane(_)) => 2,
-                (Mistake::ParticleEdgeEmpty, Object::Edge(_)) => 4,
-                _ => 0,
+            let kind = match row.mistake {
+                Mistake::ParticleParticleEmpty => PairKind::ParticleParticle,
+                Mistake::ParticleEdgeEmpty => PairKind::ParticleEdge,
+                Mistake::HalfPlaneEmpty => PairKind::ParticleHalfPlane,
+                _ => return (row, 0),
             };
-            (row, world.pairs.iter().map(|pair| size(&pair.object)).sum())
+            (row, counts[kind] * kind.polynomials())
         };
         self.stages().into_iter().map(of).filter(|(_, size)| *size > 0).collect()
     }
@@ -218,25 +225,13 @@ impl<'a> Search<'a> {
 
     /// The rows of empty stages that the scene can show.
     fn stages(&self) -> Vec<&'static Row> {
-        let Scene { particles, edges, half_planes, collision, .. } = self.scene;
-        let is_hybrid = matches!(collision, Collision::Hybrid { .. });
-        let can_show = |row: &&Row| match row.mistake {
-            Mistake::ParticleParticleEmpty => particles.len() > 1,
-            Mistake::ParticleEdgeEmpty => !edges.is_empty() && particles.len() > 2,
-            Mistake::HalfPlaneEmpty => !half_planes.is_empty(),
-            _ => is_hybrid && is_empty_stage(row),
-        };
-        CATALOGUE.iter().filter(can_show).collect()
+        applicable(self.scene).filter(|row| is_empty_stage(row)).collect()
     }
 
     /// The row that carries the set furthest beyond `reached`, how far, and those that do as well.
     fn next(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
-        let rows = CATALOGUE.iter().filter(|row| {
-            row.kind != RowKind::Hostile
-                && !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid)
-                && set.iter().all(|other| other.mistake != row.mistake)
-        });
+        let rows = applicable(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
         for row in rows {
             if self.work.get() > WORK {
                 return None;

@@ -83,7 +83,8 @@ impl<'a> Study<'a> {
                 let expected = judged.polynomial(number).to_vec();
                 let right = is_right(&expected, logged)
                     || judged.other_form(number).is_some_and(|other| is_right(other, logged));
-                let finite = expected.iter().all(|coefficient| coefficient.bound.is_finite());
+                let finite = expected.iter().all(|coefficient| coefficient.bound.is_finite())
+                    && logged.iter().all(|value| value.is_finite());
                 finite.then_some(Case { sample, logged, inputs, expected, right, scale: 1.0 })
             })
             .collect();

@@ -5,6 +5,7 @@ use fosssim_judge::replay::Options;
 use fosssim_model::{assignments::Assignment, sim::PairKind};
 use rayon::prelude::*;
 
+mod not_finite;
 mod probes;
 
 /// What is said of a program that makes several mistakes.

@@ -180,7 +180,7 @@ pub fn detect(
 /// One pass over all pairs, with no response in between.
 pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) -> Result<Vec<Contact>, StepFailure> {
     let mut contacts = Vec::new();
-    for &pair in &world.pairs {
+    for pair in world.pairs() {
         contacts.extend(detect(world, pair, q_start, q_end, log)?);
     }
     if let Some(Change::Contacts(change)) = world.student.change() {

@@ -3,6 +3,7 @@
 //! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) stand with its data, found by
 //! their keys; all others are made here.
 mod letters;
+mod not_finite;
 mod places;
 mod polynomials;
 mod stages;
@@ -26,6 +27,7 @@ pub fn what(explanation: &Explanation) -> String {
         }
         About::Polynomials { subjects, found } => polynomials::what(subjects, found),
         About::Stage(fault) => stages::what(fault),
+        About::NotFinite(found) => not_finite::what(found),
     };
     debug_assert!(formula_in(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
     sentence

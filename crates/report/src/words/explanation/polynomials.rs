@@ -38,7 +38,6 @@ fn of_guess(guess: &Guess) -> String {
 
 const fn of_list(guess: ListGuess) -> &'static str {
     match guess {
-        ListGuess::NotFinite => "Coefficients are not finite numbers",
         ListGuess::AllZero => "All coefficients are zero, or none is logged",
         ListGuess::Constant => "A constant stands in the place of the polynomial",
         ListGuess::AllEqual => "All coefficients are the same constant",

@@ -3,9 +3,9 @@ use super::*;
 use fosssim_mistakes::{
     assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
     diagnose::{
-        Amount, Changed, CoefficientGuess, Guess, ListGuess, LoopEnd, OfPolynomials, PolynomialDetail, Quantity,
-        QuantityGuess, Ratios, StageDetail, StageFault, Stand, Weight, WrongDecisions, WrongMotion, WrongNumber,
-        WrongResponses, WrongVectors, WrongZoneRounds, WrongZones, explain,
+        Amount, Changed, CoefficientGuess, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials,
+        PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, Stand, Weight, WrongDecisions,
+        WrongMotion, WrongNumber, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones, explain,
         outside::{Rated, Rating, rated},
         probe_scenes,
     },
@@ -25,7 +25,6 @@ fn explanation(key: &str, about: About, details: Vec<Detail>) -> Explanation {
 /// All guesses about the coefficients of a polynomial.
 fn guesses() -> Vec<Guess> {
     let lists = [
-        ListGuess::NotFinite,
         ListGuess::AllZero,
         ListGuess::Constant,
         ListGuess::AllEqual,
@@ -139,6 +138,19 @@ fn all() -> Vec<Explanation> {
     let empty = ["pp-empty", "pe-empty", "ph-empty", "loop-empty", "geometric-empty", "failsafe-empty"];
     let same_as = empty.map(str::to_owned).into();
     all.push(Explanation { same_as, ..explanation("k", About::Unfinished, Vec::new()) });
+    let stages = [
+        NanStage::FirstRecord,
+        NanStage::Motion,
+        NanStage::Detection(Some(PairKind::ParticleEdge)),
+        NanStage::Detection(None),
+        NanStage::ContactVectors,
+        NanStage::Responses,
+        NanStage::ImpulseRounds,
+        NanStage::Zones,
+    ];
+    let ends = stages.map(|stage| NotFinite { step: Some(60), stage, is_nan: stage != NanStage::ContactVectors });
+    let together = NotFinite { step: None, ..ends[7] };
+    all.extend(ends.into_iter().chain([together]).map(|end| explanation("k", About::NotFinite(end), Vec::new())));
     all.extend(guesses().into_iter().map(|guess| of(edge[..2].to_vec(), OfPolynomials::Guess(guess))));
     all.extend(faults().into_iter().map(|fault| explanation("k", About::Stage(fault), Vec::new())));
     all

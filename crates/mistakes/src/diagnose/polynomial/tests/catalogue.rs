@@ -82,7 +82,7 @@ fn first_passes(row: &Row, style: Style) -> Vec<Sample> {
             PointMotion { start: place, shift: end - place }
         };
         let radius = |index: usize| world.scene.particles[index].radius;
-        for pair in &world.pairs {
+        for pair in world.pairs() {
             let one = pair.particle;
             let (motion, second) = match pair.object {
                 Object::Particle(two) => {

@@ -1,0 +1,202 @@
+//! From which step on a trace holds what is no finite number, and which stage of the step makes it of numbers.
+//!
+//! NaN spreads: whatever is computed of it is NaN, and comparisons with it are false. So only the first stage whose input was
+//! numbers and whose output is not says anything, and nothing behind it proves any mistake.
+use super::{
+    Explanation,
+    about::About,
+    fault::{NanStage, NotFinite},
+    known::Capture,
+    source::{Source, StepFrames, read},
+};
+use fosssim_judge::{
+    budget::Budget,
+    kept::{KeptTrace, LONGEST},
+};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{Pair, PairKind, RootSearch, Simulation, State, pairs},
+    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, PolynomialLog, record_memory},
+};
+
+/// What is told of the first number of a kept trace that is none, and nothing else that explanations find; empty where all are
+/// finite, or where the reference comes to the same.
+#[must_use]
+pub fn not_finite(trace: &KeptTrace<'_>) -> Vec<Explanation> {
+    let source = Source { beginning: Box::new(trace.beginning()), is_whole: trace.is_whole(), late: trace.late() };
+    of_source(trace.scene(), source).into_iter().collect()
+}
+
+/// The same, of a whole trace.
+#[must_use]
+pub fn not_finite_in(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
+    of_source(scene, Source::whole(trace)).into_iter().collect()
+}
+
+/// The same, of what records are at hand.
+pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Option<Explanation> {
+    let layout = Layout::of(scene);
+    let mut reader = Lenient::new(source.beginning, layout).with_limit(record_memory(scene));
+    let mut frames = StepFrames::default();
+    if !read(&mut reader, &mut frames.before) {
+        return None;
+    }
+    if let Some(wild) = wild_value(&frames.before.state) {
+        return Some(explanation(NotFinite { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan() }));
+    }
+    for step in 1..=layout.steps {
+        let StepFrames { before, mid, end } = &mut frames;
+        if reader.offset() > LONGEST || (layout.polynomials && !read(&mut reader, mid)) || !read(&mut reader, end) {
+            break;
+        }
+        if is_wild(mid) || is_wild(end) {
+            return of_step(scene, step, &frames).map(explanation);
+        }
+        before.state.clone_from(&end.state);
+    }
+    let is_first = |frames: &StepFrames| wild_value(&frames.before.state).is_none();
+    source
+        .late
+        .iter()
+        .find_map(|late| {
+            let frames = StepFrames::of_late(scene, late).filter(is_first)?;
+            if is_wild(&frames.mid) || is_wild(&frames.end) { of_step(scene, late.step, &frames) } else { None }
+        })
+        .map(explanation)
+}
+
+fn explanation(found: NotFinite) -> Explanation {
+    Explanation {
+        key: Explanation::NOT_FINITE.to_owned(),
+        about: About::NotFinite(found),
+        details: Vec::new(),
+        reproduced: 0,
+        samples: 0,
+        example: None,
+        same_as: Vec::new(),
+        denies: Vec::new(),
+    }
+}
+
+/// The first value that is no finite number.
+fn wild_value(state: &State) -> Option<f64> {
+    state.positions.iter().chain(&state.velocities).copied().find(|value| !value.is_finite())
+}
+
+fn wild_impulse(impulse: &LoggedImpulse) -> Option<f64> {
+    [impulse.normal.x, impulse.normal.y, impulse.time].into_iter().find(|value| !value.is_finite())
+}
+
+fn wild_polynomial(polynomials: &PolynomialLog) -> Option<(usize, f64)> {
+    let first = polynomials.coefficients.iter().position(|value| !value.is_finite())?;
+    Some((polynomials.ends.partition_point(|&end| end <= first), polynomials.coefficients[first]))
+}
+
+fn is_wild(frame: &LenientFrame) -> bool {
+    wild_value(&frame.state).is_some()
+        || frame.impulses.iter().any(|impulse| wild_impulse(impulse).is_some())
+        || frame.polynomials.coefficients.iter().any(|value| !value.is_finite())
+}
+
+/// The stage of a step that leaves what is no number, of a state that is numbers; nothing where the reference does as well.
+fn of_step(scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    simulation.state_mut().clone_from(&frames.before.state);
+    simulation.set_steps_done(step - 1);
+    let mut capture = Capture::new(&scene.collision);
+    let is_ours =
+        Budget::new(scene, false).step(&mut simulation, &mut capture).is_err() || !capture.records.is_finite();
+    let (stage, value) = stage(scene, frames)?;
+    (!is_ours).then_some(NotFinite { step: Some(step), stage, is_nan: value.is_nan() })
+}
+
+/// The first stage whose results are no numbers, with the first such value.
+fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
+    let StepFrames { mid, end, .. } = frames;
+    let polynomial = wild_polynomial(&end.polynomials);
+    let state = wild_value(&end.state);
+    match scene.collision {
+        Collision::None | Collision::Penalty { .. } => Some((NanStage::Motion, state?)),
+        Collision::Simple { .. } => {
+            let of_contact = end.impulses.iter().find_map(wild_impulse).map(|value| (NanStage::ContactVectors, value));
+            let of_state = if end.impulses.is_empty() { NanStage::Motion } else { NanStage::Responses };
+            of_contact.or_else(|| Some((of_state, state?)))
+        }
+        Collision::ContinuousTime { .. } => in_one_pass(scene, end, polynomial).or_else(|| {
+            let of_state = if end.impulses.is_empty() { NanStage::Motion } else { NanStage::Responses };
+            Some((of_state, wild_value(&mid.state).or(state)?))
+        }),
+        Collision::Hybrid { .. } => {
+            let pass: usize = pairs(scene).counts().iter().map(|(kind, count)| count * kind.polynomials()).sum();
+            let middle = mid.polynomials.len();
+            let kind = |index: usize| kind_at(scene, index % pass.max(1));
+            match polynomial {
+                Some((index, value)) if index < middle.min(pass) => Some((NanStage::Detection(kind(index)), value)),
+                Some((index, value)) if index < middle => Some((NanStage::ImpulseRounds, value)),
+                _ if wild_value(&mid.state).is_some() => Some((NanStage::ImpulseRounds, wild_value(&mid.state)?)),
+                Some((index, value)) if index < middle + pass => {
+                    Some((NanStage::Detection(kind(index - middle)), value))
+                }
+                other => Some((NanStage::Zones, other.map(|(_, value)| value).or(state)?)),
+            }
+        }
+    }
+}
+
+/// The stage in the one pass of `continuous-time`, where each contact is resolved before the next pair is looked at.
+fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64)>) -> Option<(NanStage, f64)> {
+    let all = pairs(scene);
+    let place = |contact: &LoggedImpulse| {
+        all.iter().position(|pair| {
+            (pair.kind.code(), pair.first.cast_signed(), pair.second.cast_signed())
+                == (contact.kind, contact.first, contact.second)
+        })
+    };
+    let contact = end.impulses.iter().find_map(|contact| Some((place(contact), wild_impulse(contact)?)));
+    let Some((index, value)) = polynomial else { return contact.map(|(_, value)| (NanStage::ContactVectors, value)) };
+    let mut first = 0;
+    let at = all.iter().position(|pair| {
+        first += pair.kind.polynomials();
+        index < first
+    });
+    if let (Some((Some(place), value)), Some(at)) = (contact, at)
+        && place < at
+    {
+        return Some((NanStage::ContactVectors, value));
+    }
+    let Some(pair) = at.and_then(|at| all.iter().nth(at)) else { return Some((NanStage::Detection(None), value)) };
+    // A response before it in the pass has moved its bodies to where no numbers are.
+    let own = bodies(scene, pair);
+    let has_moved = |contact: &LoggedImpulse| {
+        let is_earlier = place(contact).zip(at).is_some_and(|(place, at)| place < at);
+        let other = contact.kind().and_then(|kind| {
+            Some(Pair { kind, first: contact.first.try_into().ok()?, second: contact.second.try_into().ok()? })
+        });
+        is_earlier && other.is_some_and(|other| bodies(scene, other).iter().any(|body| own.contains(body)))
+    };
+    let is_moved = end.impulses.iter().any(has_moved);
+    Some((if is_moved { NanStage::Responses } else { NanStage::Detection(Some(pair.kind)) }, value))
+}
+
+/// The kind of the pair to which a polynomial of a pass belongs.
+fn kind_at(scene: &Scene, index: usize) -> Option<PairKind> {
+    let mut first = 0;
+    let is_there = |pair: &Pair| {
+        first += pair.kind.polynomials();
+        index < first
+    };
+    pairs(scene).iter().find(is_there).map(|pair| pair.kind)
+}
+
+/// The particles of a pair.
+fn bodies(scene: &Scene, pair: Pair) -> Vec<u32> {
+    let edge = || scene.edges.get(pair.second as usize);
+    match pair.kind {
+        PairKind::ParticleParticle => vec![pair.first, pair.second],
+        PairKind::ParticleEdge => {
+            let ends = edge().into_iter().flat_map(|edge| [edge.first as u32, edge.second as u32]);
+            std::iter::once(pair.first).chain(ends).collect()
+        }
+        PairKind::ParticleHalfPlane => vec![pair.first],
+    }
+}

@@ -1,0 +1,108 @@
+//! Where numbers end is told with its step and stage, and what is no number accuses of nothing.
+use crate::{
+    assignments::probe_scenes,
+    diagnose::{About, Explanation, NanStage, NotFinite, explain, not_finite_in},
+    student::{self, Student},
+};
+use fosssim_model::{
+    assignments::Assignment,
+    scene::{Collision, Scene},
+    trace::{Frame, Layout, Lenient, LenientFrame, Writer},
+};
+
+fn scene(name: &str) -> Scene {
+    probe_scenes(Assignment::T2M2).into_iter().find(|(other, _)| other == name).expect("a probe scene").1
+}
+
+fn frames(scene: &Scene) -> Vec<LenientFrame> {
+    let trace = student::trace(scene, Student::default()).expect("it comes to an end");
+    let layout = Layout::of(scene);
+    let mut reader = Lenient::new(&trace[..], layout);
+    let read = |_| {
+        let mut frame = LenientFrame::default();
+        reader.next(&mut frame).expect("a record");
+        frame
+    };
+    (0..layout.records()).map(read).collect()
+}
+
+fn written(scene: &Scene, frames: Vec<LenientFrame>) -> Vec<u8> {
+    let mut writer = Writer::new(Vec::new(), Layout::of(scene));
+    for LenientFrame { state, impulses, polynomials, .. } in frames {
+        writer.frame(&Frame { state, impulses, polynomials });
+    }
+    writer.finish().expect("written").0
+}
+
+/// The first record from `start` on of which this holds.
+fn first(frames: &[LenientFrame], start: usize, holds: impl Fn(&LenientFrame) -> bool) -> usize {
+    start + frames[start..].iter().step_by(2).position(holds).expect("such a record")
+}
+
+fn told(scene: &Scene, frames: Vec<LenientFrame>) -> NotFinite {
+    let trace = written(scene, frames);
+    let all = explain(scene, &trace);
+    // Nothing but that: the steps before are right, and what follows from NaN speaks for nothing.
+    let [Explanation { about: About::NotFinite(found), .. }] = &all[..] else { panic!("{all:#?}") };
+    assert_eq!(not_finite_in(scene, &trace)[0].about, all[0].about);
+    *found
+}
+
+/// All that follows is NaN, as in a program.
+fn spoil(frames: &mut [LenientFrame], bodies: &[usize]) {
+    for frame in frames {
+        for &body in bodies {
+            frame.state.positions[2 * body] = f64::NAN;
+            frame.state.velocities[2 * body + 1] = f64::NAN;
+        }
+    }
+}
+
+#[test]
+fn nan_is_told_with_its_step_and_stage() {
+    let struck = scene("edges-struck");
+    assert!(matches!(struck.collision, Collision::ContinuousTime { .. }));
+    let right = frames(&struck);
+    let end = first(&right, 2, |frame| !frame.impulses.is_empty());
+    let step = Some(u32::try_from(end / 2).expect("few"));
+    let with = |change: &dyn Fn(&mut LenientFrame)| {
+        let mut changed = right.clone();
+        changed[end - 1..=end].iter_mut().for_each(change);
+        spoil(&mut changed[end + 1..], &[0]);
+        told(&struck, changed)
+    };
+    let of_vector = with(&|frame| frame.impulses[0].normal.x = f64::INFINITY);
+    assert_eq!(of_vector, NotFinite { step, stage: NanStage::ContactVectors, is_nan: false });
+    let of_response = with(&|frame| frame.state.velocities[0] = f64::NAN);
+    assert_eq!(of_response, NotFinite { step, stage: NanStage::Responses, is_nan: true });
+    let of_detection = with(&|frame| frame.polynomials.coefficients[0] = f64::NAN);
+    assert!(matches!(of_detection.stage, NanStage::Detection(Some(_))), "{of_detection:?}");
+    let mut changed = right;
+    changed[0].state.positions[0] = f64::NAN;
+    assert_eq!(told(&struck, changed).stage, NanStage::FirstRecord);
+}
+
+#[test]
+fn nan_of_the_failsafe_is_no_sum_of_integers() {
+    let mut seen = 0;
+    for (name, scene) in probe_scenes(Assignment::T2M2) {
+        if !matches!(scene.collision, Collision::Hybrid { .. }) {
+            continue;
+        }
+        let right = frames(&scene);
+        // Steps whose geometric part moves something: the end is another state than the middle.
+        let Some(end) = (2..right.len()).step_by(2).find(|&end| right[end].state != right[end - 1].state) else {
+            continue;
+        };
+        seen += 1;
+        let all: Vec<usize> = (0..scene.particles.len()).collect();
+        let step = Some(u32::try_from(end / 2).expect("few"));
+        let mut of_zones = right.clone();
+        spoil(&mut of_zones[end..], &all);
+        assert_eq!(told(&scene, of_zones), NotFinite { step, stage: NanStage::Zones, is_nan: true }, "{name}");
+        let mut of_rounds = right;
+        spoil(&mut of_rounds[end - 1..], &all);
+        assert_eq!(told(&scene, of_rounds), NotFinite { step, stage: NanStage::ImpulseRounds, is_nan: true }, "{name}");
+    }
+    assert!(seen > 2, "{seen}");
+}

@@ -1,0 +1,41 @@
+//! What is said where a trace holds what is no finite number.
+use fosssim_mistakes::diagnose::{NanStage, NotFinite};
+
+/// From which step on, which stage makes it, and what usually does.
+pub(super) fn what(found: &NotFinite) -> String {
+    let what = if found.is_nan { "NaN (not a number)" } else { "an infinite number" };
+    let where_from = match (found.step, found.stage) {
+        (_, NanStage::FirstRecord) => "In the first record".to_owned(),
+        (Some(step), _) => format!("From step {step} on"),
+        (None, _) => "From some step on".to_owned(),
+    };
+    let (makes, divisors) = match found.stage {
+        NanStage::FirstRecord => {
+            return format!(
+                "{where_from} there is {what}: nothing has moved yet, so look at how the trace is written."
+            );
+        }
+        NanStage::Motion => ("the motion before any contact makes it", "a mass or a step size"),
+        NanStage::Detection(Some(kind)) => {
+            let name = kind.name();
+            return sentences(&where_from, what, &format!("the {name} detection makes it"), "a length or a step size");
+        }
+        NanStage::Detection(None) => ("a detection makes it", "a length or a step size"),
+        NanStage::ContactVectors => ("a contact vector or its time makes it", "the length of an edge or of a normal"),
+        NanStage::Responses => ("a collision response makes it", "a mass or the length of a contact vector"),
+        NanStage::ImpulseRounds => {
+            ("an impulse round makes it", "a mass, or the length of an edge or of a contact vector")
+        }
+        NanStage::Zones => {
+            ("the impact zones or the rigid failsafe make it", "a mass, a moment of inertia or a step size")
+        }
+    };
+    sentences(&where_from, what, makes, divisors)
+}
+
+fn sentences(where_from: &str, what: &str, makes: &str, divisors: &str) -> String {
+    let root = if what.starts_with("NaN") { ", or the root of a negative number" } else { "" };
+    format!(
+        "{where_from} there is {what}: {makes} from finite numbers. The usual cause is a division by {divisors} that is zero{root}."
+    )
+}
