@@ -238,6 +238,9 @@ Example:
 pub(super) struct SuiteCheck {
     /// The suite: a file, or one that comes with the program.
     pub(super) suite: String,
+    /// List which pairs of properties no step of its scenes has, too.
+    #[arg(long)]
+    pub(super) missing: bool,
 }
 
 /// Lists the suites that come with the program; the first one is meant where none is named.

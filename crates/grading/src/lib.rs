@@ -11,6 +11,7 @@ pub mod cards;
 mod cast;
 mod conclude;
 pub mod config;
+pub mod coverage;
 mod execute;
 mod fault;
 mod form;

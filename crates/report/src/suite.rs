@@ -6,6 +6,7 @@ use super::{
 };
 use fosssim_grading::{
     config::Credit,
+    coverage::{Coverage, FAMILIES},
     plan::{Plan, PlannedGroup},
 };
 use fosssim_judge::{PairWords, PassWords, Rules, fair::Borderline};
@@ -19,13 +20,23 @@ pub type Undecided = (String, Result<Vec<Borderline>, StepError>);
 /// So many decisions of a scene are listed.
 const LISTED: usize = 3;
 
+/// What the scenes of a suite contain, and whether what is missing is listed.
+#[derive(Debug)]
+pub struct Contents {
+    /// What is measured.
+    pub coverage: Coverage,
+    /// Whether each missing pair of properties has a line.
+    pub lists_missing: bool,
+}
+
 /// The whole report; `undecided` holds the scenes of which there is something to say.
 #[must_use]
-pub fn text(plan: &Plan, undecided: &[Undecided], style: Style) -> String {
+pub fn text(plan: &Plan, contents: &Contents, undecided: &[Undecided], style: Style) -> String {
     let mut text = head(plan, style);
     for group in &plan.groups {
         text += &of_group(group, style);
     }
+    text += &of_contents(contents, style);
     for (scene, found) in undecided {
         text += &note(scene, found, style);
     }
@@ -140,6 +151,29 @@ fn of_group(group: &PlannedGroup, style: Style) -> String {
         let steps = counted(task.scene.steps().into(), "step");
         let _ = writeln!(text, "  {} ({particles}, {steps})", one_line(&task.name));
     }
+    text
+}
+
+/// How much of what can happen in steps the scenes contain; nothing for scenes of earlier assignments.
+fn of_contents(contents: &Contents, style: Style) -> String {
+    let coverage = &contents.coverage;
+    if coverage.is_empty() {
+        return String::new();
+    }
+    let title = style.paint(Look::Strong, "What happens in the scenes' steps, by pairs of properties");
+    let mut text = format!("\n{title}\n");
+    let width = FAMILIES.iter().map(|family| family.name.len()).max().unwrap_or(0);
+    let (mut all_seen, mut all) = (0, 0);
+    for (index, family) in FAMILIES.iter().enumerate() {
+        let (seen, possible) = coverage.counts(index);
+        (all_seen, all) = (all_seen + seen, all + possible);
+        let _ = writeln!(text, "  {:width$}  {seen:4} of {possible:4}", family.name);
+        for missing in coverage.missing().filter(|one| contents.lists_missing && one.family == index) {
+            let _ = writeln!(text, "    missing: {}", missing.words());
+        }
+    }
+    let hint = if contents.lists_missing || all_seen == all { "" } else { "; --missing lists the others" };
+    let _ = writeln!(text, "  {:width$}  {all_seen:4} of {all:4}{hint}", "together");
     text
 }
 

@@ -8,8 +8,8 @@ use crate::{
         values::TextOrJson,
     },
     judge::fair::borderline,
-    report::suite::{Undecided, list, list_json, text},
-    suite::{config, plan},
+    report::suite::{Contents, Undecided, list, list_json, text},
+    suite::{config, coverage::Coverage, plan},
 };
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -26,9 +26,10 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
                 None => console::print(text.as_bytes())?,
             }
         }
-        Suite::Check(SuiteCheck { suite }) => {
+        Suite::Check(SuiteCheck { suite, missing }) => {
             let plan = plan::find(suite)?;
-            console::report(&text(&plan, &undecided(&plan), console::style()))?;
+            let contents = Contents { coverage: coverage(&plan), lists_missing: *missing };
+            console::report(&text(&plan, &contents, &undecided(&plan), console::style()))?;
         }
         Suite::List(SuiteList { format }) => {
             let suites = built_in()?;
@@ -61,4 +62,14 @@ fn undecided(plan: &plan::Plan) -> Vec<Undecided> {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().map(|task| (task.name.clone(), borderline(&task.scene)));
     all.filter(|(_, found)| !matches!(found, Ok(found) if found.is_empty())).collect()
+}
+
+/// What the scenes contain, measured on all cores. Of a scene that can't be simulated to its end `undecided` tells.
+fn coverage(plan: &plan::Plan) -> Coverage {
+    let tasks: Vec<_> = plan.scenes().collect();
+    let all: Vec<Coverage> = tasks.par_iter().filter_map(|task| Coverage::of(&task.scene).ok()).collect();
+    all.iter().fold(Coverage::default(), |mut coverage, one| {
+        coverage.add(one);
+        coverage
+    })
 }

@@ -1,0 +1,224 @@
+//! The properties of what an observer hears: of a detection call, and of a zone that is about to be moved.
+use super::axes::{
+    Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Found, Integrator, Kind, Likeness, Limit, Motion,
+    Normal, Place, Radii, Restitution, Side, SomeFixed, When, Why,
+};
+use fosssim_model::{
+    scene::{self, Collision, Edge, Scene},
+    sim::{Detection, Pair, PairKind, Stage},
+};
+use fosssim_num::{
+    polynomial::Polynomial,
+    vector::{Vec2, at, over},
+};
+
+/// Positions closer to an end of an edge than this part of it are near it.
+const NEAR: f64 = 0.05;
+
+/// Where a pair is looked at.
+pub(super) const fn found(stage: Stage) -> Found {
+    match stage {
+        Stage::Simple | Stage::ContinuousTime => Found::Continuous,
+        Stage::Impulses { round: 0 } => Found::First,
+        Stage::Impulses { .. } => Found::Later,
+        Stage::Geometric { round: 0 } => Found::Zones,
+        Stage::Geometric { .. } => Found::Grown,
+    }
+}
+
+pub(super) fn when(time: f64) -> When {
+    match time {
+        0.0 => When::Start,
+        1.0 => When::End,
+        _ => When::Within,
+    }
+}
+
+pub(super) fn restitution(scene: &Scene) -> Restitution {
+    match scene.collision {
+        Collision::Simple { restitution }
+        | Collision::ContinuousTime { restitution }
+        | Collision::Hybrid { restitution, .. } => match restitution {
+            0.0 => Restitution::Zero,
+            1.0 => Restitution::One,
+            _ => Restitution::Between,
+        },
+        Collision::None | Collision::Penalty { .. } => Restitution::One,
+    }
+}
+
+pub(super) const fn integrator(scene: &Scene) -> Integrator {
+    match scene.integrator {
+        scene::Integrator::ExplicitEuler => Integrator::Explicit,
+        scene::Integrator::ForwardBackwardEuler | scene::Integrator::SymplecticEuler => Integrator::ForwardBackward,
+        scene::Integrator::ImplicitEuler => Integrator::Implicit,
+        scene::Integrator::LinearizedImplicitEuler => Integrator::Linearized,
+    }
+}
+
+pub(super) const fn limit(scene: &Scene) -> Limit {
+    match scene.collision {
+        Collision::Hybrid { max_iterations: ..=0, .. } => Limit::Zero,
+        Collision::Hybrid { max_iterations: 1, .. } => Limit::One,
+        _ => Limit::More,
+    }
+}
+
+/// The particles of a pair: one and the other, or one and the two ends.
+pub(super) fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
+    let (one, other) = (pair.first as usize, pair.second as usize);
+    match pair.kind {
+        PairKind::ParticleParticle => vec![one, other],
+        PairKind::ParticleEdge => vec![one, scene.edges[other].first, scene.edges[other].second],
+        PairKind::ParticleHalfPlane => vec![one],
+    }
+}
+
+pub(super) fn fixed_of_two(scene: &Scene, bodies: &[usize]) -> FixedOfTwo {
+    match (scene.particles[bodies[0]].fixed, scene.particles[bodies[1]].fixed) {
+        (false, false) => FixedOfTwo::None,
+        (true, false) => FixedOfTwo::First,
+        (false, true) => FixedOfTwo::Second,
+        (true, true) => FixedOfTwo::Both,
+    }
+}
+
+pub(super) fn fixed_of_three(scene: &Scene, bodies: &[usize]) -> FixedOfThree {
+    let fixed = |index: usize| scene.particles[bodies[index]].fixed;
+    match (fixed(0), fixed(1), fixed(2)) {
+        (false, false, false) => FixedOfThree::None,
+        (true, false, false) => FixedOfThree::Particle,
+        (false, true, false) => FixedOfThree::First,
+        (false, false, true) => FixedOfThree::Second,
+        (false, true, true) => FixedOfThree::Ends,
+        (true, true, true) => FixedOfThree::All,
+        (true, ..) => FixedOfThree::ParticleAndEnd,
+    }
+}
+
+pub(super) fn fixed_one(scene: &Scene, bodies: &[usize]) -> FixedOne {
+    if scene.particles[bodies[0]].fixed { FixedOne::Fixed } else { FixedOne::Free }
+}
+
+pub(super) fn some_fixed(scene: &Scene, bodies: &[usize]) -> SomeFixed {
+    match bodies.iter().filter(|&&body| scene.particles[body].fixed).count() {
+        0 => SomeFixed::None,
+        all if all == bodies.len() => SomeFixed::All,
+        _ => SomeFixed::Some,
+    }
+}
+
+pub(super) fn masses(scene: &Scene, bodies: &[usize]) -> Likeness {
+    let first = scene.particles[bodies[0]].mass;
+    if bodies.iter().all(|&body| scene.particles[body].mass == first) { Likeness::Equal } else { Likeness::Unequal }
+}
+
+/// Whether all radii are the same: those of the particles, of an edge where only it and the particle count.
+pub(super) fn radii(scene: &Scene, bodies: &[usize], edge: Option<&Edge>) -> Radii {
+    let first = scene.particles[bodies[0]].radius;
+    let equal = match edge {
+        Some(edge) => edge.radius == first,
+        None => bodies.iter().all(|&body| scene.particles[body].radius == first),
+    };
+    if equal { Radii::Equal } else { Radii::Unequal }
+}
+
+pub(super) const fn company(alone: bool) -> Company {
+    if alone { Company::Alone } else { Company::Several }
+}
+
+pub(super) const fn kind(kind: PairKind) -> Kind {
+    match kind {
+        PairKind::ParticleParticle => Kind::Particles,
+        PairKind::ParticleEdge => Kind::Edge,
+        PairKind::ParticleHalfPlane => Kind::HalfPlane,
+    }
+}
+
+pub(super) const fn ends(edge: &Edge) -> Ends {
+    match (edge.first, edge.second) {
+        (first, second) if second == first + 1 => Ends::Next,
+        (first, second) if first == second + 1 => Ends::Previous,
+        (first, second) if first < second => Ends::Up,
+        _ => Ends::Down,
+    }
+}
+
+/// Where a body is at a time, as a part of the step.
+fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
+    let start = at(detection.q_start, body);
+    start + time * (at(detection.q_end, body) - start)
+}
+
+pub(super) fn place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> Place {
+    let [one, two, three] = [0, 1, 2].map(|index| position(detection, bodies[index], time));
+    match (one - two).dot(&(three - two)) / (three - two).dot(&(three - two)) {
+        ..NEAR => Place::First,
+        alpha if alpha > 1.0 - NEAR => Place::Second,
+        _ => Place::Inside,
+    }
+}
+
+pub(super) fn edge_motion(detection: &Detection<'_>, bodies: &[usize]) -> EdgeMotion {
+    let [two, three] = [1, 2].map(|index| {
+        let body = bodies[index];
+        at(detection.q_end, body) - at(detection.q_start, body)
+    });
+    match (two, three) {
+        (two, three) if two != three => EdgeMotion::Turned,
+        (two, _) if two == Vec2::zeros() => EdgeMotion::Still,
+        _ => EdgeMotion::Shifted,
+    }
+}
+
+pub(super) fn side(scene: &Scene, detection: &Detection<'_>) -> Side {
+    let plane = &scene.half_planes[detection.pair.second as usize];
+    let offset = at(detection.q_start, detection.pair.first as usize) - plane.point;
+    if offset.dot(&plane.normal) < 0.0 { Side::Behind } else { Side::Front }
+}
+
+pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
+    let normal = scene.half_planes[pair.second as usize].normal;
+    if (normal.dot(&normal) - 1.0).abs() < 1e-6 { Normal::Unit } else { Normal::Other }
+}
+
+/// Why a pair does not collide, by the signs of its polynomials at a few times of this step and of the next one.
+pub(super) fn why(kind: PairKind, polynomials: &[Polynomial]) -> Why {
+    const TIMES: u32 = 8;
+    let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
+    let holds_but = |left_out: usize, range: std::ops::RangeInclusive<u32>| {
+        range
+            .map(|time| f64::from(time) / f64::from(TIMES))
+            .any(|time| polynomials.iter().enumerate().all(|(index, one)| positive(one, time) != (index == left_out)))
+    };
+    let approach = polynomials.len().saturating_sub(1);
+    let is_edge = kind == PairKind::ParticleEdge;
+    match () {
+        () if holds_but(approach, 0..=TIMES) => Why::Parting,
+        () if is_edge && holds_but(1, 0..=TIMES) => Why::BesideFirst,
+        () if is_edge && holds_but(2, 0..=TIMES) => Why::BesideSecond,
+        () if holds_but(polynomials.len(), TIMES + 1..=2 * TIMES) => Why::Late,
+        () => Why::Never,
+    }
+}
+
+/// How a zone moves from the start of the step to where the failsafe finds it, in the arithmetic of collisions.md 5: what does not
+/// turn has no angular momentum to the last bit.
+pub(super) fn motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
+    let mass = |particle: usize| scene.particles[particle].mass;
+    let moved = |particle| at(q_end, particle) - at(q_start, particle);
+    if particles.iter().all(|&particle| moved(particle) == Vec2::zeros()) {
+        return Motion::Rests;
+    }
+    let total: f64 = particles.iter().map(|&particle| mass(particle)).sum();
+    let mean = |value: &dyn Fn(usize) -> Vec2| {
+        let sum = particles.iter().fold(Vec2::zeros(), |sum, &particle| sum + mass(particle) * value(particle));
+        over(sum, total)
+    };
+    let (centre, shift) = (mean(&|particle| at(q_start, particle)), mean(&moved));
+    let momentum = particles.iter().fold(0.0, |momentum, &particle| {
+        let (arm, relative) = (at(q_start, particle) - centre, moved(particle) - shift);
+        momentum + mass(particle) * (arm.x * relative.y - arm.y * relative.x)
+    });
+    if particles.len() == 1 || momentum == 0.0 { Motion::Shifts } else { Motion::Turns }
+}

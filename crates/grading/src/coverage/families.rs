@@ -1,0 +1,163 @@
+//! What happens in a step, by its properties: the kinds of events that are counted, and which properties exclude each other.
+use super::axes::{
+    Age, Axis, Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Forces, Found, Held, Hits, Integrator,
+    Kind, Likeness, Limit, Links, LoopEnd, Motion, Normal, Penalty, Place, Position, Radii, Restitution, Rounds, Side,
+    Size, SomeFixed, Value, When, Why, ZoneCount, ZoneEdge,
+};
+
+/// A kind of event with its properties. Scenes have to contain every pair of values of two of them.
+#[derive(Debug)]
+pub struct Family {
+    /// What happens.
+    pub name: &'static str,
+    /// Its properties.
+    pub axes: &'static [Axis],
+    /// Pairs of values that no event can have.
+    pub(super) never: &'static [(Value, Value)],
+}
+
+/// Declares the events of a kind: their properties, and what excludes each other.
+macro_rules! family {
+    ($type:ident, $name:literal { $($field:ident: $axis:ident),+ $(,)? } never $never:expr) => {
+        #[derive(Debug, Clone, Copy)]
+        pub(super) struct $type {
+            $(pub(super) $field: $axis),+
+        }
+
+        impl $type {
+            pub(super) const FAMILY: Family = Family { name: $name, axes: &[$($axis::AXIS),+], never: $never };
+
+            pub(super) const fn values(&self) -> [usize; Self::FAMILY.axes.len()] {
+                [$(self.$field as usize),+]
+            }
+        }
+    };
+}
+
+/// What excludes each other: a value, and all those of another property that no event has with it.
+macro_rules! never {
+    ($($one:ident::$value:ident with $other:ident::{$($excluded:ident),+}),* $(,)?) => {
+        &[$($((($one::AXIS.name, $one::$value as usize), ($other::AXIS.name, $other::$excluded as usize))),+),*]
+    };
+}
+
+family!(ParticleContact, "two particles collide" {
+    found: Found,
+    when: When,
+    fixed: FixedOfTwo,
+    masses: Likeness,
+    radii: Radii,
+    company: Company,
+    restitution: Restitution,
+    integrator: Integrator,
+} never never![]);
+
+family!(EdgeContact, "a particle and an edge collide" {
+    found: Found,
+    when: When,
+    fixed: FixedOfThree,
+    place: Place,
+    ends: Ends,
+    motion: EdgeMotion,
+    masses: Likeness,
+    radii: Radii,
+    company: Company,
+    restitution: Restitution,
+    integrator: Integrator,
+} never never![]);
+
+family!(HalfPlaneContact, "a particle and a half-plane collide" {
+    found: Found,
+    when: When,
+    fixed: FixedOne,
+    side: Side,
+    normal: Normal,
+    company: Company,
+    restitution: Restitution,
+    integrator: Integrator,
+} never never![]);
+
+family!(NoContact, "a pair does not collide" {
+    kind: Kind,
+    why: Why,
+    found: Found,
+    fixed: SomeFixed,
+} never never![
+    // Only edges have ends to pass beside, and a half-plane has one particle, which is fixed or not.
+    Kind::Particles with Why::{BesideFirst, BesideSecond},
+    Kind::HalfPlane with Why::{BesideFirst, BesideSecond},
+    Kind::HalfPlane with SomeFixed::{Some},
+]);
+
+family!(MovedZone, "the failsafe moves a zone" {
+    size: Size,
+    held: Held,
+    motion: Motion,
+    age: Age,
+    position: Position,
+    edge: ZoneEdge,
+    links: Links,
+    masses: Likeness,
+    radii: Radii,
+    limit: Limit,
+    integrator: Integrator,
+} never never![
+    // What is alone hits a half-plane, cannot turn, has not grown, has no edge and nobody to be unlike.
+    Size::One with Held::{Nothing, Fixed},
+    Size::One with Motion::{Turns},
+    Size::One with Age::{Grown},
+    Size::One with ZoneEdge::{Next, Previous, Apart},
+    Size::One with Likeness::{Unequal},
+    Size::One with Radii::{Unequal},
+    // An edge and its particle are three. One contact joins three at most, and a half-plane has a contact of its own.
+    Size::Two with ZoneEdge::{Next, Previous, Apart},
+    Size::More with Links::{One},
+]);
+
+family!(ContinuousStep, "a step of continuous-time" {
+    hits: Hits,
+    restitution: Restitution,
+    forces: Forces,
+    integrator: Integrator,
+} never never![]);
+
+family!(HybridStep, "a step of hybrid" {
+    end: LoopEnd,
+    zones: ZoneCount,
+    rounds: Rounds,
+    limit: Limit,
+    restitution: Restitution,
+    forces: Forces,
+    penalty: Penalty,
+    integrator: Integrator,
+} never never![
+    // Zones are looked for where impulses do not suffice, and then there is a round.
+    LoopEnd::Nothing with ZoneCount::{One, Several},
+    LoopEnd::Within with ZoneCount::{One, Several},
+    LoopEnd::JustEnough with ZoneCount::{One, Several},
+    LoopEnd::Nothing with Rounds::{One, Two, More},
+    LoopEnd::Within with Rounds::{One, Two, More},
+    LoopEnd::JustEnough with Rounds::{One, Two, More},
+    LoopEnd::RunOut with Rounds::{None},
+    LoopEnd::NotAllowed with Rounds::{None},
+    Limit::Zero with Rounds::{None},
+    // A second round follows from a new zone.
+    ZoneCount::None with Rounds::{Two, More},
+    ZoneCount::One with Rounds::{None},
+    ZoneCount::Several with Rounds::{None},
+    // What a limit allows.
+    Limit::Zero with LoopEnd::{Nothing, Within, JustEnough, RunOut},
+    Limit::One with LoopEnd::{Within, JustEnough, NotAllowed},
+    Limit::More with LoopEnd::{NotAllowed},
+]);
+
+/// All kinds of events.
+pub const FAMILIES: [Family; 7] = [
+    ParticleContact::FAMILY,
+    EdgeContact::FAMILY,
+    HalfPlaneContact::FAMILY,
+    NoContact::FAMILY,
+    MovedZone::FAMILY,
+    ContinuousStep::FAMILY,
+    HybridStep::FAMILY,
+];

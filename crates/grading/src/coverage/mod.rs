@@ -1,0 +1,132 @@
+//! What the scenes of a suite contain, measured from the reference's run: kinds of contacts, zones and steps.
+//!
+//! What happens in a step is an event with properties ([`FAMILIES`]): a contact, a pair that does not collide, a zone that the failsafe
+//! moves, the step as a whole. A suite covers two values of two properties when one event of one of its scenes has both. A mistake
+//! that shows with one or two properties together therefore meets a scene where it can show; the mutants of
+//! [`fosssim_mistakes::student`] tell whether it does.
+mod axes;
+mod events;
+mod families;
+mod watch;
+
+pub use axes::Axis;
+pub use families::{FAMILIES, Family};
+
+use fosssim_model::{
+    assignments::Assignment,
+    scene::Scene,
+    sim::{RootSearch, Simulation, StepError},
+};
+use std::collections::BTreeSet;
+
+/// Two values of one kind of event, by their numbers: the kind, and twice a property and its value. The first property comes before
+/// the second in the family's list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Pairing {
+    /// The kind of event, an index into [`FAMILIES`].
+    pub family: usize,
+    /// A property and its value.
+    pub one: (usize, usize),
+    /// Another property and its value.
+    pub other: (usize, usize),
+}
+
+impl Pairing {
+    /// All that some event can have.
+    pub fn all() -> impl Iterator<Item = Self> {
+        FAMILIES
+            .iter()
+            .enumerate()
+            .flat_map(|(family, of)| {
+                let values = move || {
+                    let axes = of.axes.iter().enumerate();
+                    axes.flat_map(|(axis, values)| (0..values.values.len()).map(move |value| (axis, value)))
+                };
+                let pairs = values().flat_map(move |one| values().map(move |other| (one, other)));
+                pairs.filter(|(one, other)| one.0 < other.0).map(move |(one, other)| Self { family, one, other })
+            })
+            .filter(|pairing| pairing.is_possible())
+    }
+
+    fn is_possible(self) -> bool {
+        let family = &FAMILIES[self.family];
+        let value = |(axis, value): (usize, usize)| (family.axes[axis].name, value);
+        let (one, other) = (value(self.one), value(self.other));
+        !family.never.iter().any(|never| *never == (one, other) || *never == (other, one))
+    }
+
+    /// Both values in words: `fixed: the first, time: start of the step`.
+    #[must_use]
+    pub fn words(self) -> String {
+        let value = |(axis, value): (usize, usize)| {
+            let axis = &FAMILIES[self.family].axes[axis];
+            format!("{}: {}", axis.name, axis.values[value])
+        };
+        format!("{}, {}", value(self.one), value(self.other))
+    }
+}
+
+/// What some scenes contain.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Coverage {
+    seen: BTreeSet<Pairing>,
+}
+
+impl Coverage {
+    /// What one scene contains; nothing where its collisions are not those of the assignment whose steps are looked at.
+    ///
+    /// # Errors
+    /// When it can't be simulated to its end.
+    pub fn of(scene: &Scene) -> Result<Self, StepError> {
+        let mut coverage = Self::default();
+        if scene.assignment() == Assignment::T2M2 {
+            let mut watch = watch::Watch::new(scene, &mut coverage);
+            let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+            for _ in 0..scene.steps() {
+                simulation.step(&mut watch)?;
+            }
+        }
+        Ok(coverage)
+    }
+
+    /// Adds what other scenes contain.
+    pub fn add(&mut self, other: &Self) {
+        self.seen.extend(&other.seen);
+    }
+
+    /// Whether nothing is known of any step.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.seen.is_empty()
+    }
+
+    /// Whether some event has both values.
+    #[must_use]
+    pub fn has(&self, pairing: Pairing) -> bool {
+        self.seen.contains(&pairing)
+    }
+
+    /// How many of the pairs of values of a kind of event there are, and of how many that can be.
+    #[must_use]
+    pub fn counts(&self, family: usize) -> (usize, usize) {
+        let all = || Pairing::all().filter(|pairing| pairing.family == family);
+        (all().filter(|pairing| self.has(*pairing)).count(), all().count())
+    }
+
+    /// The pairs of values that are missing.
+    pub fn missing(&self) -> impl Iterator<Item = Pairing> {
+        Pairing::all().filter(|pairing| !self.has(*pairing))
+    }
+
+    /// Notes an event.
+    fn note(&mut self, family: usize, values: &[usize]) {
+        for (first, &one) in values.iter().enumerate() {
+            for (second, &other) in values.iter().enumerate().skip(first + 1) {
+                self.seen.insert(Pairing { family, one: (first, one), other: (second, other) });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

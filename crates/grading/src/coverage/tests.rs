@@ -1,0 +1,45 @@
+use super::*;
+use crate::library;
+use fosssim_model::scene::read;
+
+fn of(text: &str) -> Coverage {
+    Coverage::of(&read("scene", text.as_bytes()).expect("a scene").scene).expect("a run")
+}
+
+fn has(coverage: &Coverage, one: &str, other: &str) -> bool {
+    let is = |pairing: &Pairing| pairing.words() == format!("{one}, {other}");
+    assert!(Pairing::all().any(|pairing| is(&pairing)), "no such pair: {one}, {other}");
+    Pairing::all().any(|pairing| is(&pairing) && coverage.has(pairing))
+}
+
+#[test]
+fn what_happens_is_seen_with_its_properties() {
+    // Two discs run side by side into one another's edge of a world without impulses: a zone that shifts and does not turn.
+    let coverage = of(r#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/>
+        <collision type="hybrid" COR="0.5" maxiters="0" k="0" thickness="0"/>
+        <particle m="1" px="0" py="0" vx="4" vy="0" fixed="0" radius="1"/>
+        <particle m="3" px="3" py="0" vx="0" vy="0" fixed="0" radius="1"/></scene>"#);
+    assert!(has(&coverage, "held by: nothing", "motion: shifts only"));
+    assert!(has(&coverage, "time: within the step", "masses: unequal"));
+    assert!(has(&coverage, "impulses: the limit is 0", "zones: one"));
+    assert!(!has(&coverage, "held by: nothing", "motion: turns"));
+    assert!(!has(&coverage, "fixed: the first", "masses: unequal"));
+}
+
+#[test]
+fn earlier_assignments_contain_nothing_of_this() {
+    let coverage = of(r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.5"/>
+        <collision type="simple" COR="1"/><particle m="1" px="0" py="0" vx="4" vy="0" fixed="0" radius="1"/></scene>"#);
+    assert!(coverage.is_empty());
+}
+
+#[test]
+fn nothing_is_seen_that_cannot_be() {
+    for name in library::names() {
+        let scene = read(name, library::scene(name).expect("a scene")).expect("sound").scene;
+        let seen = Coverage::of(&scene).expect("a run").seen;
+        let wrong: Vec<String> =
+            seen.iter().filter(|one| !one.is_possible()).map(|one| format!("{name}: {}", one.words())).collect();
+        assert!(wrong.is_empty(), "{wrong:#?}");
+    }
+}

@@ -1,0 +1,315 @@
+//! Hears the reference's run and notes every event.
+use super::{
+    Coverage,
+    axes::{Age, Forces, Held, Hits, Links, LoopEnd, Penalty, Position, Rounds, ZoneCount, ZoneEdge},
+    events,
+    families::{ContinuousStep, EdgeContact, HalfPlaneContact, HybridStep, MovedZone, NoContact, ParticleContact},
+};
+use fosssim_model::{
+    scene::{Collision, Force, Scene},
+    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State, Zone},
+};
+use std::collections::BTreeSet;
+
+/// A contact of the pass that runs, with what is known before the pass is over.
+enum Contact {
+    Particles(ParticleContact),
+    Edge(EdgeContact),
+    HalfPlane(HalfPlaneContact),
+}
+
+/// A zone as the last round had it.
+type Known = (Vec<usize>, bool);
+
+pub(super) struct Watch<'a> {
+    scene: &'a Scene,
+    coverage: &'a mut Coverage,
+    stage: Stage,
+    q_start: Vec<f64>,
+    q_end: Vec<f64>,
+    contacts: Vec<(Vec<usize>, Contact)>,
+    /// What the impulse rounds of the step, or its only pass, have found, pass by pass.
+    hits: Vec<usize>,
+    /// All contacts of the step's passes for zones.
+    zone_contacts: BTreeSet<Pair>,
+    /// The zones that are moved in this round, and those of the round before.
+    zones: Vec<Known>,
+    before: Vec<Known>,
+    rounds: u32,
+}
+
+/// The numbers of the families in the list of all.
+mod family {
+    pub(super) const PARTICLES: usize = 0;
+    pub(super) const EDGE: usize = 1;
+    pub(super) const HALF_PLANE: usize = 2;
+    pub(super) const NO_CONTACT: usize = 3;
+    pub(super) const ZONE: usize = 4;
+    pub(super) const CONTINUOUS: usize = 5;
+    pub(super) const HYBRID: usize = 6;
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(scene: &'a Scene, coverage: &'a mut Coverage) -> Self {
+        Self {
+            scene,
+            coverage,
+            stage: Stage::Simple,
+            q_start: Vec::new(),
+            q_end: Vec::new(),
+            contacts: Vec::new(),
+            hits: Vec::new(),
+            zone_contacts: BTreeSet::new(),
+            zones: Vec::new(),
+            before: Vec::new(),
+            rounds: 0,
+        }
+    }
+
+    fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64) -> Contact {
+        let scene = self.scene;
+        let (found, when) = (events::found(self.stage), events::when(time));
+        let (restitution, integrator) = (events::restitution(scene), events::integrator(scene));
+        let (masses, company) = (events::masses(scene, bodies), events::company(true));
+        match detection.pair.kind {
+            PairKind::ParticleParticle => {
+                let (fixed, radii) = (events::fixed_of_two(scene, bodies), events::radii(scene, bodies, None));
+                Contact::Particles(ParticleContact {
+                    found,
+                    when,
+                    fixed,
+                    masses,
+                    radii,
+                    company,
+                    restitution,
+                    integrator,
+                })
+            }
+            PairKind::ParticleEdge => {
+                let edge = &scene.edges[detection.pair.second as usize];
+                Contact::Edge(EdgeContact {
+                    found,
+                    when,
+                    fixed: events::fixed_of_three(scene, bodies),
+                    place: events::place(detection, bodies, time),
+                    ends: events::ends(edge),
+                    motion: events::edge_motion(detection, bodies),
+                    masses,
+                    radii: events::radii(scene, bodies, Some(edge)),
+                    company,
+                    restitution,
+                    integrator,
+                })
+            }
+            PairKind::ParticleHalfPlane => {
+                let fixed = events::fixed_one(scene, bodies);
+                let (side, normal) = (events::side(scene, detection), events::normal(scene, detection.pair));
+                Contact::HalfPlane(HalfPlaneContact {
+                    found,
+                    when,
+                    fixed,
+                    side,
+                    normal,
+                    company,
+                    restitution,
+                    integrator,
+                })
+            }
+        }
+    }
+
+    /// Notes the contacts of a pass, now that it is known which have bodies in common.
+    fn note_contacts(&mut self) {
+        let contacts = std::mem::take(&mut self.contacts);
+        for (index, (bodies, contact)) in contacts.iter().enumerate() {
+            let shares = |other: &(Vec<usize>, Contact)| other.0.iter().any(|body| bodies.contains(body));
+            let alone = contacts.iter().enumerate().all(|(other, contact)| other == index || !shares(contact));
+            let company = events::company(alone);
+            match *contact {
+                Contact::Particles(contact) => {
+                    self.coverage.note(family::PARTICLES, &ParticleContact { company, ..contact }.values());
+                }
+                Contact::Edge(contact) => {
+                    self.coverage.note(family::EDGE, &EdgeContact { company, ..contact }.values());
+                }
+                Contact::HalfPlane(contact) => {
+                    self.coverage.note(family::HALF_PLANE, &HalfPlaneContact { company, ..contact }.values());
+                }
+            }
+        }
+    }
+
+    fn zone(&self, particles: &[usize], half_plane: bool) -> Vec<MovedZone> {
+        let scene = self.scene;
+        let is_known = |zone: &&Known| zone.0.iter().any(|one| particles.contains(one));
+        let age = match self.before.iter().find(is_known) {
+            _ if self.rounds == 1 => Age::First,
+            None => Age::New,
+            Some((same, flag)) if same == particles && *flag == half_plane => Age::Same,
+            Some(_) => Age::Grown,
+        };
+        let index = self.zones.iter().position(|zone| zone.0 == particles).unwrap_or(0);
+        let position = match (index, self.zones.len()) {
+            (_, 0 | 1) => Position::Only,
+            (0, _) => Position::First,
+            (last, all) if last + 1 == all => Position::Last,
+            _ => Position::Between,
+        };
+        let size = match particles.len() {
+            1 => super::axes::Size::One,
+            2 => super::axes::Size::Two,
+            3 => super::axes::Size::Three,
+            _ => super::axes::Size::More,
+        };
+        let held = match (particles.iter().any(|&one| scene.particles[one].fixed), half_plane) {
+            (false, false) => Held::Nothing,
+            (true, false) => Held::Fixed,
+            (false, true) => Held::HalfPlane,
+            (true, true) => Held::Both,
+        };
+        let contacts = || self.zone_contacts.iter().filter(|pair| particles.contains(&(pair.first as usize)));
+        let links = if contacts().count() > 1 { Links::Several } else { Links::One };
+        let zone = MovedZone {
+            size,
+            held,
+            motion: events::motion(scene, particles, &self.q_start, &self.q_end),
+            age,
+            position,
+            edge: ZoneEdge::None,
+            links,
+            masses: events::masses(scene, particles),
+            radii: events::radii(scene, particles, None),
+            limit: events::limit(scene),
+            integrator: events::integrator(scene),
+        };
+        let edge = |pair: &Pair| match events::ends(&scene.edges[pair.second as usize]) {
+            super::axes::Ends::Next => ZoneEdge::Next,
+            super::axes::Ends::Previous => ZoneEdge::Previous,
+            super::axes::Ends::Up | super::axes::Ends::Down => ZoneEdge::Apart,
+        };
+        let edges = contacts().filter(|pair| pair.kind == PairKind::ParticleEdge).map(edge);
+        let with_edges: Vec<MovedZone> = edges.map(|edge| MovedZone { edge, ..zone }).collect();
+        if with_edges.is_empty() { vec![zone] } else { with_edges }
+    }
+
+    fn hybrid_step(&self, max_iterations: i32, stiffness: f64) -> HybridStep {
+        let limit = usize::try_from(max_iterations).unwrap_or(0);
+        let ends_empty = self.hits.last() == Some(&0);
+        let end = match self.hits.len() {
+            0 => LoopEnd::NotAllowed,
+            1 if ends_empty => LoopEnd::Nothing,
+            rounds if ends_empty && rounds == limit => LoopEnd::JustEnough,
+            _ if ends_empty => LoopEnd::Within,
+            _ => LoopEnd::RunOut,
+        };
+        HybridStep {
+            end,
+            zones: match self.zones.len() {
+                0 => ZoneCount::None,
+                1 => ZoneCount::One,
+                _ => ZoneCount::Several,
+            },
+            rounds: match self.rounds {
+                0 => Rounds::None,
+                1 => Rounds::One,
+                2 => Rounds::Two,
+                _ => Rounds::More,
+            },
+            limit: events::limit(self.scene),
+            restitution: events::restitution(self.scene),
+            forces: forces(&self.scene.forces),
+            penalty: if stiffness == 0.0 { Penalty::Off } else { Penalty::On },
+            integrator: events::integrator(self.scene),
+        }
+    }
+}
+
+const fn forces(forces: &[Force]) -> Forces {
+    if forces.is_empty() { Forces::None } else { Forces::Some }
+}
+
+impl Observer for Watch<'_> {
+    fn begin_step(&mut self, _step: u32) {
+        self.hits.clear();
+        self.zone_contacts.clear();
+        self.zones.clear();
+        self.before.clear();
+        self.rounds = 0;
+    }
+
+    fn begin_pass(&mut self, pass: Pass) {
+        self.stage = pass.stage;
+        if let Stage::Geometric { round } = pass.stage {
+            self.rounds = round;
+        }
+    }
+
+    fn pass_positions(&mut self, q_start: &[f64], q_end: &[f64]) {
+        self.q_start.clear();
+        self.q_start.extend_from_slice(q_start);
+        self.q_end.clear();
+        self.q_end.extend_from_slice(q_end);
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let bodies = events::bodies(self.scene, detection.pair);
+        match detection.decision {
+            Decision::Hit { time, .. } => {
+                if matches!(self.stage, Stage::Geometric { .. }) {
+                    self.zone_contacts.insert(detection.pair);
+                }
+                let contact = self.contact(detection, &bodies, time);
+                self.contacts.push((bodies, contact));
+            }
+            Decision::Miss { .. } => {
+                let no_contact = NoContact {
+                    kind: events::kind(detection.pair.kind),
+                    why: events::why(detection.pair.kind, detection.polynomials),
+                    found: events::found(self.stage),
+                    fixed: events::some_fixed(self.scene, &bodies),
+                };
+                self.coverage.note(family::NO_CONTACT, &no_contact.values());
+            }
+        }
+    }
+
+    fn end_pass(&mut self, pass: Pass, hits: usize) {
+        self.note_contacts();
+        if !matches!(pass.stage, Stage::Geometric { .. }) {
+            self.hits.push(hits);
+        }
+    }
+
+    fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
+        let known = |zone: &Zone<'_>| (zone.particles.iter().map(|&one| one as usize).collect(), zone.half_plane);
+        self.before = std::mem::replace(&mut self.zones, zones.iter().map(known).collect());
+    }
+
+    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+        self.rounds = round;
+        let particles: Vec<usize> = zone.particles.iter().map(|&one| one as usize).collect();
+        for event in self.zone(&particles, zone.half_plane) {
+            self.coverage.note(family::ZONE, &event.values());
+        }
+    }
+
+    fn end_step(&mut self, _step: u32, _state: &State) {
+        match self.scene.collision {
+            Collision::Hybrid { max_iterations, stiffness, .. } => {
+                let step = self.hybrid_step(max_iterations, stiffness);
+                self.coverage.note(family::HYBRID, &step.values());
+            }
+            Collision::ContinuousTime { .. } => {
+                let hits = match self.hits.first().copied().unwrap_or(0) {
+                    0 => Hits::None,
+                    1 => Hits::One,
+                    _ => Hits::Several,
+                };
+                let (restitution, integrator) = (events::restitution(self.scene), events::integrator(self.scene));
+                let step = ContinuousStep { hits, restitution, forces: forces(&self.scene.forces), integrator };
+                self.coverage.note(family::CONTINUOUS, &step.values());
+            }
+            Collision::None | Collision::Simple { .. } | Collision::Penalty { .. } => {}
+        }
+    }
+}
