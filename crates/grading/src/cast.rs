@@ -7,7 +7,8 @@ use super::{
     plan::{self, Plan},
 };
 use fosssim_model::{
-    sim::{RootSearch, Simulation},
+    scene::Scene,
+    sim::{Observer, RootSearch, Simulation, Zone},
     trace::{Layout, Recorder},
 };
 use fosssim_sandbox::{Backend, Ended, FakeRun, Job, Stream};
@@ -28,16 +29,35 @@ pub(super) fn small_plan() -> Plan {
     plan::load(SUITE, Path::new("nowhere")).expect("a sound suite")
 }
 
-/// The right trace of the scene in a job's working folder.
-pub(super) fn right_trace(job: &Job) -> Vec<u8> {
+/// The scene in a job's working folder.
+fn scene(job: &Job) -> Scene {
     let xml = std::fs::read(job.folder.join("scene.xml")).expect("the scene");
-    let scene = fosssim_model::scene::read("scene.xml", &xml).expect("a sound scene").scene;
-    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
-    for _ in 0..scene.steps() {
+    fosssim_model::scene::read("scene.xml", &xml).expect("a sound scene").scene
+}
+
+/// The first steps of a scene's right trace.
+fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    for _ in 0..steps {
         simulation.step(&mut recorder).expect("a step");
     }
     recorder.finish().expect("memory").0
+}
+
+/// The right trace of the scene in a job's working folder.
+pub(super) fn right_trace(job: &Job) -> Vec<u8> {
+    let scene = scene(job);
+    trace(&scene, scene.steps())
+}
+
+/// Hears whether the failsafe moves a zone.
+struct Moved(bool);
+
+impl Observer for Moved {
+    fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {
+        self.0 = true;
+    }
 }
 
 /// Programs of this cast do what their names say.
@@ -58,6 +78,19 @@ fn act(job: &Job) -> FakeRun {
         Some("half") => {
             let trace = right_trace(job);
             FakeRun::wrote(&trace[..trace.len() / 2])
+        }
+        Some("crashes-in-the-failsafe") => {
+            let scene = scene(job);
+            let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+            let mut moved = Moved(false);
+            let step = (1..=scene.steps()).find(|_| {
+                simulation.step(&mut moved).expect("a step");
+                moved.0
+            });
+            match step {
+                Some(step) => FakeRun { ended: Ended::Signalled(11), ..FakeRun::wrote(trace(&scene, step - 1)) },
+                None => FakeRun::wrote(right_trace(job)),
+            }
         }
         Some("slow") => FakeRun { ended: Ended::WallLimit, ..FakeRun::wrote([]) },
         Some("lengthy") => FakeRun { cpu: Duration::from_secs(10), ..FakeRun::wrote(right_trace(job)) },

@@ -4,7 +4,7 @@
 //! clean exit does not excuse a wrong trace.
 use super::{
     config::{Hints, RunLimits},
-    result::{BadTrace, Limit, ReachedLimit, Reason, SceneResult, Wrong},
+    result::{BadTrace, Limit, Reached, Reason, SceneResult, Wrong},
     verdict::Verdict,
 };
 use fosssim_judge::{
@@ -101,15 +101,15 @@ fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
     }
 }
 
-/// The limit that a program was stopped at, and how far its trace had come.
-fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Option<ReachedLimit> {
+/// How far a program's trace had come, and the limit that it was stopped at.
+fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
     let limit = match ended {
-        Ended::CpuLimit => Limit::Time(limits.cpu),
-        Ended::WallLimit => Limit::Time(limits.wall),
-        Ended::MemoryLimit => Limit::Memory(limits.memory),
-        _ => return None,
+        Ended::CpuLimit => Some(Limit::Time(limits.cpu)),
+        Ended::WallLimit => Some(Limit::Time(limits.wall)),
+        Ended::MemoryLimit => Some(Limit::Memory(limits.memory)),
+        _ => None,
     };
-    Some(ReachedLimit { limit, steps: judged.steps_judged })
+    Reached { limit, steps: judged.steps_judged }
 }
 
 /// What the trace alone says.

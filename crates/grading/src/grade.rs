@@ -1,6 +1,7 @@
 //! The grade: what one submission got, scene by scene.
 use super::{
     config::Visibility,
+    located::Located,
     mirror,
     result::{BuildEnd, SceneResult},
     verdict::Verdict,
@@ -40,6 +41,8 @@ pub struct Grade {
     pub wall: Duration,
     /// Keys of mistakes that accepted scenes speak against ([`diagnose::refuted`](fosssim_mistakes::diagnose::refuted)).
     pub refuted: Vec<String>,
+    /// What the scenes have in common in which the program crashes or runs into a limit, where hints let it through.
+    pub located: Option<Located>,
 }
 
 impl Grade {

@@ -6,9 +6,11 @@
 use super::{
     cancellation::Cancellation,
     cards::Cards,
+    coverage::Coverage,
     execute::Runner,
     guard::guarded,
     key::Key,
+    located::{Content, Contents},
     patience,
     plan::Plan,
     result::{Failure, NotRunReason, Reason, SceneResult},
@@ -109,12 +111,20 @@ pub(super) struct Shared<'a> {
     kept: Mutex<BTreeSet<Key>>,
     /// Why results can't be kept any more.
     full: OnceLock<KeepError>,
+    /// What the plan's scenes contain, once somebody has asked.
+    contents: OnceLock<Vec<Contents>>,
 }
 
 impl<'a> Shared<'a> {
     pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
-        let (folders, kept, full) = (Folders::default(), Mutex::default(), OnceLock::new());
-        Self { cancellation, results, folders, words: grader.words(), kept, full }
+        let (folders, kept, full, contents) = (Folders::default(), Mutex::default(), OnceLock::new(), OnceLock::new());
+        Self { cancellation, results, folders, words: grader.words(), kept, full, contents }
+    }
+
+    /// What the reference's run of each scene contains. A scene without an end contains nothing that is known.
+    pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
+        let of = |task: &SceneTask| Coverage::of(&task.scene).map(|seen| Content::of(&seen)).unwrap_or_default();
+        self.contents.get_or_init(|| plan.scenes().map(of).collect())
     }
 
     /// Why results could no longer be kept.
@@ -184,7 +194,7 @@ pub(super) enum Progress {
 /// and its copy stays until the grade is drawn.
 pub(super) struct Grading<'a> {
     pub(super) grader: &'a Grader<'a>,
-    shared: &'a Shared<'a>,
+    pub(super) shared: &'a Shared<'a>,
     pub(super) submission: &'a Submission,
     /// The digest of the program as it lies there; none for what has to be built or copied first.
     digest: OnceLock<Option<blake3::Hash>>,

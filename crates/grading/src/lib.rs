@@ -22,6 +22,7 @@ pub mod headroom;
 mod hints;
 mod key;
 pub mod library;
+pub mod located;
 mod mirror;
 pub mod near;
 pub mod patience;

@@ -81,8 +81,8 @@ pub enum Reason {
     Trace(BadTrace),
     /// The program wrote no trace.
     NoTrace,
-    /// How the program ended ([`SceneResult::ended`]), with the limit that it ran into, if it was stopped at one.
-    Program(Option<ReachedLimit>),
+    /// How the program ended ([`SceneResult::ended`]), and how far it came.
+    Program(Reached),
     /// The scene was left out.
     LeftOut(NotRunReason),
     /// Grading was stopped.
@@ -149,12 +149,12 @@ pub enum BadTrace {
     Unfinished,
 }
 
-/// A limit that a program was stopped at, and how far its trace had come by then.
+/// How far a program came, and the limit that it was stopped at, if it was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ReachedLimit {
+pub struct Reached {
     /// The limit.
-    pub limit: Limit,
-    /// Steps that had been judged.
+    pub limit: Option<Limit>,
+    /// Steps whose records were complete.
     pub steps: u32,
 }
 

@@ -101,7 +101,11 @@ impl Grading<'_> {
             layers: active.map(|report| report.layer.name().to_owned()).collect(),
             wall,
             refuted,
+            located: None,
         };
+        if plan.hints.explains() {
+            grade.located = grade.locate(|| self.shared.contents(plan));
+        }
         grade.settle();
         grade
     }

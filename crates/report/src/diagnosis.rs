@@ -1,16 +1,17 @@
 //! The report of `explain`: what is likely wrong with a program, trace by trace and all together.
 use super::{
     explain::{ExplanationView, lines},
+    grade::one_line,
     style::{Look, Style},
-    words::first_divergence,
+    words::{first_divergence, located},
 };
-use fosssim_grading::told::ToldFinding;
+use fosssim_grading::{located::Located, told::ToldFinding};
 use fosssim_mistakes::diagnose::Explanation;
 use serde::Serialize;
 use std::fmt::Write;
 
 /// The version of the JSON report's schema (`schemas/explain.schema.json`).
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 /// What is to be said of one trace.
 #[derive(Debug, Clone)]
@@ -36,6 +37,8 @@ pub struct Diagnosis {
     pub cases: Vec<Case>,
     /// With several traces, the mistakes that explain them together, the one that explains most first.
     pub common: Vec<Explanation>,
+    /// What the scenes have in common in which the program crashes or runs into a limit.
+    pub located: Option<Located>,
 }
 
 impl Diagnosis {
@@ -55,6 +58,10 @@ impl Diagnosis {
         }
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();
         let _ = writeln!(text, "{} of {} traces are wrong by the fair rules.\n", wrong, self.cases.len());
+        if let Some(found) = &self.located {
+            let heading = style.paint(Look::Strong, "Where it fails");
+            let _ = writeln!(text, "{heading}\n  {}\n", one_line(&located(found)));
+        }
         for (number, common) in self.common.iter().enumerate() {
             let explained = self.cases.iter().filter(|case| common.is_named_in(&case.explanations)).count();
             let most = if number == 0 { "What explains most" } else { "What explains more" };
@@ -98,6 +105,7 @@ impl Diagnosis {
         let view = View {
             schema: SCHEMA,
             accepted: self.accepted(),
+            located: self.located.as_ref().map(located),
             common: self.common.first().map(ExplanationView::from),
             likely: self.common.iter().map(ExplanationView::from).collect(),
             traces: cases.collect(),
@@ -151,6 +159,7 @@ fn indented(explanations: &[Explanation]) -> String {
 struct View<'a> {
     schema: u32,
     accepted: bool,
+    located: Option<String>,
     common: Option<ExplanationView>,
     likely: Vec<ExplanationView>,
     traces: Vec<CaseView<'a>>,

@@ -1,11 +1,14 @@
 //! What happened on scenes, in words. Results travel as values up to here; every report takes its sentences from this place.
 pub mod explanation;
+mod located;
+
+pub use located::located;
 
 use fosssim_grading::{
     Grade, Unfit, Verdict,
     result::{
-        Activity, BadTrace, BuildEnd, Ended, Failure, FolderContents, KeptTrace, Limit, NotRunReason, ReachedLimit,
-        Reason, SceneResult, Unusable, Wrong,
+        Activity, BadTrace, BuildEnd, Ended, Failure, FolderContents, KeptTrace, Limit, NotRunReason, Reached, Reason,
+        SceneResult, Unusable, Wrong,
     },
     told::{ToldBook, ToldFinding, ToldPlace},
 };
@@ -22,17 +25,25 @@ pub fn summary(result: &SceneResult) -> String {
         Reason::Wrong(wrong) => of_wrong(wrong, result.steps),
         Reason::Trace(bad) => of_bad_trace(bad),
         Reason::NoTrace => "the program wrote no trace; it has to write the file that -o names".to_owned(),
-        Reason::Program(reached) => {
-            let ended = result.ended.as_ref().map(Ended::to_string).unwrap_or_default();
-            let limit = reached.map(|reached| of_limit(reached, result.steps)).unwrap_or_default();
-            format!("the program {ended}{limit}")
-        }
+        Reason::Program(reached) => ending(result) + &how_far(*reached, result.steps),
         Reason::LeftOut(why) => of_left_out(*why),
         Reason::Stopped => "grading was stopped".to_owned(),
         Reason::DoesNotBuild => "the sources do not build".to_owned(),
         Reason::Unusable(why) => of_unusable(why),
         Reason::Failed(failure) => of_failure(failure),
     }
+}
+
+/// How the program ended, and at which limit, without how far it came: the same in many scenes.
+pub(crate) fn ending(result: &SceneResult) -> String {
+    let Reason::Program(reached) = result.reason else { return summary(result) };
+    let ended = result.ended.as_ref().map(Ended::to_string).unwrap_or_default();
+    let limit = match reached.limit {
+        Some(Limit::Time(time)) => format!(" ({} s)", time.as_secs_f64()),
+        Some(Limit::Memory(bytes)) => format!(" ({} MiB)", bytes >> 20),
+        None => String::new(),
+    };
+    format!("the program {ended}{limit}")
 }
 
 /// What else is to be said of a scene, line by line: the first divergence, counts, damage, where a trace is kept.
@@ -142,15 +153,13 @@ fn of_bad_trace(bad: &BadTrace) -> String {
     }
 }
 
-/// The limit at which a program was stopped, and how far its trace came.
-fn of_limit(reached: ReachedLimit, steps: u32) -> String {
-    let limit = match reached.limit {
-        Limit::Time(time) => format!("{} s", time.as_secs_f64()),
-        Limit::Memory(bytes) => format!("{} MiB", bytes >> 20),
-    };
-    match reached.steps {
-        done if done == steps => format!(" ({limit}) after its last step"),
-        done => format!(" ({limit}) at step {} of {steps}", done + 1),
+/// How far a program's trace came. What a crash takes along of it nobody knows: records may have been waiting to be written.
+fn how_far(reached: Reached, steps: u32) -> String {
+    match (reached.limit, reached.steps) {
+        (_, done) if done == steps => " after its last step".to_owned(),
+        (Some(_), done) => format!(" at step {} of {steps}", done + 1),
+        (None, 0) => String::new(),
+        (None, done) => format!("; the last complete record is that of step {done} of {steps}"),
     }
 }
 

@@ -21,19 +21,29 @@ use crate::{
     },
     sandbox::Ended,
     scene::{self, Scene},
-    suite::{Folders, Runner, SceneTask, config::Hints, plan},
+    suite::{
+        Folders, Runner, SceneTask,
+        config::{Hints, RunLimits},
+        coverage::Coverage,
+        located::{Content, Contents, Failing, Located, Tried, locate},
+        plan,
+    },
 };
 use anyhow::{Context, Result, bail};
 use std::{
     io::{self, Read},
     path::{Path, PathBuf},
+    time::Duration,
 };
 
 /// So much of a trace is looked at, in bytes.
 const LONGEST: usize = Keep::EXPLAINED.most;
 
-/// So often a program may take too long; then it is not run any more.
+/// So often a program may run into a limit; from then on it has [`LEAST`]: what it has recorded until then is looked at all the same.
 const PATIENCE: usize = 2;
+
+/// So much time is left to a program that runs into limits, on scenes of which a right one needs some milliseconds.
+const LEAST: Duration = Duration::from_secs(2);
 
 pub(super) fn run(arguments: &Explain) -> Result<u8> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
@@ -44,7 +54,7 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
         },
         (None, [scene, trace]) => {
             let (case, card) = trace_on_scene(scene, trace, arguments)?;
-            (Diagnosis { cases: vec![case], common: Vec::new() }, vec![card])
+            (Diagnosis { cases: vec![case], common: Vec::new(), located: None }, vec![card])
         }
         (None, _) => bail!("explain takes a scene and a trace, or --program PROGRAM and any number of scenes"),
     };
@@ -65,13 +75,14 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
 fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Case, Option<Card>)> {
     let scene = input::scene(scene)?;
     let mut trace = input::trace(trace)?;
-    let explained = case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);
+    let (case, card, _) =
+        case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);
     // What follows the last step is of interest only where it can't be read.
     let _ = io::copy(&mut (&mut trace.reader).take(LONGEST as u64), &mut io::sink());
     if let Some(message) = trace.failure() {
         bail!("cannot read the trace {}: {message}", trace.name);
     }
-    Ok(explained)
+    Ok((case, card))
 }
 
 /// Judges a trace by the fair rules, and explains it if they reject it; for a page it is drawn as well.
@@ -82,7 +93,7 @@ fn case(
     bytes: impl Read + Send,
     note: Option<String>,
     arguments: &Explain,
-) -> (Case, Option<Card>) {
+) -> (Case, Option<Card>, u32) {
     let hints: Hints = arguments.hints.into();
     let options = Options { fair: true, ..Options::default() };
     let mut nobody = ();
@@ -94,7 +105,9 @@ fn case(
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
-    let is_explained = fair.verdict != FairVerdict::Accepted && hints.explains();
+    // Of what breaks off and is right so far there is nothing to explain.
+    let is_wrong = outcome.stop.is_none() || fair.findings.first_divergence.is_some();
+    let is_explained = fair.verdict != FairVerdict::Accepted && is_wrong && hints.explains();
     let explanations = if is_explained { examined.explain() } else { Vec::new() };
     let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.finding(first));
     let explanations = hints.cut(explanations);
@@ -112,7 +125,7 @@ fn case(
             depth: 2,
         })
     });
-    (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten())
+    (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten(), outcome.steps_judged)
 }
 
 /// A program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays, also that of a link:
@@ -138,11 +151,12 @@ fn program_on_probes(
     let backend = backend(arguments.unsafe_no_sandbox)?;
     let plan = plan::find(Assignment::DEFAULT.key())?;
     let folders = Folders::default();
-    let runner = Runner {
+    let short = RunLimits { cpu: plan.limits.cpu.min(LEAST), wall: plan.limits.wall.min(LEAST), ..plan.limits };
+    let runner = |limits| Runner {
         folders: &folders,
         backend: &backend,
         run: &plan.run,
-        limits: &plan.limits,
+        limits,
         rules: Rules::Fair,
         hints: Hints::Full,
         recorded: false,
@@ -152,39 +166,48 @@ fn program_on_probes(
         cards: None,
         rehearse: &|_| {},
     };
-    let (mut cases, mut cards) = (Vec::new(), Vec::new());
-    let mut late = 0;
+    let (mut cases, mut cards, mut ends) = (Vec::new(), Vec::new(), Vec::new());
+    let mut stopped = 0;
     let bar = console::Bar::of_runs(tasks.len() as u64);
     for task in &tasks {
         bar.next_run(&task.name);
-        if late == PATIENCE {
-            let note = Some(format!("not run: the program took too long {PATIENCE} times before"));
-            let shown = program.display().to_string();
-            let (accepted, first, explanations) = (false, None, Vec::new());
-            cases.push(Case { scene: task.name.clone(), trace: shown, accepted, note, first, explanations });
-            cards.push(None);
-            continue;
-        }
-        let (trace, outcome) = runner.collect(&program, task, LONGEST).map_err(anyhow::Error::msg)?;
+        let limits = if stopped < PATIENCE { &plan.limits } else { &short };
+        let (trace, outcome) = runner(limits).collect(&program, task, LONGEST).map_err(anyhow::Error::msg)?;
         if cancellation.is_cancelled() {
             return Ok(None);
         }
         if let Ended::CouldNotStart(problem) = &outcome.ended {
             bail!("{}: {problem}", program.display());
         }
-        late += usize::from(matches!(outcome.ended, Ended::CpuLimit | Ended::WallLimit));
+        let failing = Failing::of(&outcome.ended);
+        stopped += usize::from(matches!(failing, Some(Failing::Time | Failing::Memory | Failing::Output)));
         let note = (!matches!(outcome.ended, Ended::Exited(0))).then(|| format!("the program {}", outcome.ended));
         let shown = program.display().to_string();
-        let (case, card) = case((task.name.clone(), shown), false, &task.scene, &trace[..], note, arguments);
+        let (case, card, steps) = case((task.name.clone(), shown), false, &task.scene, &trace[..], note, arguments);
         cases.push(case);
         cards.push(card);
+        ends.push((failing, steps));
     }
     drop(bar);
+    let located = located(&tasks, &ends);
     let common = likely(&cases, &tasks);
     for case in &mut cases {
         case.explanations = diagnose::settled(&case.explanations, &common).explanations;
     }
-    Ok(Some((Diagnosis { cases, common }, cards)))
+    Ok(Some((Diagnosis { cases, common, located }, cards)))
+}
+
+/// What the scenes have in common in which the program failed, by how it ended in each and how many steps were complete.
+fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Located> {
+    if ends.iter().all(|(failing, _)| failing.is_none()) {
+        return None;
+    }
+    let contents: Vec<Contents> =
+        tasks.iter().map(|task| Coverage::of(&task.scene).map(|seen| Content::of(&seen)).unwrap_or_default()).collect();
+    let tried = tasks.iter().zip(&contents).zip(ends);
+    let tried =
+        tried.map(|((task, contents), &(failing, steps))| Tried { scene: &task.name, failing, steps, contents });
+    locate(&tried.collect::<Vec<_>>())
 }
 
 /// The likely mistakes of the wrong traces together, without those that right traces of the same program speak against.

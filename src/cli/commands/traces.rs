@@ -110,6 +110,7 @@ fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
         layers: Vec::new(),
         wall: Duration::ZERO,
         refuted,
+        located: None,
     };
     grade.settle();
     grade

@@ -2,7 +2,8 @@ use super::*;
 use crate::{
     cast::{SMALL_TRACE, Stage, right_trace, small_plan},
     grader::Options,
-    plan::Plan,
+    located::Failing,
+    plan::{self, Plan},
     result::{Activity, BadTrace, Failure, KeptTrace, NotRunReason, Reason},
     results::FolderResults,
     told::ToldFinding,
@@ -10,7 +11,7 @@ use crate::{
 };
 use fosssim_judge::{FindingDetail, Rules, fair::Cause};
 use fosssim_sandbox::Job;
-use std::time::Duration;
+use std::{path::Path, time::Duration};
 
 /// Step and particle of a wrong position that is the first divergence.
 fn first_divergence(result: &SceneResult) -> (u32, usize) {
@@ -215,6 +216,35 @@ fn after_some_time_outs_in_a_row_the_rest_is_not_run() {
         let left_out = grades[0].scenes().filter(|scene| matches!(scene.reason, Reason::LeftOut(_))).count();
         assert_eq!(left_out, scenes - expected, "whatever the jobs");
     }
+}
+
+/// The reference's runs tell what the scenes have in common in which a program crashes.
+#[test]
+fn a_program_that_crashes_in_the_failsafe_is_told_so() {
+    let stage = Stage::new();
+    let suite = |hints: &str| {
+        let text = format!(
+            "schema = 1\nname = \"test\"\nhints = \"{hints}\"\n[[group]]\nname = \"all\"\nscenes = \
+             [\"asset:ImpulsesTests/*\", \"asset:GeometricTests/*\"]\n"
+        );
+        plan::load(&text, Path::new("nowhere")).expect("a sound suite")
+    };
+    let mut grades = stage.grade_by(&suite("what"), &["crashes-in-the-failsafe"]);
+    let grade = grades.remove(0);
+    let located = grade.located.as_ref().expect("a place");
+    let crashed: Vec<_> = grade.scenes().filter(|scene| scene.verdict == Verdict::RuntimeError).collect();
+    let others = grade.scenes().count() - crashed.len();
+    assert_eq!((located.failed, located.with, located.without), (crashed.len(), crashed.len(), others), "{located:?}");
+    assert_eq!(
+        (located.failing, located.contents[0].family),
+        (Failing::Crash, 4),
+        "the failsafe moves a zone: {located:?}"
+    );
+    let Reason::Program(reached) = crashed[0].reason else { panic!("{:?}", crashed[0].reason) };
+    assert_eq!((&located.first, located.step), (&crashed[0].scene, reached.steps));
+    let silent = stage.grade_by(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
+    assert_eq!(silent.located, None, "hints say less");
+    assert_eq!(stage.grade_by(&suite("what"), &["right"]).remove(0).located, None);
 }
 
 #[test]

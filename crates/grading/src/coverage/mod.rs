@@ -106,6 +106,15 @@ impl Coverage {
         self.seen.contains(&pairing)
     }
 
+    /// What it contains by single values: the kind of event, a property, and its value.
+    pub fn values(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let values = self
+            .seen
+            .iter()
+            .flat_map(|pairing| [pairing.one, pairing.other].map(|(axis, value)| (pairing.family, axis, value)));
+        values.collect::<BTreeSet<_>>().into_iter()
+    }
+
     /// How many of the pairs of values of a kind of event there are, and of how many that can be.
     #[must_use]
     pub fn counts(&self, family: usize) -> (usize, usize) {

@@ -4,8 +4,7 @@ use super::*;
 use crate::{
     Key, Verdict,
     result::{
-        Activity, BadTrace, Failure, FolderContents, KeptTrace, Limit, NotRunReason, ReachedLimit, Reason, Unusable,
-        Wrong,
+        Activity, BadTrace, Failure, FolderContents, KeptTrace, Limit, NotRunReason, Reached, Reason, Unusable, Wrong,
     },
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
@@ -171,9 +170,9 @@ fn every_reason_and_every_end_reads_back() {
     let mut reasons: Vec<Reason> = vec![
         Reason::Right,
         Reason::NoTrace,
-        Reason::Program(None),
-        Reason::Program(Some(ReachedLimit { limit: Limit::Time(Duration::from_millis(1500)), steps: 3 })),
-        Reason::Program(Some(ReachedLimit { limit: Limit::Memory(1 << 30), steps: 0 })),
+        Reason::Program(Reached { limit: None, steps: 7 }),
+        Reason::Program(Reached { limit: Some(Limit::Time(Duration::from_millis(1500))), steps: 3 }),
+        Reason::Program(Reached { limit: Some(Limit::Memory(1 << 30)), steps: 0 }),
         Reason::Stopped,
         Reason::DoesNotBuild,
     ];
@@ -222,7 +221,7 @@ fn every_reason_and_every_end_reads_back() {
     ] {
         let result = SceneResult {
             ended: Some(ended),
-            ..SceneResult::without_run("a/b", 5, Verdict::RuntimeError, Reason::Program(None))
+            ..SceneResult::without_run("a/b", 5, Verdict::RuntimeError, Reason::Stopped)
         };
         assert_eq!(again(&result), result);
     }

@@ -44,8 +44,8 @@ pub fn submissions(grades: &[Grade]) -> String {
         head.extend(first.groups.iter().map(|group| safe(&group.name)));
     }
     let rows = grades.iter().map(|grade| {
-        let mistakes: Vec<String> =
-            likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake)).collect();
+        let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake));
+        let mistakes: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
         let mut row = vec![
             safe(&grade.submission),
             grade.verdict.words().to_owned(),

@@ -5,7 +5,7 @@ use fosssim_grading::{Grade, GroupGrade, SceneGrade};
 use serde::Serialize;
 
 /// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
-const SCHEMA: u32 = 3;
+const SCHEMA: u32 = 4;
 
 #[derive(Serialize)]
 struct Document {
@@ -30,11 +30,23 @@ struct GradeView {
     sandbox: Vec<String>,
     warnings: Vec<String>,
     build: Option<BuildView>,
+    /// What the scenes have in common in which the program crashes or runs into a limit.
+    located: Option<LocatedView>,
     /// The mistake that explains most wrong scenes, where several have explanations.
     likely_mistake: Option<ExplanationView>,
     /// Up to three mistakes that explain the wrong scenes together.
     likely_mistakes: Vec<ExplanationView>,
     groups: Vec<GroupView>,
+}
+
+#[derive(Serialize)]
+struct LocatedView {
+    text: String,
+    failed: usize,
+    with: usize,
+    without: usize,
+    first_scene: String,
+    last_complete_step: u32,
 }
 
 #[derive(Serialize)]
@@ -116,6 +128,14 @@ fn view(grade: &Grade) -> GradeView {
             succeeded: build.end.is_success(),
             end: plain(&words::build(&build.end)),
             output: printed(&build.output),
+        }),
+        located: grade.located.as_ref().map(|found| LocatedView {
+            text: plain(&words::located(found)),
+            failed: found.failed,
+            with: found.with,
+            without: found.without,
+            first_scene: plain(&found.first),
+            last_complete_step: found.step,
         }),
         likely_mistake: grade.likely_mistake().as_ref().map(ExplanationView::from),
         likely_mistakes: grade.likely_mistakes().iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),

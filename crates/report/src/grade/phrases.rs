@@ -88,8 +88,8 @@ pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
     grade.likely_mistakes()
 }
 
-/// What stands above all scenes in a report for one reader: what is wrong with the submission itself, or what its likely
-/// mistakes are.
+/// What stands above all scenes in a report for one reader: what is wrong with the submission itself, or where it
+/// fails and what its likely mistakes are.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::unfit(grade) {
@@ -101,7 +101,8 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
         let rank = if number == 0 { "most likely mistake" } else { "also likely" };
         format!("{rank}: {} (explains {explained} of {wrong})", words::explanation::what(&mistake))
     };
-    likely_mistakes(grade).into_iter().enumerate().map(line).collect()
+    let located = grade.located.as_ref().map(words::located);
+    located.into_iter().chain(likely_mistakes(grade).into_iter().enumerate().map(line)).collect()
 }
 
 /// The scenes of some groups, those that are not accepted first.

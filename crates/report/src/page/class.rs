@@ -81,8 +81,8 @@ impl ClassPage<'_> {
             out += &number(grade.points, &format!("{} of {}", reached(grade.points), points(grade.max_points)));
             let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
             let _ = write!(out, "<td class=\"num\" data-sort=\"{accepted}\">{accepted} of {all}</td>");
-            let likely: Vec<String> =
-                likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake)).collect();
+            let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake));
+            let likely: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
             let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
             let _ = write!(out, "<td class=\"words\">{}</td>", text(&short(&words)));
             for name in &groups {

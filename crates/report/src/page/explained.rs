@@ -2,7 +2,8 @@
 use super::{Card, case::mistakes, document, graded::key, markup::text, script};
 use crate::{
     diagnosis::{Case, Diagnosis},
-    words::first_divergence,
+    grade::one_line,
+    words::{self, first_divergence},
 };
 use fosssim_mistakes::diagnose::Explanation;
 use std::fmt::Write;
@@ -40,7 +41,7 @@ impl Explained<'_> {
     /// The file.
     #[must_use]
     pub fn html(&self) -> String {
-        let Diagnosis { cases, common } = self.diagnosis;
+        let Diagnosis { cases, common, located } = self.diagnosis;
         let wrong = cases.iter().filter(|case| !case.accepted).count();
         let look = if wrong == 0 { "good" } else { "bad" };
         let title = match (&cases[..], wrong) {
@@ -49,6 +50,10 @@ impl Explained<'_> {
             (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
         };
         let mut body = format!("<h1><span class=\"{look}\">{}</span></h1>\n", text(&title));
+        if let Some(found) = located {
+            let words = text(&one_line(&words::located(found)));
+            let _ = writeln!(body, "<h2>Where it fails</h2>\n<div class=\"mistake\"><p>{words}</p></div>");
+        }
         for one in common {
             let explained = cases.iter().filter(|case| one.is_named_in(&case.explanations)).count();
             let _ = writeln!(body, "<h2>What explains {explained} of {wrong} wrong traces</h2>");

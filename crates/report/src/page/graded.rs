@@ -52,6 +52,8 @@ fn for_student(grade: &Grade) -> Grade {
         points: groups.iter().map(|group| group.points).sum(),
         max_points: groups.iter().map(|group| group.max_points).sum(),
         groups,
+        // It counts scenes that are not here.
+        located: None,
         ..grade.clone()
     };
     visible.settle();
@@ -120,6 +122,10 @@ impl GradePage<'_> {
         if self.reader == Audience::Student && grade.groups.len() < self.grade.groups.len() {
             out += "<p class=\"hint\">Points, verdict and likely mistakes are those of the groups on this page. The grade has \
                     others, too.</p>\n";
+        }
+        if let Some(located) = &grade.located {
+            let words = text(&one_line(&words::located(located)));
+            let _ = writeln!(out, "<h2>Where it fails</h2>\n<div class=\"mistake\"><p>{words}</p></div>");
         }
         let likely = likely_mistakes(grade);
         if !likely.is_empty() {

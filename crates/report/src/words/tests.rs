@@ -27,13 +27,18 @@ fn what_is_there_instead_of_the_program_is_one_sentence() {
 #[test]
 fn a_limit_says_how_far_the_trace_came() {
     let stopped = |limit, steps| {
-        let why = Reason::Program(Some(ReachedLimit { limit, steps }));
+        let why = Reason::Program(Reached { limit: Some(limit), steps });
         let result = SceneResult::without_run("a/b", 15, Verdict::TimeLimit, why);
         summary(&SceneResult { ended: Some(Ended::WallLimit), ..result })
     };
     let time = Limit::Time(Duration::from_millis(2500));
     assert_eq!(stopped(time, 4), "the program used up its time on the clock (2.5 s) at step 5 of 15");
     assert_eq!(stopped(time, 15), "the program used up its time on the clock (2.5 s) after its last step");
+    let crash =
+        SceneResult::without_run("a/b", 15, Verdict::RuntimeError, Reason::Program(Reached { limit: None, steps: 4 }));
+    let crash = SceneResult { ended: Some(Ended::Signalled(11)), ..crash };
+    assert!(summary(&crash).ends_with("; the last complete record is that of step 4 of 15"), "{}", summary(&crash));
+    assert!(!ending(&crash).contains("step"), "the same in many scenes: {}", ending(&crash));
     assert!(stopped(Limit::Memory(512 << 20), 0).ends_with("(512 MiB) at step 1 of 15"));
 }
 

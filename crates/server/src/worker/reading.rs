@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::{fs, path::Path};
 
 /// The schema of `grade.json` that is read here.
-const SCHEMA: u32 = 3;
+const SCHEMA: u32 = 4;
 
 /// What is measured, or tells of the machine and not of the submission.
 const MEASURED: [&str; 5] = ["cpu_seconds", "wall_seconds", "memory_bytes", "cached", "sandbox"];
@@ -172,7 +172,7 @@ mod tests {
     fn what_was_measured_is_no_part_of_what_a_grade_says() {
         let grade = |cpu: &str, right: u32| {
             format!(
-                r#"{{"schema": 3, "grades": [{{"wall_seconds": {cpu}, "scenes": [{{"right_steps": {right},
+                r#"{{"schema": 4, "grades": [{{"wall_seconds": {cpu}, "scenes": [{{"right_steps": {right},
                 "cpu_seconds": {cpu}, "memory_bytes": {right}}}], "points": 12.50}}]}}"#
             )
         };

@@ -21,6 +21,10 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         text += &options.circumstances(grade);
     }
     text += &groups(options, grade);
+    if let Some(located) = &grade.located {
+        let heading = style.paint(Look::Strong, "Where it fails");
+        let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::located(located)));
+    }
     let mistakes = likely_mistakes(grade);
     let wrong = grade.scenes().filter(|scene| is_wrong(scene)).count() as u64;
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {

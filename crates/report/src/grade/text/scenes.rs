@@ -35,7 +35,7 @@ type Words = (Verdict, String, Vec<String>);
 /// A wrong trace differs from scene to scene; a program that does not run ends in the same words each time.
 fn told(scene: &SceneGrade) -> Option<Words> {
     let fails = !matches!(scene.verdict, Verdict::Accepted | Verdict::WrongAnswer | Verdict::BadTrace);
-    fails.then(|| (scene.verdict, words::summary(scene), words::details(scene)))
+    fails.then(|| (scene.verdict, words::ending(scene), words::details(scene)))
 }
 
 /// The scenes of which the same is told.

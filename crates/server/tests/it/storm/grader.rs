@@ -29,7 +29,7 @@ esac
 sleep "$seconds"
 echo "report on $(basename "$program"): $code" > "$text"
 cat > "$json" <<END
-{"schema": 3, "version": "storm", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
+{"schema": 4, "version": "storm", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
  "max_points": 100, "groups": [{"scenes": [{"code": "$code"}]}]}]}
 END
 [ "$code" = AC ]

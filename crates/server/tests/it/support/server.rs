@@ -51,7 +51,7 @@ echo '<script>document.title = document.cookie</script>' > "$html"
 visibility=visible
 case $scene in Secret/*) visibility=hidden ;; esac
 cat > "$json" <<END
-{"schema": 3, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
+{"schema": 4, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
  "max_points": 100, "wall_seconds": $$.5, "groups": [{"visibility": "$visibility", "scenes": [{"scene": "Group/easy", "code": "AC", "right_steps": 9},
  {"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
 END

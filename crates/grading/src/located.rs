@@ -1,0 +1,256 @@
+//! What the scenes have in common in which a program crashes or runs into a limit: fault localisation by spectra.
+//!
+//! A scene's spectrum is what the reference's run of it contains ([`coverage`](crate::coverage)): kinds of events, and values of their
+//! properties. A value is told where every scene that fails contains it, where it is as good as any other by Ochiai's measure, and
+//! where chance would not bring that about: Fisher's exact test, for as many values as are looked at. Values that the scenes can't tell
+//! apart are told together.
+use super::{coverage::Coverage, grade::Grade, result::Reason, verdict::Verdict};
+use fosssim_sandbox::Ended;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A kind of event, or one value of one of its properties, by their numbers in [`FAMILIES`](crate::coverage::FAMILIES).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Content {
+    /// The kind of event.
+    pub family: usize,
+    /// A property and its value.
+    pub value: Option<(usize, usize)>,
+}
+
+/// What scenes contain: their spectrum.
+pub type Contents = BTreeSet<Content>;
+
+/// How programs fail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Failing {
+    /// By a signal.
+    Crash,
+    /// By an exit code of their own.
+    Error,
+    /// By the limit of time.
+    Time,
+    /// By the limit of memory.
+    Memory,
+    /// By a limit of what they may write.
+    Output,
+    /// By several of these.
+    Several,
+}
+
+/// What the scenes have in common in which a program fails.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Located {
+    /// How it fails.
+    pub failing: Failing,
+    /// What all these scenes contain, the most general first; the scenes can't tell these apart.
+    pub contents: Vec<Content>,
+    /// In so many scenes it fails; all of them contain it.
+    pub failed: usize,
+    /// So many scenes contain it.
+    pub with: usize,
+    /// So many scenes that were run do not contain it; it fails in none of these.
+    pub without: usize,
+    /// The first scene in which it fails.
+    pub first: String,
+    /// The step of the last complete record there; 0 for the first record.
+    pub step: u32,
+}
+
+/// One scene that was run: whether its program failed, and how.
+#[derive(Debug, Clone, Copy)]
+pub struct Tried<'a> {
+    /// The scene's name.
+    pub scene: &'a str,
+    /// How its program failed, if it did.
+    pub failing: Option<Failing>,
+    /// Steps whose records were complete.
+    pub steps: u32,
+    /// What the scene contains.
+    pub contents: &'a Contents,
+}
+
+/// Chance must bring the like about less often than this, over all values that are looked at.
+const SIGNIFICANT: f64 = 0.01;
+
+impl Failing {
+    /// How a program failed that ended so; nothing where it ended well, or where that says nothing of it.
+    #[must_use]
+    pub const fn of(ended: &Ended) -> Option<Self> {
+        match ended {
+            Ended::Signalled(_) => Some(Self::Crash),
+            Ended::Exited(0) | Ended::CouldNotStart(_) | Ended::Cancelled => None,
+            Ended::Exited(_) => Some(Self::Error),
+            Ended::CpuLimit | Ended::WallLimit => Some(Self::Time),
+            Ended::MemoryLimit => Some(Self::Memory),
+            Ended::OutputLimit(_) | Ended::FolderLimit => Some(Self::Output),
+            Ended::ProcessLimit | Ended::Violation { .. } => None,
+        }
+    }
+}
+
+impl Content {
+    /// All that a scene contains.
+    #[must_use]
+    pub fn of(coverage: &Coverage) -> Contents {
+        let values = coverage.values().map(|(family, axis, value)| Self { family, value: Some((axis, value)) });
+        let kinds = coverage.values().map(|(family, ..)| Self { family, value: None });
+        values.chain(kinds).collect()
+    }
+
+    /// What lies later in a step is the narrower place: zones, then contacts, then the step as a whole; what does not happen comes
+    /// last.
+    const fn rank(self) -> (bool, usize) {
+        let place = match self.family {
+            4 => 0,
+            0..=2 => 1,
+            5 | 6 => 2,
+            _ => 3,
+        };
+        (self.value.is_some(), place)
+    }
+}
+
+/// What the scenes have in common in which a program fails; nothing where the evidence is weak.
+#[must_use]
+pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
+    let failed: Vec<&Tried<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();
+    let first = failed.first()?;
+    let mut shared = first.contents.clone();
+    failed.iter().for_each(|one| shared.retain(|content| one.contents.contains(content)));
+    let mut with: BTreeMap<usize, Vec<Content>> = BTreeMap::new();
+    for content in shared {
+        let scenes = tried.iter().filter(|one| one.contents.contains(&content)).count();
+        with.entry(scenes).or_default().push(content);
+    }
+    // As all that fail contain it, Ochiai's measure is the root of failed / with: the fewer contain it, the better it is.
+    let (with, mut contents) = with.into_iter().next()?;
+    let looked_at: BTreeSet<Vec<bool>> = tried
+        .iter()
+        .flat_map(|one| one.contents)
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .map(|content| tried.iter().map(|one| one.contents.contains(content)).collect())
+        .collect();
+    #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
+    let by_chance = chance(failed.len(), with, tried.len()) * looked_at.len() as f64;
+    if by_chance >= SIGNIFICANT || 2 * failed.len() < with {
+        return None;
+    }
+    contents.sort_by_key(|content| content.rank());
+    // The values that all events of a kind happen to have are no other place than the kind.
+    let kinds: Vec<usize> =
+        contents.iter().filter(|content| content.value.is_none()).map(|content| content.family).collect();
+    contents.retain(|content| content.value.is_none() || !kinds.contains(&content.family));
+    let failing = failed.iter().filter_map(|one| one.failing).reduce(|one, other| match one == other {
+        true => one,
+        false => Failing::Several,
+    })?;
+    Some(Located {
+        failing,
+        contents,
+        failed: failed.len(),
+        with,
+        without: tried.len() - with,
+        first: first.scene.to_owned(),
+        step: first.steps,
+    })
+}
+
+/// How probable it is that so many scenes, drawn at random from `all`, all lie among these `with`.
+fn chance(failed: usize, with: usize, all: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
+    let share = |one: usize| (with - one) as f64 / (all - one) as f64;
+    (0..failed).map(share).product()
+}
+
+impl Grade {
+    /// What the scenes have in common in which the program fails. `contents` are those of all scenes in their order, asked for
+    /// only where some fail and some do not.
+    #[must_use]
+    pub(super) fn locate<'a>(&self, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
+        let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
+        let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
+        let run = || self.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
+        let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
+        if failed == 0 || failed == run().count() {
+            return None;
+        }
+        let tried: Vec<Tried<'_>> = self
+            .scenes()
+            .zip(contents())
+            .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
+            .map(|(scene, contents)| {
+                let steps = match scene.reason {
+                    Reason::Program(reached) => reached.steps,
+                    _ => 0,
+                };
+                Tried { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
+            })
+            .collect();
+        locate(&tried)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn content(family: usize, value: Option<(usize, usize)>) -> Content {
+        Content { family, value }
+    }
+
+    /// Scenes by what they contain: a contact each; some a zone, of which some are held by a half-plane.
+    fn scenes(zones: usize, held: usize, all: usize) -> Vec<Contents> {
+        let scene = |number: usize| {
+            let mut contents = Contents::from([content(0, None), content(0, Some((0, number % 3)))]);
+            if number < zones {
+                contents.extend([
+                    content(4, None),
+                    content(4, Some((1, usize::from(number < held)))),
+                    content(6, Some((1, 1))),
+                ]);
+            }
+            contents
+        };
+        (0..all).map(scene).collect()
+    }
+
+    fn located(contents: &[Contents], fails: impl Fn(usize) -> Option<Failing>) -> Option<Located> {
+        let tried = |(number, contents)| Tried { scene: "a/b", failing: fails(number), steps: 7, contents };
+        locate(&contents.iter().enumerate().map(tried).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn what_all_that_fail_and_no_others_contain_is_told_with_its_counts() {
+        let contents = scenes(24, 9, 85);
+        let found = located(&contents, |number| (number < 24).then_some(Failing::Crash)).expect("a place");
+        assert_eq!((found.failed, found.with, found.without, found.step), (24, 24, 61, 7));
+        // The kind of event, and a property of the step that the same scenes have; the zones' own values are no other place.
+        assert_eq!(found.contents, [content(4, None), content(6, Some((1, 1)))]);
+        let narrower = located(&contents, |number| (number < 9).then_some(Failing::Time)).expect("a place");
+        assert_eq!((narrower.contents, narrower.with), (vec![content(4, Some((1, 1)))], 9));
+        let most =
+            located(&contents, |number| (number < 24 && number != 5).then_some(Failing::Crash)).expect("a place");
+        assert_eq!((most.failed, most.with, most.without), (23, 24, 61));
+        let mixed = |number: usize| if number % 2 == 0 { Failing::Time } else { Failing::Memory };
+        let found = located(&contents, |number| (number < 24).then_some(mixed(number))).expect("a place");
+        assert_eq!(found.failing, Failing::Several);
+    }
+
+    #[test]
+    fn weak_evidence_tells_nothing() {
+        let contents = scenes(24, 9, 85);
+        assert_eq!(located(&contents, |_| None), None);
+        assert_eq!(located(&contents, |_| Some(Failing::Crash)), None, "what always fails has no place");
+        assert_eq!(located(&contents, |number| (number == 3).then_some(Failing::Crash)), None, "once is nothing");
+        assert_eq!(located(&contents, |number| (number % 8 == 0).then_some(Failing::Crash)), None, "nothing in common");
+        assert_eq!(located(&contents, |number| (number < 24 || number == 60).then_some(Failing::Crash)), None);
+        assert_eq!(
+            located(&contents, |number| (number < 4).then_some(Failing::Crash)),
+            None,
+            "most that contain it do not fail"
+        );
+        assert_eq!(located(&scenes(3, 0, 4), |number| (number < 3).then_some(Failing::Crash)), None, "too few scenes");
+    }
+}

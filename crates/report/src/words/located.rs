@@ -1,0 +1,88 @@
+//! What the scenes have in common in which a program crashes or runs into a limit.
+use fosssim_grading::{
+    coverage::FAMILIES,
+    located::{Content, Failing, Located},
+};
+
+/// So many other contents are named that the scenes can't tell from the first one.
+const NAMED: usize = 2;
+
+/// What they have in common, with its counts, and where the first of them ends.
+#[must_use]
+pub fn located(found: &Located) -> String {
+    let Located { failing, contents, failed, with, without, first, step } = found;
+    let Some((place, others)) = contents.split_first() else { return String::new() };
+    let scenes = format!("{with} scenes {}", place_of(*place));
+    let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
+    let verb = match failing {
+        Failing::Crash => "crash",
+        Failing::Error => "end with an error code",
+        Failing::Time => "run out of time",
+        Failing::Memory => "need more memory than allowed",
+        Failing::Output => "write more than allowed",
+        Failing::Several => "crash or run into a limit",
+    };
+    let record = match step {
+        0 => "the first one".to_owned(),
+        step => format!("that of step {step}"),
+    };
+    let mut text = format!(
+        "{which} {verb}, and none of the {without} others. In the first of them, {first}, the last complete record is {record}."
+    );
+    if !others.is_empty() {
+        let (shown, more) = others.split_at(others.len().min(NAMED));
+        let shown: Vec<String> = shown.iter().map(|other| place_of(*other)).collect();
+        let more = if more.is_empty() { String::new() } else { format!("; and {} more", more.len()) };
+        text += &format!(" Just as likely: those {}{more}.", shown.join("; those "));
+    }
+    text
+}
+
+/// `in which the failsafe moves a zone (held by: a half-plane)`.
+fn place_of(content: Content) -> String {
+    let family = &FAMILIES[content.family];
+    let value = content.value.map(|(axis, value)| {
+        let axis = &family.axes[axis];
+        format!(" ({}: {})", axis.name, axis.values[value])
+    });
+    let is_step = family.name.starts_with("a step ");
+    format!("{} {}{}", if is_step { "with" } else { "in which" }, family.name, value.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_and_ties_are_told() {
+        let content = |family, value| Content { family, value };
+        let found = Located {
+            failing: Failing::Crash,
+            contents: vec![content(4, None), content(6, Some((1, 1)))],
+            failed: 24,
+            with: 24,
+            without: 61,
+            first: "GeometricTests/chain".to_owned(),
+            step: 14,
+        };
+        assert_eq!(
+            located(&found),
+            "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others. In the first of them, \
+             GeometricTests/chain, the last complete record is that of step 14. Just as likely: those with a step of hybrid \
+             (zones: one)."
+        );
+        let some = Located {
+            failing: Failing::Several,
+            contents: vec![content(4, Some((1, 2)))],
+            failed: 7,
+            with: 9,
+            step: 0,
+            ..found
+        };
+        assert_eq!(
+            located(&some),
+            "7 of the 9 scenes in which the failsafe moves a zone (held by: a half-plane) crash or run into a limit, and none of \
+             the 61 others. In the first of them, GeometricTests/chain, the last complete record is the first one."
+        );
+    }
+}
