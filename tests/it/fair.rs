@@ -6,10 +6,12 @@ use fosssim_oracle::{
         fair::{FairVerdict, Form, Judgement},
         replay::{Options, judge},
     },
+    num::polynomial::Polynomial,
     scene::{self, Scene, original},
+    sim::{Observer, Pair, PairKind, RootSearch, Simulation},
     student::{self, CATALOGUE, KNOWN_REFUSED, Row, Student},
     suite::library,
-    trace::{Frame, Layout, Reader, Writer},
+    trace::{Frame, Layout, Reader, Recorder, Writer},
 };
 use rayon::prelude::*;
 
@@ -146,6 +148,41 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
     let (_, fair) = judged(scene, &writer.finish().unwrap().0, 1);
     assert_eq!(fair.findings.counts.get(FindingKind::MixedForms), 1, "{fair:?}");
     assert_eq!(fair.findings.counts.total(), 1);
+}
+
+/// Polynomials of particles and edges with a small factor, on the course's scenes: what is gone of their approaches says nothing of
+/// the form.
+#[test]
+fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
+    struct Edges(f64);
+    impl Observer for Edges {
+        fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+            for polynomial in polynomials.iter_mut().filter(|_| pair.kind == PairKind::ParticleEdge) {
+                let scaled: Vec<f64> = polynomial.coefficients().iter().map(|c| self.0 * c).collect();
+                *polynomial = Polynomial::trimmed(&scaled);
+            }
+        }
+    }
+    let Some(folder) = corpus::folder() else { return };
+    let groups = std::fs::read_dir(folder.join("scenes/t2m2")).unwrap().map(|group| group.unwrap().path());
+    let files: Vec<_> = groups
+        .flat_map(|group| std::fs::read_dir(group).unwrap().map(|file| file.unwrap().path()).collect::<Vec<_>>())
+        .collect();
+    files.par_iter().for_each(|file| {
+        let scene = original::read(&std::fs::read(file).unwrap()).unwrap().scene;
+        for factor in [1e-2, 1e-4] {
+            let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+            let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+            for _ in 0..scene.steps() {
+                simulation.step(&mut (&mut Edges(factor), &mut recorder)).unwrap();
+            }
+            let fair = judged(&scene, &recorder.finish().unwrap().0, 1).1;
+            let lost = fair.findings.counts.get(FindingKind::TrimmedDecision);
+            let first = &fair.findings.first_divergence;
+            assert_eq!(fair.findings.counts.total(), lost, "{factor} in {}: {first:?}", file.display());
+        }
+    });
+    corpus::ran("a small factor of edges", files.len());
 }
 
 /// What the fair rules find does not depend on how many threads look.

@@ -24,7 +24,7 @@ const CRATES: [(&str, &[&str]); 16] = [
             "evidence", "grading", "report",
         ],
     ),
-    ("lab", &["oracle"]),
+    ("lab", &["num", "model", "judge", "oracle"]),
     ("server", &["testing"]),
 ];
 

@@ -138,12 +138,12 @@ impl Walk<'_> {
         if self.theirs.bytes[self.theirs.at..].starts_with(own) {
             self.own.at = end;
             self.theirs.at += end - begin;
-            return match fair {
-                Some(fair) if fair.wants_form(pair) => {
-                    fair.form_of_same(pair, index, seen, own.get(last + 4 - begin..)?)
-                }
-                _ => Some(()),
-            };
+            let Some(fair) = fair else { return Some(()) };
+            fair.count_same(pair.kind);
+            if fair.wants_form(pair) {
+                fair.form_of_same(pair, index, seen, own.get(last + 4 - begin..)?)?;
+            }
+            return Some(());
         }
         self.other_call(&Place { pair, seen, index, lengths, is_searched }, watch, fair)
     }

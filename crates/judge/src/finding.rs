@@ -274,15 +274,15 @@ pub enum FindingDetail {
     /// A polynomial with more coefficients than any detection has, or with small leading ones, which the course's library
     /// drops (fair rules).
     ImpossibleLog,
-    /// The trace's polynomials are right, but with their factor the course's library dropped coefficients, and this
-    /// decision hangs on them (fair rules).
+    /// The trace's polynomials lack coefficients, as where the course's library drops them because of a factor, and this decision
+    /// hangs on them (fair rules).
     TrimmedDecision {
         /// The pair's first polynomial.
         place: PolynomialPlace,
         /// Whether the pair collides.
         collides: bool,
     },
-    /// The trace's polynomials are right, but with their factor the course's library dropped coefficients, and this time of
+    /// The trace's polynomials lack coefficients, as where the course's library drops them because of a factor, and this time of
     /// impact is theirs (fair rules).
     TrimmedTime {
         /// The pair's first polynomial.

@@ -47,6 +47,11 @@ impl Display for What<'_> {
     }
 }
 
+/// What makes a decision another one, and where coefficients may have gone. Whether a factor explains it, the trace's other
+/// polynomials tell.
+const LACKING: &str = "the trace's polynomials lack coefficients for that";
+const DROPPING: &str = "the course's library drops leading ones below 1e-12";
+
 impl Display for FindingDetail {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
@@ -132,21 +137,19 @@ impl Display for FindingDetail {
             Self::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
             Self::TrimmedDecision { place, collides } => {
                 let outcome = if *collides { "collide" } else { "do not collide" };
-                let pair = PairWords(place.pair);
                 write!(
                     f,
-                    "{pair} ({}) {outcome}; the trace's polynomials are right up to their factor, but the course's library dropped coefficients below 1e-12 of them, and decides otherwise",
+                    "{} ({}) {outcome}; {LACKING}, and decide otherwise ({DROPPING})",
+                    PairWords(place.pair),
                     PassWords(place.pass)
                 )
             }
-            Self::TrimmedTime { place, expected, actual } => {
-                let pair = PairWords(place.pair);
-                write!(
-                    f,
-                    "{pair} ({}) collide at time {expected}; the trace's polynomials are right up to their factor, but the course's library dropped coefficients below 1e-12 of them, and finds {actual}",
-                    PassWords(place.pass)
-                )
-            }
+            Self::TrimmedTime { place, expected, actual } => write!(
+                f,
+                "{} ({}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})",
+                PairWords(place.pair),
+                PassWords(place.pass)
+            ),
             Self::BeyondReach { particle, position: [x, y], velocity: [vx, vy] } => write!(
                 f,
                 "the step starts or ends with particle {particle} at ({x}, {y}) with velocity ({vx}, {vy}): no run of the scene leads to such states"

@@ -100,6 +100,11 @@ pub const FAIR_MOMENT: f64 = 8.0;
 /// others across that bound than the course's own formulas do. Larger values let factors change times of impact.
 pub const FAIR_LOSS: f64 = 4.0;
 
+/// Fair: factors whose binary exponents lie farther from the mean of their kind than this many times its standard deviation are
+/// outliers, which vouch for no polynomial that is gone: so is what fewer than one polynomial in ten tells beside all others. Larger
+/// values let few polynomials vouch for many, smaller ones accuse programs with several factors.
+pub const FAIR_OUTLIER: f64 = 3.0;
+
 /// Fair: states may be this many times as large, or as close together, as any in the reference's own run; beyond that
 /// nothing is left to be right or wrong.
 pub const FAIR_REACH: f64 = (1_u64 << 20) as f64;

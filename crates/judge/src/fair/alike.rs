@@ -4,10 +4,11 @@
 //! each polynomial is right, by which factor, and of which form. Nearly all are right [at once](super::compare::Likeness); a few are
 //! looked at closely, and where that is not enough the step goes the long way.
 use super::{
-    compare::{MOST, Match, Mismatch, compare, fits_with_no_factor},
+    compare::{MOST, Match},
     contact,
     context::Context,
     formulas::{BoundedPairMotion, extent},
+    polynomial::{Logged, Said, compare_first},
     step_judgement::StepJudgement,
 };
 use crate::{
@@ -39,41 +40,16 @@ pub(crate) struct AlikeStep<'a> {
     judged: StepJudgement,
     /// Expected polynomials whose sums of moduli are above this say something.
     telling: ByKind<[f64; PairKind::MOST_POLYNOMIALS]>,
-    /// Factors so far, for each kind of pair and number of the polynomial.
-    factors: ByKind<[Factors; PairKind::MOST_POLYNOMIALS]>,
-}
-
-/// Factors of polynomials.
-#[derive(Debug, Clone, Copy)]
-struct Factors {
-    /// The least and the greatest one; the other way round where there is none.
-    range: [f64; 2],
-    /// The last one.
-    last: f64,
-}
-
-impl Default for Factors {
-    fn default() -> Self {
-        Self { range: [f64::INFINITY, f64::NEG_INFINITY], last: 1.0 }
-    }
-}
-
-impl Factors {
-    #[inline]
-    fn take(&mut self, factor: f64) {
-        self.range = [self.range[0].min(factor), self.range[1].max(factor)];
-        self.last = factor;
-    }
 }
 
 impl<'a> AlikeStep<'a> {
     /// Nothing of the step has been looked at.
     pub fn new(context: &'a Context<'a>, step: u32, watch: &Watch) -> Self {
+        let identical = StepJudgement::identical(context, step, watch.bytes.polynomials());
         Self {
             context,
-            judged: StepJudgement::identical(context, step, watch.bytes.polynomials()),
+            judged: StepJudgement { same: ByKind::default(), ..identical },
             telling: telling(context.scene, watch),
-            factors: ByKind::default(),
         }
     }
 
@@ -92,12 +68,13 @@ impl<'a> AlikeStep<'a> {
                 self.judged.shares.normal = self.judged.shares.normal.max(share);
             }
         }
-        for (scales, factors) in self.judged.scales.values_mut().zip(self.factors.values()) {
-            for (scale, factors) in scales.iter_mut().zip(factors) {
-                *scale = Some(factors.range).filter(|[low, high]| low <= high);
-            }
-        }
         Some(self.judged)
+    }
+
+    /// Counts a call whose polynomials are the reference's.
+    #[inline]
+    pub fn count_same(&mut self, kind: PairKind) {
+        self.judged.same[kind] += 1;
     }
 
     /// Whether it has to be known if the approach polynomial of this pair is of the course's form only.
@@ -119,9 +96,8 @@ impl<'a> AlikeStep<'a> {
             return Some(());
         }
         let expected = BoundedPairMotion::of(self.context.scene, pair, &seen.q_start, &seen.q_end).polynomials();
-        if expected.other_form(APPROACH).is_some_and(|right| compare(right, approach, &[1.0]).is_err()) {
-            self.judged.course_form = Some(place(pair, index, seen, APPROACH));
-        }
+        let place = place(pair, index, seen, APPROACH);
+        self.judged.note_course_form(&expected, &Logged { place, number: APPROACH, list: approach });
         Some(())
     }
 
@@ -138,7 +114,7 @@ impl<'a> AlikeStep<'a> {
             are_clear = self.is_of_both_forms(call, seen)?;
         }
         if are_clear {
-            let (factors, share) = (&mut self.factors[kind], &mut self.judged.shares.coefficient);
+            let (factors, share) = (&mut self.judged.scales[kind], &mut self.judged.shares.coefficient);
             for (number, likeness) in alike.iter().enumerate() {
                 if both[number][0].is_empty() {
                     continue;
@@ -184,39 +160,23 @@ impl<'a> AlikeStep<'a> {
         }
         let kind = call.pair.kind;
         let expected = BoundedPairMotion::of(self.context.scene, call.pair, &seen.q_start, &seen.q_end).polynomials();
+        let pended = self.judged.pended();
         for number in 0..kind.polynomials() {
-            let logged = Numbers::of(call.both[number][1]);
-            let logged = logged.list();
-            let hints = [self.factors[kind][number].last, 1.0];
-            let own = expected.polynomial(number);
-            let mut result = if self.is_clear(call, number) {
+            let numbers = Numbers::of(call.both[number][1]);
+            let place = place(call.pair, call.index, seen, number);
+            let logged = Logged { place, number, list: numbers.list() };
+            let first = if self.is_clear(call, number) {
                 let likeness = &call.alike[number];
                 Ok(Match { scale: Some(likeness.scale), share: likeness.worst / likeness.tolerance() })
-            } else if expected.other_form(number).is_some() && fits_with_no_factor(own, logged) {
-                // Where there is another form, nobody asks what is wrong with this one.
-                Err(Mismatch::TooLong)
             } else {
-                compare(own, logged, &hints)
+                compare_first(&self.judged, &expected, &logged)
             };
-            // That another one of the course's form is right tells nothing new, whatever the other form says.
-            let tells_nothing = result.is_ok() && self.judged.course_form.is_some();
-            if let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) {
-                let other = compare(right, logged, &hints);
-                let place = place(call.pair, call.index, seen, number);
-                match (&result, &other) {
-                    (Ok(_), Err(_)) => self.judged.course_form = self.judged.course_form.or(Some(place)),
-                    (Err(_), Ok(_)) => self.judged.right_form = self.judged.right_form.or(Some(place)),
-                    _ => {}
-                }
-                result = result.or(other);
-            }
-            let found = result.ok()?;
-            self.judged.shares.coefficient = self.judged.shares.coefficient.max(found.share);
-            if let Some(scale) = found.scale {
-                self.factors[kind][number].take(scale);
+            if let Said::Wrong(_) = self.judged.note(&expected, &logged, first, true) {
+                return None;
             }
         }
-        Some(())
+        // What a response has led to has its round-off, which the long way looks at.
+        (self.judged.pended() == pended || is_first(seen)).then_some(())
     }
 
     /// Whether what the trace's polynomials decide of a pair is the reference's decision, so that the trace's own, which is that
@@ -260,6 +220,14 @@ fn place(pair: Pair, index: usize, seen: &SeenPass, number: usize) -> Polynomial
 /// Whether all calls of the pass saw the positions that it began with.
 fn is_still(seen: &SeenPass) -> bool {
     seen.hits == 0 || !matches!(seen.pass.stage, Stage::ContinuousTime)
+}
+
+/// Whether the pass saw positions that no response and no failsafe has moved.
+fn is_first(seen: &SeenPass) -> bool {
+    matches!(
+        seen.pass.stage,
+        Stage::Simple | Stage::ContinuousTime | Stage::Impulses { round: 0 } | Stage::Geometric { round: 0 }
+    )
 }
 
 /// The two forms of an approach polynomial.

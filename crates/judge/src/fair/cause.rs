@@ -2,7 +2,10 @@
 //!
 //! It looks at what both have found, no closer: the first divergence of the book that rejects names the rule. What the
 //! original's rules are is written in oracle-behaviour.md 4 to 6, why they can't be trusted in numerics.md 1.
-use super::judgement::{FairRefusal, FairVerdict, Form, Judgement};
+use super::{
+    judgement::{FairRefusal, FairVerdict, Judgement},
+    pending::Form,
+};
 use crate::{
     finding::{Finding, FindingDetail, Role},
     outcome::Outcome,

@@ -223,8 +223,8 @@ fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Resul
         matches.find_map(Result::ok).map(|share| Match { scale: None, share })
     };
     let Some(fitted) = fit(right, logged, missing) else {
-        let first = hints.first().copied().unwrap_or(1.0);
-        return hinted().ok_or(()).or_else(|()| matched(first));
+        // Nothing that is left tells a factor, so it is 1 as far as this polynomial goes.
+        return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     };
     let first = matched(fitted);
     if first.is_ok() {
@@ -247,6 +247,14 @@ fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Resul
     }
     // When at most one agrees, the factor says nothing.
     if best.0 + 1 >= whole && whole > 1 { matched(1.0) } else { best.1 }
+}
+
+/// What is wrong with a logged polynomial that has the factor 1, if anything.
+pub(super) fn compare_with_one(expected: &[Bounded], actual: &[f64]) -> Result<(), Mismatch> {
+    let Some(missing) = expected.len().checked_sub(actual.len()) else { return Err(Mismatch::TooLong) };
+    let mut logged = [0.0; MAX_COEFFICIENTS];
+    logged[missing..expected.len()].copy_from_slice(actual);
+    judge(expected, &logged[..expected.len()], missing, 1.0).map(|_| ())
 }
 
 /// Right, if numbers stand exactly where they should.
@@ -316,18 +324,45 @@ fn norm(right: &[Bounded]) -> f64 {
 }
 
 /// The factors with which a logged polynomial would be right although it does not tell its own: at least so large that
-/// what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it tells.
+/// what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it tells, or if there is
+/// no such factor.
 pub fn possible_factors(expected: &[Bounded], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
-    let unit = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
     let (dropped, held) = expected.split_at(missing);
     if held.iter().any(is_significant) {
         return None;
     }
-    let largest = dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - unit * r.bound));
-    let needed = held.iter().zip(actual).map(|(r, s)| s.abs() / (unit * r.bound));
+    let needed = held.iter().zip(actual).map(|(r, s)| if *s == 0.0 { 0.0 } else { s.abs() / (UNIT * r.bound) });
     let least = needed.fold(0.0, |most: f64, factor| if factor <= most { most } else { factor });
-    least.is_finite().then_some([least, LEADING_COEFFICIENT / largest])
+    let most = most_factor(dropped);
+    (least.is_finite() && least <= most).then_some([least, most])
+}
+
+/// Twice the tolerance of a coefficient beside which all others are small, in its bound.
+const UNIT: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
+
+/// The greatest factor with which the course's library drops all of these.
+fn most_factor(dropped: &[Bounded]) -> f64 {
+    LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - UNIT * r.bound))
+}
+
+/// Whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has to vouch for it.
+pub fn shows_factor(expected: &[Bounded], actual: &[f64]) -> bool {
+    let missing = expected.len().saturating_sub(actual.len());
+    expected[missing..].iter().filter(|r| is_significant(r)).count() > 1
+}
+
+/// The factors that a right polynomial claims and does not show: it has a single coefficient, of whatever size, and lacks others
+/// that the course's library would not drop with the factor 1. `None` if it shows its factor, or lacks nothing.
+pub fn claimed_factors(expected: &[Bounded], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
+    let missing = expected.len().checked_sub(actual.len())?;
+    let (dropped, held) = expected.split_at(missing);
+    if most_factor(dropped) >= 1.0 || shows_factor(expected, actual) {
+        return None;
+    }
+    let known = held.iter().find(|r| is_significant(r))?;
+    let room = UNIT_ROUNDOFF * units(known, norm(expected)) / known.value.abs();
+    Some([scale * (1.0 - room), scale * (1.0 + room)])
 }
 
 /// How many coefficients are wrong with this factor.

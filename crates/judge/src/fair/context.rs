@@ -2,7 +2,7 @@
 use super::{formulas::extent, ordinary::Ordinary};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Decision, Pair, PairKind, Pass, State, pairs},
+    sim::{ByKind, Decision, Pair, PairKind, Pass, State, pairs},
     trace::{Layout, LenientFrame},
 };
 use fosssim_num::vector::at;
@@ -16,6 +16,8 @@ pub(crate) struct Context<'a> {
     pub per_pass: usize,
     /// Pairs of one detection pass.
     pub pairs: usize,
+    /// Those of each kind.
+    pub of_kinds: ByKind<u64>,
     /// Records of one step.
     pub records_per_step: u32,
     /// States that need no look at the reference's own run.
@@ -26,9 +28,11 @@ impl<'a> Context<'a> {
     /// The context of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         let pairs = pairs(scene);
+        let mut of_kinds = ByKind::default();
+        pairs.iter().for_each(|pair| of_kinds[pair.kind] += 1);
         let (per_pass, pairs) = (pairs.polynomials(), pairs.count());
         let records_per_step = Layout::of(scene).records_per_step();
-        Self { scene, per_pass, pairs, records_per_step, ordinary: Ordinary::of(scene) }
+        Self { scene, per_pass, pairs, of_kinds, records_per_step, ordinary: Ordinary::of(scene) }
     }
 
     /// The particles of a pair: one, two, or three with an edge.

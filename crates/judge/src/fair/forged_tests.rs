@@ -1,12 +1,12 @@
 //! Traces that no program wrote in earnest: each shows what the fair rules must not fall for.
-use super::{FairRefusal, FairVerdict, Judgement};
+use super::{FairRefusal, FairVerdict, Judgement, context::Context};
 use crate::{
     finding::{FindingDetail, FindingKind},
     samples::{BOUNCE, ZONES, changed, judged, relog, run, scene, written},
 };
 use fosssim_model::{
     scene::{Scene, original},
-    sim::{Decision, Observer, Pair, Time},
+    sim::{Decision, Detection, Observer, Pair, PairKind, Time},
     trace::Frame,
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
@@ -310,4 +310,80 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     let forged = fair(&scene, &written(&scene, &run(&scene, Push)));
     assert_eq!(forged.refusal, Some(FairRefusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
     assert_eq!(forged.findings.counts.total(), 0, "{:?}", forged.findings.first_divergence);
+}
+
+/// Notes which polynomials of each step belong to pairs that a response has moved before.
+struct Moved<'a> {
+    context: Context<'a>,
+    is_moved: Vec<bool>,
+    steps: Vec<Vec<bool>>,
+}
+
+impl Observer for Moved<'_> {
+    fn begin_step(&mut self, _: u32) {
+        self.is_moved.fill(false);
+        self.steps.push(Vec::new());
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let particles = self.context.particles(detection.pair);
+        let is_moved = particles.iter().flatten().any(|&particle| self.is_moved[particle]);
+        let step = self.steps.last_mut().expect("a step has begun");
+        step.extend(detection.polynomials.iter().map(|_| is_moved));
+        if matches!(detection.decision, Decision::Hit { .. }) {
+            particles.iter().flatten().for_each(|&particle| self.is_moved[particle] = true);
+        }
+    }
+}
+
+/// A program that leaves out what has collided in this step: the polynomials of its pairs stay empty.
+#[test]
+fn what_a_response_has_moved_is_not_left_out() {
+    let mut told = 0;
+    for (name, scene) in assets() {
+        if !matches!(scene.collision, fosssim_model::scene::Collision::ContinuousTime { .. }) {
+            continue;
+        }
+        let is_moved = vec![false; scene.particles.len()];
+        let mut moved = Moved { context: Context::new(&scene), is_moved, steps: vec![vec![]] };
+        run(&scene, &mut moved);
+        let reference = changed(&scene, |_| {});
+        let forged = changed(&scene, |frames| {
+            for (number, frame) in frames.iter_mut().enumerate() {
+                let left_out = &moved.steps[number.div_ceil(2)];
+                relog(frame, |index, list| if left_out[index] { vec![] } else { list.to_vec() });
+            }
+        });
+        if forged != reference {
+            let judged = fair(&scene, &forged);
+            assert_eq!(judged.verdict, FairVerdict::Rejected, "{name}");
+            let first = judged.findings.first_divergence.expect("a finding");
+            // What is missing is named before what follows from it.
+            assert!(matches!(first.kind(), FindingKind::Coefficient | FindingKind::MissedCollision), "{name}: {first}");
+            told += u32::from(first.kind() == FindingKind::Coefficient);
+        }
+    }
+    assert!(told > 5, "{told}");
+}
+
+/// The two forms of the approach differ in t^3 only, which a small factor takes away.
+#[test]
+fn what_is_gone_is_no_mixture_of_forms() {
+    struct Edges(f64);
+    impl Observer for Edges {
+        fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+            for polynomial in polynomials.iter_mut().filter(|_| pair.kind == PairKind::ParticleEdge) {
+                let scaled: Vec<f64> = polynomial.coefficients().iter().map(|c| self.0 * c).collect();
+                *polynomial = Polynomial::trimmed(&scaled);
+            }
+        }
+    }
+    for (name, scene) in assets() {
+        for factor in [1e-2, 1e-4, 1e-6, 1e-8] {
+            let judged = fair(&scene, &written(&scene, &run(&scene, Edges(factor))));
+            let counts = &judged.findings.counts;
+            let lost = counts.get(FindingKind::TrimmedDecision);
+            assert_eq!(counts.total(), lost, "{factor} in {name}: {:?}", judged.findings.first_divergence);
+        }
+    }
 }

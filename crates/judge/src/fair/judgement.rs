@@ -1,9 +1,14 @@
 //! The fair verdict on one trace.
-use super::step_judgement::{Borderline, Pending, Scales, Shares, StepJudgement};
+use super::{
+    factors::{Factors, Scales},
+    pending::{Form, Pending},
+    step_judgement::{Borderline, Shares, StepJudgement},
+};
 use crate::{
     book_findings::BookFindings,
-    finding::{Finding, FindingDetail},
+    finding::{Finding, FindingDetail, FindingKind},
 };
+use fosssim_model::sim::{ByKind, PairKind};
 
 /// So many examples of borderline decisions are kept.
 const EXAMPLES: usize = 8;
@@ -36,18 +41,6 @@ pub enum FairRefusal {
     Undecided,
 }
 
-/// Which of the two accepted forms of the particle-edge approach polynomial a trace uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Form {
-    /// Nothing tells them apart.
-    #[default]
-    Either,
-    /// The course's formula, with its slip in t^3.
-    Course,
-    /// What the definition gives.
-    Right,
-}
-
 /// Everything that the fair rules say about a trace.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
@@ -71,6 +64,10 @@ pub struct Judgement {
     pub lost: u64,
     /// Used shares of the tolerances.
     pub shares: Shares,
+    /// The factors that single coefficients claim.
+    claimed: Scales,
+    /// How many polynomials are the reference's bit for bit; approaches, which say nothing of objects at rest, count once a step.
+    same: ByKind<[u64; PairKind::MOST_POLYNOMIALS]>,
     /// What hangs on the factors of polynomials, step by step.
     pending: Vec<PendingOfStep>,
 }
@@ -87,8 +84,8 @@ impl Judgement {
     /// The factor of all polynomials of all kinds as an interval, where it is not 1.
     #[must_use]
     pub fn scale(&self) -> Option<[f64; 2]> {
-        let all = self.scales.values().flatten().flatten();
-        let range = all.copied().reduce(|[low, high], [l, h]| [low.min(l), high.max(h)])?;
+        let all = self.scales.values().flatten().filter_map(Factors::range);
+        let range = all.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)])?;
         (range.iter().any(|factor| (factor - 1.0).abs() > 1e-9)).then_some(range)
     }
 
@@ -109,10 +106,7 @@ impl Judgement {
         let room = EXAMPLES.saturating_sub(self.borderline_examples.len());
         self.borderline_examples.extend(step.borderline.iter().take(room));
         for (all, new) in self.scales.values_mut().flatten().zip(step.scales.values().flatten()) {
-            *all = match (*all, *new) {
-                (Some([low, high]), Some([l, h])) => Some([low.min(l), high.max(h)]),
-                (known, new) => known.or(new),
-            };
+            all.add(new);
         }
         self.lost += step.lost;
         if step.endless {
@@ -134,14 +128,37 @@ impl Judgement {
             }
         }
         self.findings.wrong_steps += u64::from(is_wrong);
-        // A range of factors that fits already will fit at the end.
+        for (kind, &calls) in step.same.iter() {
+            let approach = kind.polynomials() - 1;
+            for (number, same) in self.same[kind].iter_mut().enumerate() {
+                *same += if number == approach { calls.min(1) } else { calls };
+            }
+        }
+        for claim in step.pending.iter().filter(|pending| pending.is_claim) {
+            let (kind, number) = claim.place;
+            self.claimed[kind][number].take(claim.least.0.midpoint(claim.most.0));
+        }
+        // What fits already is settled, and so is what counts in the other form only.
         let hangs = |pending: &&Pending| {
             let (kind, number) = pending.place;
-            self.scales[kind][number].is_none_or(|range| pending.finding(range).is_some())
+            let is_of_other_form = self.form != Form::Either && !pending.is_of(self.form);
+            // A claim does not vouch for itself as long as others may come.
+            let is_told = self.scales[kind][number].range().is_some() || self.same[kind][number] > 0;
+            !is_of_other_form && (!is_told || self.finding(pending).is_some())
         };
         let hanging: Vec<PendingOfStep> =
             step.pending.iter().filter(hangs).map(|&polynomials| PendingOfStep { polynomials, is_wrong }).collect();
         self.pending.extend(hanging);
+    }
+
+    /// What is wrong with polynomials that hang on factors, with those that are usual in the trace so far: those that others show,
+    /// beside the reference's own polynomials; where there are none of either, those that all claim; or else 1.
+    fn finding(&self, pending: &Pending) -> Option<Finding> {
+        let (kind, number) = pending.place;
+        let mut told = self.scales[kind][number];
+        told.take_ones(self.same[kind][number]);
+        let usual = told.usual().or_else(|| self.claimed[kind][number].usual());
+        pending.finding(usual.unwrap_or([1.0; 2]))
     }
 
     /// Adds a finding.
@@ -150,16 +167,23 @@ impl Judgement {
         self.findings.keep_first(&finding);
     }
 
-    /// Charges what is no round-off with the factors that the trace uses for polynomials of the same kind; with 1, if none tells.
+    /// Charges what is no round-off with the factors that are usual for polynomials of the same kind, in the form that the trace uses.
     fn settle_pending(&mut self) {
-        let mut last_wrong = 0;
-        for PendingOfStep { polynomials, is_wrong } in std::mem::take(&mut self.pending) {
-            let (kind, number) = polynomials.place;
-            let Some(finding) = polynomials.finding(self.scales[kind][number].unwrap_or([1.0; 2])) else { continue };
+        let all = std::mem::take(&mut self.pending);
+        let fails =
+            |form| all.iter().any(|step| step.polynomials.is_of(form) && self.finding(&step.polynomials).is_some());
+        if self.form == Form::Either && fails(Form::Course) {
+            // What is gone may tell the form all the same: that in which nothing is gone that counts.
+            self.form = if fails(Form::Right) { Form::Course } else { Form::Right };
+        }
+        let (form, mut last_wrong) = (self.form, 0);
+        for PendingOfStep { polynomials, is_wrong } in all.iter().filter(|step| step.polynomials.is_of(form)) {
+            let Some(finding) = self.finding(polynomials) else { continue };
             // Steps come in their order, so the polynomials of one stand together.
             self.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
-            if self.findings.first_divergence.is_some_and(|first| first.step > finding.step) {
+            // In a step polynomials come before what they decide.
+            if self.findings.first_divergence.is_some_and(|first| follows(&first, &finding)) {
                 self.findings.first_divergence = None;
             }
             if let Some(place) = self.findings.examples.iter().position(|known| known.kind() == finding.kind())
@@ -190,4 +214,10 @@ impl Judgement {
             FairVerdict::None
         };
     }
+}
+
+/// Whether a finding comes after that about a polynomial.
+fn follows(finding: &Finding, polynomial: &Finding) -> bool {
+    let is_decision = matches!(finding.kind(), FindingKind::TrimmedDecision);
+    finding.step > polynomial.step || finding.step == polynomial.step && is_decision
 }

@@ -9,7 +9,8 @@
 //!    polynomials give is the reference's but for round-off, the reference's is taken; where right polynomials lead the root
 //!    finder to another decision than the reference's, either will do.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running
-//!    error bound. A small leading coefficient may be missing, because the course's library drops it. NaN fails.
+//!    error bound. A small leading coefficient may be missing, because the course's library drops it, if the factor makes it
+//!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace tells. NaN fails.
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; where that is too little, by
 //!    [`FAIR_SENSITIVITY`] times what such roundings of the step's input do to its result.
 //! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged. Where and when the
@@ -33,6 +34,7 @@ mod cause;
 pub mod compare;
 mod contact;
 mod context;
+mod factors;
 mod follow;
 #[cfg(test)]
 mod forged_tests;
@@ -41,6 +43,8 @@ pub mod formulas;
 mod hostile_tests;
 mod judgement;
 mod ordinary;
+mod pending;
+mod polynomial;
 mod probe;
 mod reach;
 mod sensitivity;
@@ -54,7 +58,8 @@ pub use cause::{Cause, cause};
 pub(super) use compare::Likeness;
 pub use contact::decides;
 pub(super) use context::{Context, Records};
-pub use judgement::{FairRefusal, FairVerdict, Form, Judgement};
+pub use judgement::{FairRefusal, FairVerdict, Judgement};
+pub use pending::Form;
 pub(super) use reach::Reach;
 pub(super) use step::{judge, judge_initial};
 pub(super) use step_judgement::StepJudgement;

@@ -1,5 +1,9 @@
 //! What judging one step yields.
-use super::context::{Context, Records};
+use super::{
+    context::{Context, Records},
+    factors::Scales,
+    pending::Pending,
+};
 use crate::{
     counts::FindingCounts,
     finding::{Finding, FindingDetail, FindingKind, PolynomialPlace},
@@ -42,41 +46,6 @@ impl Shares {
     }
 }
 
-/// Smallest and largest factor of the polynomials, by kind of pair and number of the polynomial; `None` where no
-/// polynomial differs from the reference's bits.
-pub type Scales = ByKind<[Option<[f64; 2]>; PairKind::MOST_POLYNOMIALS]>;
-
-/// Polynomials of a kind that are right if the program's polynomials of that kind have a factor within bounds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Pending {
-    /// Kind of pair and number of the polynomial in [`Scales`].
-    pub place: (PairKind, usize),
-    /// How many there are in the step.
-    pub count: u64,
-    /// The greatest of the least factors that they need, and what is wrong otherwise.
-    pub least: (f64, Finding),
-    /// The least of the greatest factors that they allow, and what is wrong otherwise.
-    pub most: (f64, Finding),
-}
-
-impl Pending {
-    /// One polynomial with the least and the greatest factor that it may have.
-    pub fn new(finding: Finding, place: (PairKind, usize), [least, most]: [f64; 2]) -> Self {
-        Self { place, count: 1, least: (least, finding), most: (most, finding) }
-    }
-
-    /// What is wrong where the program's factors lie between these.
-    pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
-        // Factors are known but for rounding.
-        let room = 1e-9;
-        let (least, most) = (self.least, self.most);
-        if !(least.0 <= high * (1.0 + room)) {
-            return Some(least.1);
-        }
-        (!(most.0 >= low * (1.0 - room))).then_some(most.1)
-    }
-}
-
 /// What judging one step yields.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StepJudgement {
@@ -92,8 +61,10 @@ pub(crate) struct StepJudgement {
     pub decisions: u64,
     /// Borderline decisions that were followed.
     pub borderline: Vec<Borderline>,
-    /// Factors of polynomials.
+    /// Factors of polynomials that are not the reference's bit for bit.
     pub scales: Scales,
+    /// How many calls of each kind have logged the reference's polynomials bit for bit.
+    pub same: ByKind<u64>,
     /// Polynomials that lost other coefficients than the reference's.
     pub lost: u64,
     /// Used shares of tolerances.
@@ -104,6 +75,8 @@ pub(crate) struct StepJudgement {
     pub right_form: Option<PolynomialPlace>,
     /// Polynomials that are right with some factors only: whether the program uses such a one, only the whole trace says.
     pub pending: Vec<Pending>,
+    /// Whether anything is said of polynomials at positions that a response or the failsafe has led to, with its round-off.
+    pub hangs: bool,
     /// The trace's polynomials lead the step into a search without end.
     pub endless: bool,
 }
@@ -113,7 +86,9 @@ impl StepJudgement {
     pub fn identical(context: &Context<'_>, step: u32, polynomials: usize) -> Self {
         let frame = u64::from(step) * u64::from(context.records_per_step);
         let passes = polynomials.checked_div(context.per_pass).unwrap_or(0);
-        Self { step, frame, decisions: (passes * context.pairs) as u64, ..Self::default() }
+        let passes = passes as u64;
+        let same = ByKind::from_fn(|kind| passes * context.of_kinds[kind]);
+        Self { step, frame, decisions: passes * context.pairs as u64, same, ..Self::default() }
     }
 
     /// Adds a finding.
@@ -132,26 +107,15 @@ impl StepJudgement {
         self
     }
 
-    /// Adds a polynomial that hangs on factors.
-    pub(super) fn pend(&mut self, new: Pending) {
-        let Some(known) = self.pending.iter_mut().find(|known| known.place == new.place) else {
-            self.pending.push(new);
-            return;
-        };
-        known.count += new.count;
-        if new.least.0 > known.least.0 {
-            known.least = new.least;
-        }
-        if new.most.0 < known.most.0 {
-            known.most = new.most;
-        }
+    /// The factors that a polynomial may have whose coefficients tell its own only roughly: that of the same polynomial of another
+    /// pair of its kind, or 1. Factors of other polynomials vouch for nothing.
+    pub(super) fn hints(&self, kind: PairKind, number: usize) -> [f64; 2] {
+        [self.scales[kind][number].last(), 1.0]
     }
 
-    /// Notes the factor of a polynomial of this kind and number.
-    #[inline]
-    pub(super) fn scale(&mut self, kind: PairKind, number: usize, scale: f64) {
-        let range = &mut self.scales[kind][number];
-        *range = Some(range.map_or([scale; 2], |[low, high]| [f64::min(low, scale), f64::max(high, scale)]));
+    /// How many polynomials hang on factors.
+    pub(super) fn pended(&self) -> u64 {
+        self.pending.iter().map(|pending| pending.count).sum()
     }
 
     /// Notes a borderline decision.
@@ -167,18 +131,19 @@ impl StepJudgement {
     /// Whether it has findings that the step's sensitivity could excuse. Those about polynomials of known
     /// positions are not among them: their own bounds are all that counts.
     pub(super) fn hangs_on_round_off(&self) -> bool {
-        self.findings.iter().any(|finding| {
-            !matches!(
-                finding.kind(),
-                FindingKind::Coefficient
-                    | FindingKind::PolynomialDegree
-                    | FindingKind::WrongNormal
-                    | FindingKind::ContactTime
-                    | FindingKind::RepeatedCollision
-                    | FindingKind::RecordsDiffer
-                    | FindingKind::ImpossibleLog
-            )
-        })
+        self.hangs
+            || self.findings.iter().any(|finding| {
+                !matches!(
+                    finding.kind(),
+                    FindingKind::Coefficient
+                        | FindingKind::PolynomialDegree
+                        | FindingKind::WrongNormal
+                        | FindingKind::ContactTime
+                        | FindingKind::RepeatedCollision
+                        | FindingKind::RecordsDiffer
+                        | FindingKind::ImpossibleLog
+                )
+            })
     }
 
     /// Whether it has findings that another decision could explain.

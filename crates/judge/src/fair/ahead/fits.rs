@@ -55,7 +55,7 @@ pub(super) fn fits<S: Simd, const LENGTH: usize>(
         let scale = (is_clear & !at_once.is_empty).choose(at_once.scale, zero.like(f64::NAN));
         return Fit { is_right: is_clear | is_quiet, scale, share: clear_share };
     }
-    let (mut products, mut squares) = (zero, zero);
+    let (mut products, mut squares, mut shown) = (zero, zero, zero);
     let mut units = [zero; LENGTH];
     for (number, (r, s)) in expected.iter().zip(actual).enumerate() {
         units[number] = (2.0 * FAIR_UNITS * r.bound).max(FAIR_NORM_UNITS * norm);
@@ -64,6 +64,7 @@ pub(super) fn fits<S: Simd, const LENGTH: usize>(
         let weight = r.value / units[number];
         products = products + counts.choose(weight * (*s / r.value) * weight, zero);
         squares = squares + counts.choose(weight * weight, zero);
+        shown = shown + counts.as_numbers();
     }
     let scale = products / squares;
     let mut fits = is_moderate & !says_nothing & zero.lt(squares) & scale.at_least(LEAST) & scale.below(MOST);
@@ -85,7 +86,9 @@ pub(super) fn fits<S: Simd, const LENGTH: usize>(
             share = (share.lt(used) & residual.le(*tolerance)).choose(used, share);
         }
     }
-    let fits = fits & !is_quiet;
+    // A single coefficient claims a factor, for which others have to vouch where more is gone than the reference drops.
+    let is_shown = missing.le(own.1) | zero.like(2.0).le(shown);
+    let fits = fits & is_shown & !is_quiet;
     let share = is_clear.choose(clear_share, fits.choose(share, zero));
     let scale = is_clear.choose(at_once.scale, fits.choose(scale, zero.like(f64::NAN)));
     Fit { is_right: is_clear | fits | is_quiet, scale, share }

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     contacts::Contacts,
-    finding::{Finding, FindingDetail, Part, PolynomialPlace},
+    finding::{Finding, FindingDetail, Part},
 };
 use decisions::Own;
 use fosssim_model::sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone};
@@ -25,13 +25,6 @@ use fosssim_num::polynomial::Polynomial;
 
 /// Room for so many decisions is made at first, at most.
 const DECISIONS: usize = 1 << 14;
-
-/// A polynomial that does not tell its factor.
-struct Deferred {
-    place: PolynomialPlace,
-    number: usize,
-    expected: Expected,
-}
 
 /// Follows one step; filled in by the simulation, read by [`super::step`].
 pub(super) struct Follower<'a> {
@@ -58,14 +51,12 @@ pub(super) struct Follower<'a> {
     next: Option<usize>,
     /// Particles that a response or the failsafe has moved since positions were last known.
     moved: Vec<bool>,
+    /// Particles that the responses to the pass's hits are about to move, once it is over.
+    moving: Vec<usize>,
     /// Whether the part before the mid record, or the geometric part, has an error that its result may follow from.
     spoilt: [bool; 2],
     /// Polynomials that were wrong of known positions in this step.
     wrong_formulas: ByKind<[bool; PairKind::MOST_POLYNOMIALS]>,
-    /// Factors of polynomials so far: for each kind of pair and number of the polynomial the last one.
-    factors: ByKind<[Option<f64>; PairKind::MOST_POLYNOMIALS]>,
-    /// Polynomials that do not tell their factor, to be judged when others of their kind do.
-    deferred: Vec<Deferred>,
     /// The pairs of the logged impulses.
     contacts: Contacts,
     /// Logged impulses that a decision has used.
@@ -114,10 +105,9 @@ impl<'a> Follower<'a> {
             logged_passes: None,
             next: None,
             moved: vec![false; context.scene.particles.len()],
+            moving: Vec::new(),
             spoilt: [false; 2],
             wrong_formulas: ByKind::default(),
-            factors: ByKind::default(),
-            deferred: Vec::new(),
             contacts: Contacts::of(&records.end.impulses),
             used: vec![false; records.end.impulses.len()],
             own: None,
@@ -158,7 +148,6 @@ impl<'a> Follower<'a> {
     pub fn finish(&mut self, state: &State) {
         self.judged.decisions = self.decisions.len() as u64;
         self.settle_passes();
-        self.settle_deferred();
         self.settle_impulses();
         if !self.spoilt[1] {
             let frame = self.records.frame;
@@ -178,6 +167,9 @@ impl Observer for Follower<'_> {
         self.pass = pass;
         if let Some(ahead) = &mut self.ahead {
             ahead.begin_pass();
+        }
+        for particle in self.moving.drain(..) {
+            self.moved[particle] = true;
         }
         if matches!(pass.stage, Stage::Geometric { round: 0 }) {
             // The geometric part starts from the mid record, which is known.
@@ -212,6 +204,7 @@ impl Observer for Follower<'_> {
             own.len() == logged.len() && own.iter().zip(logged).all(|(own, logged)| own.to_bits() == logged.to_bits())
         });
         if same {
+            self.judged.same[pair.kind] += 1;
             if self.sensitivity.is_some() || !self.is_hybrid() {
                 // Should the decision be disputed, it must be known how far round-off may reach.
                 let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
@@ -254,11 +247,15 @@ impl Observer for Follower<'_> {
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
-        let collides = matches!(detection.decision, Decision::Hit { .. });
-        if collides && matches!(self.pass.stage, Stage::ContinuousTime | Stage::Impulses { .. }) {
-            for particle in self.context.particles(detection.pair).into_iter().flatten() {
-                self.moved[particle] = true;
-            }
+        if !matches!(detection.decision, Decision::Hit { .. }) {
+            return;
+        }
+        let particles = self.context.particles(detection.pair).into_iter().flatten();
+        match self.pass.stage {
+            Stage::ContinuousTime => particles.for_each(|particle| self.moved[particle] = true),
+            // A round's responses come behind its last detection.
+            Stage::Impulses { .. } => self.moving.extend(particles),
+            Stage::Simple | Stage::Geometric { .. } => {}
         }
     }
 

@@ -25,13 +25,15 @@ impl Follower<'_> {
             if is_open || calls == 0 && pair != next {
                 break;
             }
+            if known.likeness == Likeness::Same {
+                self.judged.same[pair.kind] += 1;
+            }
             if known.likeness == Likeness::Alike {
                 self.judged.shares.coefficient = self.judged.shares.coefficient.max(known.share);
                 self.judged.lost += u64::from(known.lost);
                 for (number, &scale) in known.scales[..pair.kind.polynomials()].iter().enumerate() {
                     if !scale.is_nan() {
-                        self.factors[pair.kind][number] = Some(scale);
-                        self.judged.scale(pair.kind, number, scale);
+                        self.judged.scales[pair.kind][number].take(scale);
                     }
                 }
             }

@@ -1,0 +1,132 @@
+//! The factors that a trace's polynomials tell.
+use fosssim_model::sim::{ByKind, PairKind};
+use fosssim_num::tolerances::FAIR_OUTLIER;
+
+/// The factors that polynomials of one kind of pair and number tell: the least and the greatest, and how they are spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Factors {
+    least: f64,
+    greatest: f64,
+    /// The last one.
+    last: f64,
+    count: u64,
+    /// The sum of their binary exponents, and of the squares of these.
+    exponents: i64,
+    squares: i64,
+}
+
+/// The factors of all kinds of pairs and numbers of polynomials.
+pub type Scales = ByKind<[Factors; PairKind::MOST_POLYNOMIALS]>;
+
+impl Default for Factors {
+    fn default() -> Self {
+        Self { least: f64::INFINITY, greatest: f64::NEG_INFINITY, last: 1.0, count: 0, exponents: 0, squares: 0 }
+    }
+}
+
+impl Factors {
+    /// Adds a factor, which is positive and finite.
+    #[inline]
+    pub(super) fn take(&mut self, factor: f64) {
+        let exponent = (factor.to_bits() >> 52).cast_signed() - 1023;
+        (self.least, self.greatest) = (self.least.min(factor), self.greatest.max(factor));
+        self.last = factor;
+        self.count += 1;
+        self.exponents += exponent;
+        self.squares += exponent * exponent;
+    }
+
+    /// Adds so many factors of 1.
+    pub(super) fn take_ones(&mut self, count: u64) {
+        if count > 0 {
+            (self.least, self.greatest) = (self.least.min(1.0), self.greatest.max(1.0));
+            self.count += count;
+        }
+    }
+
+    /// Adds those of a later step.
+    pub(super) fn add(&mut self, other: &Self) {
+        if other.count > 0 {
+            (self.least, self.greatest) = (self.least.min(other.least), self.greatest.max(other.greatest));
+            self.last = other.last;
+            self.count += other.count;
+            self.exponents += other.exponents;
+            self.squares += other.squares;
+        }
+    }
+
+    /// The last factor; 1 where there is none.
+    pub(super) fn last(&self) -> f64 {
+        self.last
+    }
+
+    /// The least and the greatest; none of no factor.
+    #[must_use]
+    pub fn range(&self) -> Option<[f64; 2]> {
+        (self.count > 0).then_some([self.least, self.greatest])
+    }
+
+    /// The factors that are usual: the whole range but for outliers, which say nothing of polynomials that are gone; none of no
+    /// factor.
+    pub(super) fn usual(&self) -> Option<[f64; 2]> {
+        let [least, greatest] = self.range()?;
+        let of_all = |sum: i64| sum as f64 / self.count as f64;
+        let mean = of_all(self.exponents);
+        let spread = (of_all(self.squares) - mean * mean).max(0.0).sqrt();
+        let reach = 1.0 + FAIR_OUTLIER * spread;
+        Some([least.max(power_of_two(mean - reach)), greatest.min(power_of_two(mean + reach + 1.0))])
+    }
+}
+
+/// 2 to this power, rounded down; 0 and infinity beyond normal numbers.
+fn power_of_two(power: f64) -> f64 {
+    if power < -1022.0 {
+        return 0.0;
+    }
+    if power >= 1024.0 {
+        return f64::INFINITY;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "between the exponents of normal numbers")]
+    let exponent = power.floor() as i64;
+    f64::from_bits((exponent + 1023).cast_unsigned() << 52)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(factors: impl IntoIterator<Item = f64>) -> Factors {
+        let mut all = Factors::default();
+        factors.into_iter().for_each(|factor| all.take(factor));
+        all
+    }
+
+    #[test]
+    fn one_among_dozens_vouches_for_nothing() {
+        let with = |others: usize| of(std::iter::repeat_n(1.0, others).chain([1e-13])).usual().expect("factors");
+        assert_eq!(with(5), [1e-13, 1.0]);
+        let [least, greatest] = with(30);
+        assert!(least > 1e-9 && greatest == 1.0, "{least}");
+    }
+
+    #[test]
+    fn what_many_tell_is_usual() {
+        assert_eq!(of([3.0, 3.0, 3.0]).usual(), Some([3.0; 2]));
+        assert_eq!(of((0..300).map(|n| if n % 5 == 0 { 1e-6 } else { 2.0 })).usual(), Some([1e-6, 2.0]));
+        // Divided by their sizes.
+        let sizes = of((1..500).map(|n| 1.0 / f64::from(n)));
+        assert_eq!(sizes.usual().map(|[least, _]| least), Some(1.0 / 499.0));
+        for factor in [5e-324, 1e-300, 1.0, 1e300, f64::MAX] {
+            assert_eq!(of([factor; 9]).usual(), Some([factor; 2]));
+        }
+        assert_eq!(Factors::default().usual(), None);
+    }
+
+    #[test]
+    fn two_steps_tell_what_one_tells() {
+        let (mut one, all) = (of([1.0, 5.0]), of([1.0, 5.0, 0.25, 1e-7]));
+        one.add(&of([0.25, 1e-7]));
+        one.add(&Factors::default());
+        assert_eq!(one, all);
+    }
+}

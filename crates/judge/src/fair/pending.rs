@@ -1,0 +1,53 @@
+//! Polynomials that are right with some factors only, or in one of two forms only.
+use crate::finding::Finding;
+use fosssim_model::sim::PairKind;
+
+/// Which of the two accepted forms of the particle-edge approach polynomial a trace uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Form {
+    /// Nothing tells them apart.
+    #[default]
+    Either,
+    /// The course's formula, with its slip in t^3.
+    Course,
+    /// What the definition gives.
+    Right,
+}
+
+/// The factors of a polynomial that none makes right: it is so in the other form only.
+pub(super) const NONE: [f64; 2] = [f64::INFINITY, 0.0];
+
+/// Polynomials of a kind and form, claims or not, that are right if the program's polynomials of that kind have a factor within bounds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pending {
+    /// Kind of pair and number of the polynomial.
+    pub place: (PairKind, usize),
+    /// The form in which they are so; any, where there is but one.
+    pub form: Form,
+    /// Whether they claim factors of their own, and show none.
+    pub is_claim: bool,
+    /// How many there are in the step.
+    pub count: u64,
+    /// The greatest of the least factors that they need, and what is wrong otherwise.
+    pub least: (f64, Finding),
+    /// The least of the greatest factors that they allow, and what is wrong otherwise.
+    pub most: (f64, Finding),
+}
+
+impl Pending {
+    /// What is wrong where the program's factors lie between these.
+    pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
+        // Factors are known but for rounding.
+        let room = 1e-9;
+        let (least, most) = (self.least, self.most);
+        if !(least.0 <= high * (1.0 + room)) {
+            return Some(least.1);
+        }
+        (!(most.0 >= low * (1.0 - room))).then_some(most.1)
+    }
+
+    /// Whether it counts in a trace of this form.
+    pub fn is_of(&self, form: Form) -> bool {
+        self.form == Form::Either || self.form == form
+    }
+}

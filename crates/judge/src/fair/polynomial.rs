@@ -1,0 +1,195 @@
+//! What one logged polynomial says, as far as its own step tells: the factor and the form of a right one, what a wrong one lacks,
+//! and what hangs on the factors that others of the trace tell.
+use super::{
+    compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
+    formulas::Expected,
+    pending::{Form, NONE, Pending},
+    step_judgement::StepJudgement,
+};
+use crate::finding::{Finding, FindingDetail, PolynomialPlace};
+use fosssim_num::{
+    bounded::Bounded,
+    polynomial::{MAX_COEFFICIENTS, Polynomial},
+};
+
+fosssim_model::drops_leading!();
+
+/// A logged polynomial and where it stands.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Logged<'a> {
+    /// Its place.
+    pub place: PolynomialPlace,
+    /// Its number among those of its pair.
+    pub number: usize,
+    /// Its coefficients, highest power first.
+    pub list: &'a [f64],
+}
+
+/// What is said of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Said {
+    /// It is right.
+    Right,
+    /// It is right, and of the definition's form, not the course's.
+    RightForm,
+    /// It tells no factor, and is right with some only.
+    Hangs,
+    /// It is wrong.
+    Wrong(Mismatch),
+}
+
+/// How a polynomial compares with the course's form.
+pub(super) fn compare_first(
+    judged: &StepJudgement,
+    expected: &Expected,
+    logged: &Logged<'_>,
+) -> Result<Match, Mismatch> {
+    let own = expected.polynomial(logged.number);
+    // Where there is another form, nobody asks what is wrong with this one.
+    if expected.other_form(logged.number).is_some() && fits_with_no_factor(own, logged.list) {
+        return Err(Mismatch::TooLong);
+    }
+    compare(own, logged.list, &judged.hints(logged.place.pair.kind, logged.number))
+}
+
+impl StepJudgement {
+    /// Notes what a polynomial says, whose comparison with the course's form is `first`. What hangs on factors is kept to be settled
+    /// if `is_known`, that is if the positions that it belongs to are.
+    pub(super) fn note(
+        &mut self,
+        expected: &Expected,
+        logged: &Logged<'_>,
+        first: Result<Match, Mismatch>,
+        is_known: bool,
+    ) -> Said {
+        let Logged { place, number, list } = *logged;
+        let own = expected.polynomial(number);
+        let pend = |judged: &mut Self, form: Form, expected: &[Bounded], factors: Option<[f64; 2]>| {
+            if is_known {
+                judged.pend(logged, (form, false), expected, factors.unwrap_or(NONE));
+            }
+            Said::Hangs
+        };
+        // That another one of the course's form is right tells nothing new, whatever the other form says.
+        let tells_nothing = first.is_ok() && self.course_form.is_some();
+        let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
+            return match (first, possible_factors(own, list)) {
+                (Ok(found), _) => self.take(logged, own, found, is_known),
+                (Err(_), factors @ Some(_)) => pend(self, Form::Either, own, factors),
+                (Err(mismatch), None) => Said::Wrong(mismatch),
+            };
+        };
+        let other = compare(right, list, &self.hints(place.pair.kind, number));
+        match (first, other) {
+            (Ok(found), other) => {
+                // What says nothing of its own factor says nothing of the form either.
+                if other.is_err() && found.scale.is_some() && possible_factors(right, list).is_none() {
+                    self.course_form = self.course_form.or(Some(place));
+                } else if other.is_err() {
+                    pend(self, Form::Right, right, possible_factors(right, list));
+                }
+                self.take(logged, own, found, is_known)
+            }
+            (Err(_), Ok(found)) => match possible_factors(own, list) {
+                None if found.scale.is_some() => {
+                    self.right_form = self.right_form.or(Some(place));
+                    self.take(logged, right, found, is_known);
+                    Said::RightForm
+                }
+                factors => pend(self, Form::Course, own, factors),
+            },
+            (Err(_), Err(mismatch)) => match [own, right].map(|form| possible_factors(form, list)) {
+                [None, None] => Said::Wrong(mismatch),
+                [course, definition] => {
+                    pend(self, Form::Course, own, course);
+                    pend(self, Form::Right, right, definition)
+                }
+            },
+        }
+    }
+
+    /// Notes the factor of a right polynomial. One that shows a single coefficient, and lacks others that the course's library would
+    /// have kept of the assignment's own, claims a factor, which others have to confirm.
+    fn take(&mut self, logged: &Logged<'_>, expected: &[Bounded], found: Match, is_known: bool) -> Said {
+        self.shares.coefficient = self.shares.coefficient.max(found.share);
+        let Some(scale) = found.scale else { return Said::Right };
+        match claimed_factors(expected, logged.list, scale) {
+            Some(factors) if is_known => self.pend(logged, (Form::Either, true), expected, factors),
+            Some(_) => {}
+            None => self.scales[logged.place.pair.kind][logged.number].take(scale),
+        }
+        Said::Right
+    }
+
+    /// Notes that an approach polynomial which is the reference's bit for bit is of the course's form, where it tells.
+    pub(super) fn note_course_form(&mut self, expected: &Expected, logged: &Logged<'_>) {
+        let Some(right) = expected.other_form(logged.number) else { return };
+        let is_of_course = || {
+            compare(right, logged.list, &[1.0]).is_err()
+                && possible_factors(right, logged.list).is_none()
+                && compare(expected.polynomial(logged.number), logged.list, &[1.0])
+                    .is_ok_and(|found| found.scale.is_some())
+        };
+        if self.course_form.is_none() && is_of_course() {
+            self.course_form = Some(logged.place);
+        }
+    }
+
+    /// Adds a polynomial that is right with these factors.
+    fn pend(
+        &mut self,
+        logged: &Logged<'_>,
+        (form, is_claim): (Form, bool),
+        expected: &[Bounded],
+        [least, most]: [f64; 2],
+    ) {
+        let place = (logged.place.pair.kind, logged.number);
+        let finding = || {
+            let mismatch = compare_with_one(expected, logged.list).err().unwrap_or(Mismatch::TooLong);
+            let detail = wrong_polynomial(logged, expected, mismatch);
+            Finding { step: self.step, frame: self.frame, detail }
+        };
+        let is_like = |known: &Pending| (known.place, known.form, known.is_claim) == (place, form, is_claim);
+        let Some(known) = self.pending.iter().position(is_like) else {
+            let finding = finding();
+            let (least, most) = ((least, finding), (most, finding));
+            self.pending.push(Pending { place, form, is_claim, count: 1, least, most });
+            return;
+        };
+        let Pending { least: (of_all, _), most: (to_all, _), .. } = self.pending[known];
+        let new = (least > of_all || most < to_all).then(finding);
+        let known = &mut self.pending[known];
+        known.count += 1;
+        if let Some(new) = new {
+            if least > of_all {
+                known.least = (least, new);
+            }
+            if most < to_all {
+                known.most = (most, new);
+            }
+        }
+    }
+}
+
+/// What is wrong with a polynomial.
+pub(super) fn wrong_polynomial(logged: &Logged<'_>, expected: &[Bounded], mismatch: Mismatch) -> FindingDetail {
+    let &Logged { place, list, .. } = logged;
+    let right: Vec<f64> = expected.iter().map(|c| c.value).collect();
+    let (right, shown) =
+        (Polynomial::trimmed(&right), Polynomial::untrimmed(&list[..list.len().min(MAX_COEFFICIENTS)]));
+    match mismatch {
+        Mismatch::Coefficient { power, expected, actual, .. } => FindingDetail::Coefficient {
+            place,
+            power,
+            expected,
+            actual,
+            residual: (actual - expected).abs(),
+            rescaled: None,
+            expected_polynomial: right,
+            actual_polynomial: shown,
+        },
+        Mismatch::TooLong => {
+            FindingDetail::PolynomialDegree { place, expected: right, actual_size: list.len(), actual: shown }
+        }
+    }
+}

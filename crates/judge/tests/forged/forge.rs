@@ -1,0 +1,447 @@
+//! Right traces made wrong at random, programs whose polynomials have factors, and what the fair rules may say of both.
+//!
+//! The short form is a test of this crate; the long one is `audit forged` in `crates/lab`.
+use fosssim_judge::{
+    Finding, FindingKind,
+    fair::{
+        FairVerdict, Judgement,
+        compare::{compare, says_nothing, shows_factor},
+        formulas::{BoundedPairMotion, Expected},
+    },
+    replay::{self, Options},
+};
+use fosssim_model::{
+    scene::Scene,
+    sim::{Detection, Observer, Pair, PairKind, RootSearch, Simulation},
+    trace::{Frame, Layout, Reader, Recorder, Writer},
+};
+use fosssim_num::{bounded::Bounded, polynomial::Polynomial};
+
+/// What the course's library drops.
+const DROPPED: f64 = 1e-12;
+
+/// Products of such coefficients overflow.
+const OVERFLOWS: f64 = 1e100;
+
+/// In so many steps one polynomial in ten may be a single one.
+const FEW: usize = 40;
+
+/// Numbers that look random and are the same on every run.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11
+    }
+
+    fn below(&mut self, bound: usize) -> usize {
+        (self.bits() % bound as u64) as usize
+    }
+
+    /// Ten to a uniform power.
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        10.0_f64.powf(low + (high - low) * self.bits() as f64 / (1_u64 << 53) as f64)
+    }
+
+    fn pick<T: Copy>(&mut self, list: &[T]) -> T {
+        list[self.below(list.len())]
+    }
+}
+
+/// A polynomial of the reference's own run.
+struct Known {
+    pair: Pair,
+    number: usize,
+    expected: Expected,
+}
+
+/// A scene, its right trace, and what its polynomials should be.
+pub struct Stage {
+    name: String,
+    scene: Scene,
+    frames: Vec<Frame>,
+    steps: Vec<Vec<Known>>,
+}
+
+/// Notes what each polynomial should be.
+struct Note<'a>(&'a Scene, Vec<Known>);
+
+impl Observer for Note<'_> {
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let &Detection { pair, q_start, q_end, .. } = detection;
+        let expected = BoundedPairMotion::of(self.0, pair, q_start, q_end).polynomials();
+        self.1.extend((0..pair.kind.polynomials()).map(|number| Known { pair, number, expected }));
+    }
+}
+
+/// Multiplies polynomials; the course's library drops what becomes small, and the step goes on with the rest.
+struct Multiply<F>(F);
+
+impl<F: FnMut(PairKind, usize) -> f64> Observer for Multiply<F> {
+    fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+        for (number, polynomial) in polynomials.iter_mut().enumerate() {
+            *polynomial = scaled(polynomial.coefficients(), (self.0)(pair.kind, number));
+        }
+    }
+}
+
+fn scaled(list: &[f64], factor: f64) -> Polynomial {
+    Polynomial::trimmed(&list.iter().map(|c| factor * c).collect::<Vec<_>>())
+}
+
+impl Stage {
+    /// None where the scene logs no polynomials, or the reference has no result.
+    pub fn of(name: &str, scene: Scene) -> Option<Self> {
+        let frames = run(&scene, &mut ())?;
+        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        let mut steps = Vec::new();
+        for _ in 0..scene.steps() {
+            let mut note = Note(&scene, Vec::new());
+            simulation.step(&mut note).ok()?;
+            steps.push(note.1);
+        }
+        steps.iter().any(|step| !step.is_empty()).then(|| Self { name: name.to_owned(), scene, frames, steps })
+    }
+
+    fn known(&self, step: usize, index: usize) -> &Known {
+        &self.steps[step - 1][index]
+    }
+
+    fn records_per_step(&self) -> usize {
+        Layout::of(&self.scene).records_per_step() as usize
+    }
+
+    /// The right trace with other polynomials, those of both records of a step alike.
+    fn relogged(&self, change: impl Fn(usize, usize, &[f64]) -> Option<Vec<f64>>) -> Vec<u8> {
+        let mut writer = Writer::new(Vec::new(), Layout::of(&self.scene));
+        for (number, frame) in self.frames.iter().enumerate() {
+            let mut frame = frame.clone();
+            let log = std::mem::take(&mut frame.polynomials);
+            let step = number.div_ceil(self.records_per_step());
+            for (index, own) in log.iter().enumerate() {
+                match change(step, index, own) {
+                    Some(list) => frame.polynomials.push(&list),
+                    None => frame.polynomials.push(own),
+                }
+            }
+            writer.frame(&frame);
+        }
+        writer.finish().expect("memory").0
+    }
+
+    fn judged(&self, trace: &[u8]) -> Result<Judgement, String> {
+        let [quick, slow] = [false, true].map(|one_by_one| {
+            let options = Options { fair: true, threads: 1, one_by_one, ..Options::default() };
+            replay::judge(&self.scene, trace, &options, &mut ())
+        });
+        if format!("{quick:?}") != format!("{slow:?}") {
+            return Err("two ways of judging differ".to_owned());
+        }
+        Ok(*quick.fair.expect("asked"))
+    }
+
+    /// The coefficients of the end record's polynomial.
+    fn own(&self, step: usize, index: usize) -> &[f64] {
+        self.frames[step * self.records_per_step()].polynomials.get(index)
+    }
+}
+
+/// The frames of a run that `steer` may change.
+fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
+    let layout = Layout::of(scene);
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
+    for _ in 0..layout.steps {
+        simulation.step(&mut (&mut *steer, &mut recorder)).ok()?;
+    }
+    let trace = recorder.finish().expect("memory").0;
+    let mut reader = Reader::of_slice(&trace, layout);
+    let (mut frames, mut frame) = (Vec::new(), Frame::default());
+    while reader.next(&mut frame).ok()? {
+        frames.push(frame.clone());
+    }
+    Some(frames)
+}
+
+/// Which polynomials are changed.
+#[derive(Debug, Clone, Copy)]
+enum Target {
+    One {
+        step: usize,
+        index: usize,
+    },
+    OfStep {
+        step: usize,
+        kind: PairKind,
+        number: usize,
+    },
+    OfTrace {
+        kind: PairKind,
+        number: usize,
+    },
+    Step {
+        step: usize,
+    },
+    /// About one of so many.
+    Some {
+        of: usize,
+        seed: u64,
+    },
+    /// All but these few.
+    AllBut {
+        of: usize,
+        seed: u64,
+    },
+}
+
+impl Target {
+    fn draw(stage: &Stage, random: &mut Random) -> Self {
+        let steps: Vec<usize> = (1..=stage.steps.len()).filter(|step| !stage.steps[step - 1].is_empty()).collect();
+        let step = random.pick(&steps);
+        let index = random.below(stage.steps[step - 1].len());
+        let &Known { pair: Pair { kind, .. }, number, .. } = stage.known(step, index);
+        let (of, seed) = (random.pick(&[2, 5, 50, 500]), random.bits());
+        match random.below(9) {
+            0..=3 => Self::One { step, index },
+            4 => Self::OfStep { step, kind, number },
+            5 => Self::OfTrace { kind, number },
+            6 => Self::Step { step },
+            7 => Self::Some { of, seed },
+            _ => Self::AllBut { of, seed },
+        }
+    }
+
+    fn holds(&self, stage: &Stage, at: (usize, usize)) -> bool {
+        let known = || stage.known(at.0, at.1);
+        let is_one = |of: usize, seed: u64| Random::new(seed ^ (at.0 * 100_003 + at.1) as u64).below(of) == 0;
+        match *self {
+            Self::One { step, index } => at == (step, index),
+            Self::OfStep { step, kind, number } => {
+                at.0 == step && known().pair.kind == kind && known().number == number
+            }
+            Self::OfTrace { kind, number } => known().pair.kind == kind && known().number == number,
+            Self::Step { step } => at.0 == step,
+            Self::Some { of, seed } => is_one(of, seed),
+            Self::AllBut { of, seed } => !is_one(of, seed),
+        }
+    }
+}
+
+/// How a polynomial is changed.
+#[derive(Debug, Clone, Copy)]
+enum Change {
+    Empty,
+    DropLeading(usize),
+    DropTrailing(usize),
+    Negate,
+    Zeros,
+    /// In the place of each another one of the same step, so many further on.
+    Exchange(usize),
+    /// One coefficient becomes this.
+    Value(f64),
+    Constant(f64),
+    LeadingZeros(usize),
+    /// With a factor, as the course's library keeps it.
+    Factor(f64),
+}
+
+impl Change {
+    fn draw(random: &mut Random) -> Self {
+        let some = 1 + random.below(5);
+        match random.below(12) {
+            0..=2 => Self::Empty,
+            3 => Self::DropLeading(some),
+            4 => Self::DropTrailing(some),
+            5 => Self::Negate,
+            6 => Self::Zeros,
+            7 => Self::Exchange(1 + random.below(40)),
+            8 => Self::Value(random.pick(&[f64::NAN, f64::INFINITY, 0.0, 5e-324, 1e300, -1e-9])),
+            9 => Self::Constant(random.log(-12.0, 3.0) * random.pick(&[1.0, -1.0])),
+            10 => Self::LeadingZeros(some),
+            _ => Self::Factor(random.log(-14.0, 0.0)),
+        }
+    }
+
+    fn of(&self, stage: &Stage, (step, index): (usize, usize), own: &[f64]) -> Vec<f64> {
+        let mut list = own.to_vec();
+        match *self {
+            Self::Empty => list.clear(),
+            Self::DropLeading(count) => _ = list.drain(..count.min(own.len())),
+            Self::DropTrailing(count) => list.truncate(own.len().saturating_sub(count)),
+            Self::Negate => list.iter_mut().for_each(|c| *c = -*c),
+            Self::Zeros => list.fill(0.0),
+            Self::Exchange(by) => {
+                let others = stage.steps[step - 1].len();
+                list = stage.own(step, (index + by) % others).to_vec();
+            }
+            Self::Value(value) => {
+                let place = (step + index) % own.len().max(1);
+                list.iter_mut().skip(place).take(1).for_each(|c| *c = value);
+            }
+            Self::Constant(value) => list = vec![value],
+            Self::LeadingZeros(count) => _ = list.splice(..0, std::iter::repeat_n(0.0, count)),
+            Self::Factor(factor) => list = scaled(own, factor).coefficients().to_vec(),
+        }
+        list
+    }
+}
+
+/// Why a polynomial that is not the reference's may pass, whatever others say: it is zero but for round-off and has numbers, so it
+/// may be anything; or it is right with the factor 1; or it is right with a factor that two of its coefficients agree on, or that
+/// takes nothing from it.
+fn has_reason(known: &Known, list: &[f64]) -> bool {
+    let of_form = |expected: &[Bounded]| {
+        let Ok(found) = compare(expected, list, &[1.0]) else { return false };
+        let kept = expected.iter().skip_while(|c| c.value.abs() < DROPPED).count();
+        let is_one = found.scale.is_none_or(|scale| (scale - 1.0).abs() < 1e-9);
+        says_nothing(expected) || is_one || list.len() >= kept || shows_factor(expected, list)
+    };
+    of_form(known.expected.polynomial(known.number)) || known.expected.other_form(known.number).is_some_and(of_form)
+}
+
+/// Makes a right trace wrong. What the fair rules say about it that they must not, if anything.
+pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
+    let (target, change) = (Target::draw(stage, random), Change::draw(random));
+    // One with a factor may be to vouch for what is gone. Among few it does.
+    let is_alone = random.below(3) == 0 && stage.steps.len() > FEW;
+    let voucher = is_alone.then(|| (Target::draw(stage, random), random.log(-13.0, -6.0)));
+    let changed = |step, index, own: &[f64]| {
+        let at = (step, index);
+        match voucher {
+            _ if target.holds(stage, at) => Some(change.of(stage, at, own)),
+            Some((other, factor)) if matches!(other, Target::One { .. }) && other.holds(stage, at) => {
+                Some(Change::Factor(factor).of(stage, at, own))
+            }
+            _ => None,
+        }
+    };
+    let same = |one: &[f64], other: &[f64]| {
+        one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
+    };
+    // What has a factor is right, and the course's library has dropped what it drops.
+    let is_of_program = matches!(change, Change::Factor(_));
+    let without_reason = (1..=stage.steps.len())
+        .flat_map(|step| (0..stage.steps[step - 1].len()).map(move |index| (step, index)))
+        .find(|&(step, index)| {
+            let own = stage.own(step, index);
+            changed(step, index, own).is_some_and(|list| {
+                let is_changed = target.holds(stage, (step, index)) && !same(own, &list);
+                is_changed && !has_reason(stage.known(step, index), &list)
+            })
+        });
+    let trace = stage.relogged(changed);
+    let what = || format!("{}: {change:?} of {target:?}, {voucher:?}", stage.name);
+    match stage.judged(&trace) {
+        Err(fault) => Some(format!("{}: {fault}", what())),
+        Ok(judged) if judged.verdict == FairVerdict::Accepted && !is_of_program => {
+            without_reason.map(|(step, index)| {
+                let known = stage.known(step, index);
+                let expected: Vec<f64> = known.expected.polynomial(known.number).iter().map(|c| c.value).collect();
+                let list = changed(step, index, stage.own(step, index));
+                format!("{}: accepted, step {step}, {:?} {expected:?} {list:?}", what(), known.pair)
+            })
+        }
+        Ok(_) => None,
+    }
+}
+
+/// The factors of a program's polynomials.
+#[derive(Debug, Clone, Copy)]
+enum Factors {
+    All(f64),
+    Kind(PairKind, f64),
+    Number(PairKind, usize, f64),
+    /// Another one of each polynomial, between 1 and this.
+    Each(f64),
+}
+
+/// Runs a program whose polynomials have factors. What the fair rules say about it that they must not, if anything: it may be
+/// refused where lost coefficients change a decision, and where polynomials are gone of a kind of which none tells a factor.
+pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
+    let kind = random.pick(&PairKind::ALL);
+    let factor = if random.below(2) == 0 { random.log(-300.0, 300.0) } else { random.log(-12.0, 6.0) };
+    let factors = match random.below(8) {
+        0..=2 => Factors::All(factor),
+        3..=4 => Factors::Kind(kind, factor),
+        5..=6 => Factors::Number(kind, random.below(kind.polynomials()), factor),
+        _ => Factors::Each(random.log(0.0, 6.0)),
+    };
+    let mut each = Random::new(random.bits());
+    let mut steer = Multiply(|kind: PairKind, number: usize| match factors {
+        Factors::All(factor) => factor,
+        Factors::Kind(of, factor) if of == kind => factor,
+        Factors::Number(of, by, factor) if (of, by) == (kind, number) => factor,
+        Factors::Each(most) => each.log(0.0, most.log10()),
+        Factors::Kind(..) | Factors::Number(..) => 1.0,
+    });
+    let frames = run(&stage.scene, &mut steer)?;
+    let is_whole = |frame: &Frame| frame.polynomials.iter().flatten().all(|c| c.is_finite());
+    if !frames.iter().all(is_whole) {
+        return None;
+    }
+    let mut writer = Writer::new(Vec::new(), Layout::of(&stage.scene));
+    frames.iter().for_each(|frame| writer.frame(frame));
+    let what = || format!("{}: {factors:?}", stage.name);
+    let judged = match stage.judged(&writer.finish().expect("memory").0) {
+        Err(fault) => return Some(format!("{}: {fault}", what())),
+        Ok(judged) => judged,
+    };
+    let counts = &judged.findings.counts;
+    let lost = counts.get(FindingKind::TrimmedDecision);
+    let gone = counts.get(FindingKind::Coefficient);
+    let tells_none = judged.scales.values().flatten().any(|factors| factors.range().is_none());
+    // So large numbers overflow in the course's root finder, which decides otherwise then.
+    let largest =
+        frames.iter().flat_map(|frame| frame.polynomials.iter().flatten()).fold(0.0_f64, |most, c| most.max(c.abs()));
+    if largest > OVERFLOWS {
+        return None;
+    }
+    // Who misses a collision may end where two balls are one.
+    let beyond = counts.get(FindingKind::Position).min(lost);
+    let is_explained = lost + gone + beyond == counts.total() && (gone == 0 || tells_none);
+    let is_documented = judged.refusal.is_none() && is_explained;
+    (judged.verdict != FairVerdict::Accepted && !is_documented).then(|| {
+        let first = judged.findings.first_divergence.map(|first| first.to_string());
+        format!("{}: {:?} {first:?} {counts:?}", what(), judged.refusal)
+    })
+}
+
+/// Makes one coefficient wrong of a polynomial whose pair is proven to be where it should, since the polynomial that comes from the
+/// same coordinates is right. What the fair rules say about it that they must not, if anything: it is the formula that is wrong.
+pub fn misprint(stage: &Stage, random: &mut Random) -> Option<String> {
+    let Target::One { step, index } = Target::draw(stage, random) else { return None };
+    let known = stage.known(step, index);
+    let last = known.pair.kind.polynomials() - 1;
+    let other = last - known.number;
+    let (own, beside) = (stage.own(step, index), stage.own(step, index + other - known.number));
+    let proof = known.expected.polynomial(other);
+    let mut list = own.to_vec();
+    let place = random.below(own.len().max(1));
+    *list.get_mut(place)? *= 1.5;
+    let of_form = |expected: &[Bounded]| compare(expected, &list, &[1.0]).is_ok();
+    let is_right = of_form(known.expected.polynomial(known.number));
+    let is_of_other_form = known.expected.other_form(known.number).is_some_and(of_form);
+    if is_right || is_of_other_form || says_nothing(proof) || !shows_factor(proof, beside) {
+        return None;
+    }
+    let trace = stage.relogged(|at, number, _| ((at, number) == (step, index)).then(|| list.clone()));
+    let what = || format!("{}: coefficient {place} of polynomial {index} of step {step}", stage.name);
+    match stage.judged(&trace) {
+        Err(fault) => Some(format!("{}: {fault}", what())),
+        Ok(judged) => {
+            let first = judged.findings.first_divergence;
+            // What the wrong polynomial decides may lead to other positions behind it.
+            let is_formula =
+                |finding: &Finding| matches!(finding.kind(), FindingKind::Coefficient | FindingKind::PolynomialDegree);
+            (!first.as_ref().is_some_and(is_formula))
+                .then(|| format!("{}: {:?}", what(), first.map(|first| first.to_string())))
+        }
+    }
+}
