@@ -5,7 +5,8 @@ use crate::{
     secret, values,
 };
 
-/// Claims the job whose turn it is, if there is one. Two workers never get the same: the row is locked, and passed over by
+/// Claims the job whose turn it is, if there is one. A job on which this worker failed last is left to others for a third of a lease:
+/// the fault may be the worker's. Two workers never get the same: the row is locked, and passed over by
 /// others, until the caller commits.
 ///
 /// # Errors
@@ -19,8 +20,9 @@ pub async fn claim(
     let next = transaction
         .row(
             "SELECT id FROM job WHERE lane = ? AND state = 'waiting' AND run_after <= {now}
+                AND (failed_by IS NULL OR failed_by <> ? OR run_after <= {now} - ?)
              ORDER BY rank, id LIMIT 1 {skip locked}",
-            values![lane.name()],
+            values![lane.name(), worker, millis(policy.lease / 3)],
         )
         .await?;
     let Some(next) = next else { return Ok(None) };

@@ -142,8 +142,8 @@ pub(super) async fn lose(
     }
     transaction
         .execute(
-            "UPDATE job SET state = 'waiting', failures = ?, run_after = {now} + ?, worker = NULL, lease_key = NULL,
-                lease_until = NULL, last_fault = ?
+            "UPDATE job SET state = 'waiting', failures = ?, run_after = {now} + ?, failed_by = worker, worker = NULL,
+                lease_key = NULL, lease_until = NULL, last_fault = ?
              WHERE id = ?",
             values![failures, millis(policy.wait(failures).max(least)), fault, job],
         )

@@ -34,6 +34,12 @@ pub enum GraderFault {
 
 /// What grades.
 pub trait Grader: Clone + Send + Sync + 'static {
+    /// Proves that it can grade here and now, and may use the empty folder as it likes.
+    ///
+    /// # Errors
+    /// Why it can't; said to staff, never to students.
+    fn prove(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
+
     /// Grades the submission that lies at `submission`, by the suite whose archive lies at `suite` if it is one, and may
     /// use `folder` as it likes. When `stop` is cancelled it ends soon, and nothing that it started goes on.
     fn grade(

@@ -4,6 +4,7 @@
 mod child;
 mod desk;
 mod grader;
+mod health;
 mod liveness;
 mod local;
 mod program;

@@ -95,18 +95,103 @@ impl Program {
         for (format, file, _) in REPORTS {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
-        // Nothing of the server's surroundings, which may hold secrets.
-        command.env_clear().current_dir(folder);
-        for name in ["PATH", "HOME", "LANG", "TMPDIR"] {
-            if let Some(value) = std::env::var_os(name) {
-                command.env(name, value);
-            }
-        }
+        at_home(&mut command, folder);
         command
     }
 }
 
+/// The scene of a proof: one of the grader's own, and small.
+const PROOF: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
+
+/// How many bytes a folder must take for jobs to work in it.
+const ROOM: usize = 8 << 20;
+
+/// How long a step of a proof may take.
+const PROOF_TIME: Duration = Duration::from_secs(60);
+
+impl Program {
+    /// Runs the grader for a proof, and returns its exit code.
+    async fn step(&self, folder: &Path, arguments: &[&str], stop: &CancellationToken) -> Result<i32, String> {
+        let messages = folder.join("messages.txt");
+        let mut command = Command::new(&self.path);
+        command.args(arguments);
+        at_home(&mut command, folder);
+        command.stderr(fs::File::create(&messages).map_err(|error| format!("cannot write messages: {error}"))?);
+        let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
+        let end = tokio::select! {
+            end = child.ended() => Some(end),
+            () = stop.cancelled() => None,
+            () = tokio::time::sleep(PROOF_TIME) => None,
+        };
+        let step = arguments[0];
+        match end {
+            Some(End::Code(code @ (0..=2))) => Ok(code),
+            Some(End::Code(code)) => Err(format!("`{step}` ended with exit code {code}: {}", last_words(&messages))),
+            Some(End::Signal(signal)) => Err(format!("`{step}` was ended by signal {signal}")),
+            None => {
+                child.kill();
+                child.ended().await;
+                Err(format!("`{step}` did not end"))
+            }
+        }
+    }
+
+    /// Grades an example, and checks how that ends.
+    async fn example(
+        &self,
+        folder: &Path,
+        submission: &[&str],
+        code: i32,
+        stop: &CancellationToken,
+    ) -> Result<(), String> {
+        let grade = folder.join("proof.json");
+        let format = format!("json={}", grade.display());
+        let arguments = [&["grade"], submission, &["--scene", PROOF, "--format", &format]].concat();
+        let ended = self.step(folder, &arguments, stop).await?;
+        if ended != code {
+            let said = last_words(&folder.join("messages.txt"));
+            return Err(format!("grading an example ended with exit code {ended}, not {code}: {said}"));
+        }
+        let graded = reading::read_grade(&grade)?;
+        match (graded.code == "AC") == (code == 0) {
+            true => Ok(()),
+            false => Err(format!("an example was graded {}", graded.code)),
+        }
+    }
+}
+
+/// Lets a command run in a folder, with nothing of the server's surroundings, which may hold secrets.
+fn at_home(command: &mut Command, folder: &Path) {
+    command.env_clear().current_dir(folder);
+    for name in ["PATH", "HOME", "LANG", "TMPDIR"] {
+        if let Some(value) = std::env::var_os(name) {
+            command.env(name, value);
+        }
+    }
+}
+
 impl Grader for Program {
+    /// There is room to work in; the reference's own trace of a scene is accepted; a program that does nothing is run in the
+    /// sandbox and is not accepted. A grader that records no traces, as those of tests, is only asked to start.
+    async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
+        let room = folder.join("room");
+        fs::write(&room, vec![1; ROOM]).map_err(|error| format!("no room to work in: {error}"))?;
+        fs::remove_file(&room).map_err(|error| error.to_string())?;
+        let trace = folder.join("right").join(PROOF).with_extension("bin");
+        let idle = folder.join("idle");
+        let above = trace.parent().unwrap_or(folder);
+        fs::create_dir_all(above).and_then(|()| fs::create_dir(&idle)).map_err(|error| error.to_string())?;
+        let recorded = ["simulate", &format!("asset:{PROOF}"), "--output", &trace.display().to_string()];
+        if self.step(folder, &recorded, &stop).await? != 0 {
+            return Ok(());
+        }
+        self.example(folder, &[&folder.join("right").display().to_string(), "--traces"], 0, &stop).await?;
+        let program = idle.join("FOSSSim");
+        fs::write(&program, "#!/bin/sh\nexit 0\n").map_err(|error| error.to_string())?;
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).map_err(|error| error.to_string())?;
+        self.example(folder, &[&program.display().to_string()], 1, &stop).await
+    }
+
     async fn grade(
         &self,
         task: &Task,

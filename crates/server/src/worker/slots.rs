@@ -1,5 +1,5 @@
 //! A worker's slots: each does one job after another.
-use super::{Answer, Desk, DeskError, Grader, GraderFault, Job};
+use super::{Answer, Desk, DeskError, Grader, GraderFault, Job, health::Health};
 use crate::{
     queue::Lease,
     task::{Outcome, OutputFile, Suite},
@@ -34,13 +34,16 @@ pub struct Options {
 /// Does jobs until `stop` is cancelled; then gives back what it holds, and ends.
 pub async fn work<D: Desk, G: Grader>(desk: D, grader: G, options: Options, stop: CancellationToken) {
     let gate = Arc::new(RwLock::new(()));
+    let health = Health::new(grader.clone(), options.folder.clone());
     let mut slots = tokio::task::JoinSet::new();
     for _ in 0..options.slots {
-        slots.spawn(slot(desk.clone(), grader.clone(), options.folder.clone(), gate.clone(), stop.clone()));
+        let (desk, grader, health) = (desk.clone(), grader.clone(), health.clone());
+        slots.spawn(slot(desk, grader, health, options.folder.clone(), gate.clone(), stop.clone()));
     }
     let ticking = async {
         loop {
-            if let Err(error) = desk.tick(options.slots).await {
+            let slots = if health.is_proven() { options.slots } else { 0 };
+            if let Err(error) = desk.tick(slots).await {
                 tracing::warn!(%error, "the worker can't say that it is alive");
             }
             tokio::time::sleep(desk.tick_every()).await;
@@ -52,9 +55,16 @@ pub async fn work<D: Desk, G: Grader>(desk: D, grader: G, options: Options, stop
     }
 }
 
-async fn slot<D: Desk, G: Grader>(desk: D, grader: G, folder: PathBuf, gate: Arc<RwLock<()>>, stop: CancellationToken) {
+async fn slot<D: Desk, G: Grader>(
+    desk: D,
+    grader: G,
+    health: Health<G>,
+    folder: PathBuf,
+    gate: Arc<RwLock<()>>,
+    stop: CancellationToken,
+) {
     let mut wait = FIRST_WAIT;
-    while !stop.is_cancelled() {
+    while health.well(&stop).await {
         // Held together by all slots that claim or work; a job that must run alone waits until it has the gate for itself.
         let mut passed = Some(gate.read().await);
         match desk.claim().await {
@@ -75,7 +85,9 @@ async fn slot<D: Desk, G: Grader>(desk: D, grader: G, folder: PathBuf, gate: Arc
                     passed.take();
                     mine.write_owned()
                 });
-                let done = tokio::spawn(run(desk.clone(), grader.clone(), job, folder.clone(), alone, stop.clone()));
+                let running =
+                    run(desk.clone(), grader.clone(), health.clone(), job, folder.clone(), alone, stop.clone());
+                let done = tokio::spawn(running);
                 if let Err(error) = done.await {
                     tracing::error!(job = lease.job, %error, "the worker failed");
                     settle(&desk, &lease, Ending::Failed(format!("the worker failed: {error}")), &stop).await;
@@ -107,6 +119,7 @@ enum Ending {
 async fn run<D: Desk, G: Grader>(
     desk: D,
     grader: G,
+    health: Health<G>,
     job: Job,
     folder: PathBuf,
     alone: Option<impl Future<Output = OwnedRwLockWriteGuard<()>>>,
@@ -144,11 +157,19 @@ async fn run<D: Desk, G: Grader>(
             }
         }
     };
+    // What the grader failed on may be the machine's fault; that costs the submission no try.
+    let ending = match ending {
+        Ending::Failed(fault) if !health.survives(&stop).await => {
+            tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");
+            Ending::GivenBack
+        }
+        ending => ending,
+    };
     settle(&desk, &job.lease, ending, &stop).await;
     keeping.abort();
 }
 
-fn job_folder(folder: &Path) -> std::io::Result<tempfile::TempDir> {
+pub(super) fn job_folder(folder: &Path) -> std::io::Result<tempfile::TempDir> {
     std::fs::create_dir_all(folder)?;
     tempfile::Builder::new().prefix("job-").tempdir_in(folder)
 }

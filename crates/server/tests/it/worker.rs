@@ -2,7 +2,7 @@
 use crate::support::engines::{Fresh, run};
 use fosssim_server::{
     queue::{self, Bell, Lane, NewJob, Policy, Turn},
-    store::Store,
+    store::{Artefact, Store},
     task::{Form, Input, Suite, Task},
     values,
     worker::{self, Graded, Grader, GraderFault, LocalDesk, Options},
@@ -27,6 +27,10 @@ struct Watchful {
 }
 
 impl Grader for Watchful {
+    async fn prove(&self, _: &Path, _: CancellationToken) -> Result<(), String> {
+        Ok(())
+    }
+
     async fn grade(
         &self,
         task: &Task,
@@ -61,6 +65,101 @@ impl Grader for Watchful {
     }
 }
 
+/// Jobs in the queue, of which one has failed twice.
+async fn enqueue(fresh: &Fresh, artefact: &Artefact, jobs: i64, suspect: i64) {
+    let mut transaction = fresh.database.begin().await.expect("a transaction");
+    for number in 0..jobs {
+        let name = if number == suspect { "suspect" } else { "ordinary" };
+        let task = Task {
+            submission: Input { form: Form::Program, name: name.to_owned(), artefact: artefact.clone() },
+            suite: Suite::Named("t2m2".to_owned()),
+            rules: None,
+            hints: None,
+            program: "FOSSSim".to_owned(),
+            seconds: 60,
+        };
+        let payload = serde_json::to_string(&task).expect("JSON");
+        let job = NewJob {
+            lane: Lane::Grading,
+            submission: None,
+            campaign: None,
+            turn: Turn::Student(number),
+            payload: &payload,
+        };
+        let job = queue::enqueue(&mut transaction, &job).await.expect("a job");
+        let failures: i64 = if number == suspect { 2 } else { 0 };
+        transaction.execute("UPDATE job SET failures = ? WHERE id = ?", values![failures, job]).await.expect("a row");
+    }
+    transaction.commit().await.expect("commit");
+}
+
+/// How many jobs are in a state.
+async fn count(fresh: &Fresh, state: &str) -> i64 {
+    let mut transaction = fresh.database.read().await.expect("a transaction");
+    let row = transaction.one("SELECT count(*) AS n FROM job WHERE state = ?", values![state]).await;
+    row.and_then(|row| row.int("n")).expect("a number")
+}
+
+/// Fails on every job. It knows that it can't grade, or only fails.
+#[derive(Debug, Clone)]
+struct Broken {
+    knows: bool,
+    tried: Arc<AtomicUsize>,
+}
+
+impl Grader for Broken {
+    async fn prove(&self, _: &Path, _: CancellationToken) -> Result<(), String> {
+        if self.knows { Err("it is broken".to_owned()) } else { Ok(()) }
+    }
+
+    async fn grade(
+        &self,
+        _: &Task,
+        _: &Path,
+        _: Option<&Path>,
+        _: &Path,
+        _: CancellationToken,
+    ) -> Result<Graded, GraderFault> {
+        self.tried.fetch_add(1, Ordering::SeqCst);
+        Err(GraderFault::Failed("it is broken".to_owned()))
+    }
+}
+
+/// A worker that can't grade is always free; it must not eat the queue.
+#[test]
+fn a_broken_worker_costs_no_job_its_tries() {
+    run(async {
+        for knows in [true, false] {
+            let fresh = Fresh::sqlite().await.expect("SQLite").with_tables().await;
+            let folder = tempfile::tempdir().expect("a folder");
+            let store = Store::folder(&folder.path().join("store")).expect("a store");
+            let artefact = store.put(b"a program".to_vec()).await.expect("an artefact");
+            enqueue(&fresh, &artefact, 30, -1).await;
+            let stop = CancellationToken::new();
+            let (good, broken) = (Watchful::default(), Broken { knows, tried: Arc::default() });
+            let policy = Policy::default();
+            let options = |name: &str| Options { slots: 2, folder: folder.path().join(name) };
+            let desk = |name: &str| {
+                LocalDesk::new(fresh.database.clone(), store.clone(), Bell::default(), policy, name.to_owned())
+            };
+            let workers = [
+                tokio::spawn(worker::work(desk("broken"), broken.clone(), options("broken"), stop.clone())),
+                tokio::spawn(worker::work(desk("good"), good.clone(), options("good"), stop.clone())),
+            ];
+            while count(&fresh, "done").await < 30 {
+                assert_eq!(count(&fresh, "buried").await, 0);
+                tokio::time::sleep(Duration::from_millis(20)).await;
+            }
+            stop.cancel();
+            for worker in workers {
+                worker.await.expect("a worker");
+            }
+            let tried = broken.tried.load(Ordering::SeqCst);
+            assert!(if knows { tried == 0 } else { tried <= 30 }, "{tried} tries by a broken worker");
+        }
+    });
+}
+
 #[test]
 fn a_job_that_may_kill_its_worker_runs_alone() {
     run(async {
@@ -68,33 +167,7 @@ fn a_job_that_may_kill_its_worker_runs_alone() {
         let folder = tempfile::tempdir().expect("a folder");
         let store = Store::folder(&folder.path().join("store")).expect("a store");
         let artefact = store.put(b"a program".to_vec()).await.expect("an artefact");
-        let mut transaction = fresh.database.begin().await.expect("a transaction");
-        for number in 0..12 {
-            let name = if number == 5 { "suspect" } else { "ordinary" };
-            let task = Task {
-                submission: Input { form: Form::Program, name: name.to_owned(), artefact: artefact.clone() },
-                suite: Suite::Named("t2m2".to_owned()),
-                rules: None,
-                hints: None,
-                program: "FOSSSim".to_owned(),
-                seconds: 60,
-            };
-            let payload = serde_json::to_string(&task).expect("JSON");
-            let job = NewJob {
-                lane: Lane::Grading,
-                submission: None,
-                campaign: None,
-                turn: Turn::Student(number),
-                payload: &payload,
-            };
-            let job = queue::enqueue(&mut transaction, &job).await.expect("a job");
-            let failures: i64 = if number == 5 { 2 } else { 0 };
-            transaction
-                .execute("UPDATE job SET failures = ? WHERE id = ?", values![failures, job])
-                .await
-                .expect("a row");
-        }
-        transaction.commit().await.expect("commit");
+        enqueue(&fresh, &artefact, 12, 5).await;
         let grader = Watchful::default();
         let stop = CancellationToken::new();
         let desk =
@@ -109,8 +182,6 @@ fn a_job_that_may_kill_its_worker_runs_alone() {
         working.await.expect("the worker");
         assert!(grader.most.load(Ordering::SeqCst) > 1, "others run side by side");
         assert_eq!(grader.beside_the_suspect.load(Ordering::SeqCst), 0);
-        let mut transaction = fresh.database.read().await.expect("a transaction");
-        let done = transaction.one("SELECT count(*) AS n FROM job WHERE state = 'done'", values![]).await;
-        assert_eq!(done.and_then(|row| row.int("n")).expect("a number"), 12);
+        assert_eq!(count(&fresh, "done").await, 12);
     });
 }

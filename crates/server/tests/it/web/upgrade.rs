@@ -15,6 +15,7 @@ fn the_database_is_copied_before_its_tables_change() {
         // As the first version left it.
         let mut transaction = fresh.database.begin().await.expect("a transaction");
         for statement in [
+            "ALTER TABLE job DROP COLUMN failed_by",
             "DROP TABLE platform_score",
             "DROP TABLE platform_choice",
             "DROP TABLE platform_link",
