@@ -151,6 +151,7 @@ mod tests {
             example: Some(example),
             same_as: vec!["other".to_owned(), "pe-square-two-eh".to_owned()],
             denies: Vec::new(),
+            claims: Vec::new(),
         }
     }
 

@@ -199,6 +199,7 @@ pub(crate) mod tests {
                 }),
                 same_as: ["a", "b", "c", "d", "e"].map(str::to_owned).into(),
                 denies: Vec::new(),
+                claims: Vec::new(),
             },
             Explanation {
                 key: "unexplained".to_owned(),
@@ -209,6 +210,7 @@ pub(crate) mod tests {
                 example: None,
                 same_as: Vec::new(),
                 denies: Vec::new(),
+                claims: Vec::new(),
             },
         ]
     }

@@ -90,6 +90,8 @@ struct ExplanationForm {
     same_as: Vec<String>,
     #[serde(default)]
     denies: Vec<String>,
+    #[serde(default)]
+    claims: Vec<String>,
 }
 
 #[derive(Serialize, Deserialize)]

@@ -5,7 +5,12 @@ use super::{
     example::Example,
     fault::{self, StepStage},
 };
-use crate::student::{Row, find};
+use crate::{
+    assignments::t2m2::Subject,
+    student::{Row, find},
+};
+use fosssim_model::sim::PairKind;
+use std::collections::BTreeMap;
 
 /// A likely mistake, with the evidence for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +31,10 @@ pub struct Explanation {
     pub same_as: Vec<String>,
     /// Keys of empty stages that the trace speaks against: it shows something of them.
     pub denies: Vec<String>,
+    /// All that would make its polynomials as they are, one word each: the polynomial, the guess or the known mistake, and a digest of the
+    /// exact form, which gives nothing of it away. The guess that it tells stands first. A polynomial that nothing makes has a
+    /// word without a guess.
+    pub claims: Vec<String>,
 }
 
 impl Explanation {
@@ -58,6 +67,7 @@ impl Explanation {
             example: None,
             same_as: Vec::new(),
             denies: Vec::new(),
+            claims: Vec::new(),
         }
     }
 
@@ -91,17 +101,79 @@ impl Explanation {
         matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
     }
 
+    /// What it says, in one word: equal for explanations that are told in the same words, and different where they are not.
+    #[must_use]
+    pub fn said(&self) -> String {
+        match &self.about {
+            About::Polynomials { found: OfPolynomials::Guess(guess), .. } if !guess.is_general() => {
+                self.claims.first().unwrap_or(&self.key).clone()
+            }
+            About::Stage(fault) => format!("{}/{fault:?}", self.key),
+            About::NotFinite(found) => format!("{}/{:?}", self.key, found.stage),
+            _ => self.key.clone(),
+        }
+    }
+
+    /// The polynomials that it is about, as far as it is about polynomials.
+    pub(super) fn subjects(&self) -> Vec<Subject> {
+        if let About::Polynomials { subjects, .. } = &self.about {
+            return subjects.clone();
+        }
+        let claims = self.claims_by_subject();
+        let all = PairKind::ALL.into_iter().flat_map(Subject::of).copied();
+        all.filter(|subject| claims.contains_key(format!("{subject:?}").as_str())).collect()
+    }
+
+    /// For each of its polynomials, all that would make it: the guess or the known mistake, and the whole word.
+    pub(super) fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
+        let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
+        // What it tells and what reproduces only a part makes nothing.
+        let is_part =
+            matches!(self.about, About::Polynomials { found: OfPolynomials::Guess(_), .. }) && !self.is_complete();
+        for (number, claim) in self.claims.iter().enumerate() {
+            let mut parts = claim.split('/');
+            let (Some(subject), Some(guess)) = (parts.next(), parts.next()) else { continue };
+            let of_subject = all.entry(subject).or_default();
+            if !(guess.is_empty() || is_part && number == 0) {
+                of_subject.push((guess, claim));
+            }
+        }
+        all
+    }
+
     /// Whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet, one stage.
     #[must_use]
     pub fn is_named_in(&self, explanations: &[Self]) -> bool {
-        let stages = if self.is_unfinished() { self.same_as.as_slice() } else { &[] };
-        let is_meant = |key: &String| *key == self.key || stages.contains(key);
-        let row = find(&self.key);
-        explanations.iter().any(|one| {
-            is_meant(&one.key)
-                || one.same_as.iter().any(is_meant)
-                || row.is_some_and(|row| one.is_in_other_words(row) && one.is_complete())
-        })
+        if self.is_unfinished() {
+            let is_stage = |key: &String| self.same_as.contains(key);
+            return explanations.iter().any(|one| is_stage(&one.key) || one.same_as.iter().any(is_stage));
+        }
+        let said = self.said();
+        explanations.iter().any(|one| one.bears_out(&said, Some(self)))
+    }
+
+    /// Whether a trace's explanation speaks for what is said, as told by another one: it says the same, or something that it can't
+    /// tell apart, or its polynomials are those that it would make.
+    pub(super) fn bears_out(&self, said: &str, told: Option<&Self>) -> bool {
+        let is_same = self.said() == said || self.same_as.iter().any(|key| key == said);
+        let is_in_other_words = || find(said).is_some_and(|row| self.is_in_other_words(row) && self.is_complete());
+        is_same || is_in_other_words() || self.is_made_by(said, told)
+    }
+
+    /// Whether all its polynomials are those that this would make.
+    pub(super) fn is_made_by(&self, said: &str, told: Option<&Self>) -> bool {
+        let claims = self.claims_by_subject();
+        let is_made = |own: &dyn Fn(&str, &str) -> bool| {
+            !claims.is_empty() && claims.values().all(|of| of.iter().any(|(guess, claim)| own(guess, claim)))
+        };
+        match told.map(|told| &told.about) {
+            None | Some(About::Mistake) => find(said).is_some() && is_made(&|guess, _| guess == said),
+            Some(About::Polynomials { found: OfPolynomials::Guess(guess), .. }) if guess.is_general() => {
+                is_made(&|own, _| own == guess.key())
+            }
+            Some(About::Polynomials { found: OfPolynomials::Guess(_), .. }) => is_made(&|_, claim| claim == said),
+            _ => false,
+        }
     }
 
     /// Whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of particles and

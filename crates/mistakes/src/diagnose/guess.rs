@@ -21,6 +21,12 @@ pub enum Guess {
 }
 
 impl Guess {
+    /// Whether it may be made of several polynomials, as one mistake.
+    #[must_use]
+    pub(super) const fn is_general(&self) -> bool {
+        matches!(self, Self::List(_) | Self::Exchange(_) | Self::Special(_))
+    }
+
     /// The explanation's key.
     pub(super) const fn key(&self) -> &'static str {
         match self {

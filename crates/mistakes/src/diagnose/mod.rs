@@ -13,6 +13,7 @@ mod explain;
 mod explanation;
 mod fault;
 mod guess;
+mod heads;
 mod known;
 mod not_finite;
 pub mod outside;
@@ -27,13 +28,14 @@ pub use about::{About, OfPolynomials};
 pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Stand, Weight};
 pub use examine::{Examined, Keep, examine, explain_kept};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
-pub use explain::{common, explain, refuted, several};
+pub use explain::explain;
 pub use explanation::Explanation;
 pub use fault::{
     Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongMotion, WrongNumber,
     WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
+pub use heads::{common, refuted, several};
 pub use known::{known, shows};
 pub use not_finite::{not_finite, not_finite_in};
 pub use settled::{Settled, settled};

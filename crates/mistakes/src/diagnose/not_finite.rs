@@ -75,6 +75,7 @@ fn explanation(found: NotFinite) -> Explanation {
         example: None,
         same_as: Vec::new(),
         denies: Vec::new(),
+        claims: Vec::new(),
     }
 }
 

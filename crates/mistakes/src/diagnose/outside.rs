@@ -74,7 +74,7 @@ fn overall(mutant: &Mutant, told: &[Explanation], words: &(dyn Fn(&Explanation) 
     }
 }
 
-fn rating(mutant: &Mutant, told: &Explanation, words: &str) -> Rating {
+pub(super) fn rating(mutant: &Mutant, told: &Explanation, words: &str) -> Rating {
     let row = student::find(&told.key);
     let (is_there, kinds) = match (row, &told.about) {
         (Some(row), _) => (row.area == mutant.area, row.kind_of_pair().into_iter().collect()),

@@ -15,11 +15,15 @@ pub struct Settled {
 /// counts and its example. Else the trace keeps its own.
 #[must_use]
 pub fn settled(own: &[Explanation], likely: &[Explanation]) -> Settled {
-    let explanations: Vec<Explanation> = likely.iter().flat_map(|one| agreed(own, one)).collect();
-    match explanations.len() {
-        0 => Settled { explanations: own.to_vec(), agreed: 0 },
-        agreed => Settled { explanations, agreed },
+    let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| agreed(own, one));
+    let explanations: Vec<Explanation> = of_all.collect();
+    if explanations.is_empty() {
+        return Settled { explanations: own.to_vec(), agreed: 0 };
     }
+    // Where numbers end each trace says for itself.
+    let end = own.iter().filter(|one| one.is_not_finite()).cloned();
+    let explanations: Vec<Explanation> = end.chain(explanations).collect();
+    Settled { agreed: explanations.len(), explanations }
 }
 
 /// This explanation as the trace shows it; nothing where the trace's own ones do not name it.
@@ -53,6 +57,7 @@ mod tests {
             example: None,
             same_as: same_as.iter().map(|&key| key.to_owned()).collect(),
             denies: Vec::new(),
+            claims: Vec::new(),
         }
     }
 

@@ -36,6 +36,7 @@ mod zones;
 
 pub use crate::assignments::t2m2::{Area, CATALOGUE, Mistake, Row, RowKind, find};
 pub use author::Student;
+pub use detection::polynomials_of;
 pub use objects::{Contact, Object, Pair, State};
 pub use record::{Record, trace};
 pub use refused::{KNOWN_ACCUSED, KNOWN_REFUSED};

@@ -46,6 +46,7 @@ fn explanation(about: About, details: Vec<Detail>, example: Option<Example>) -> 
         example,
         same_as,
         denies: vec!["failsafe-empty".to_owned()],
+        claims: vec!["EdgeOverlap/letter/0123456789abcdef".to_owned()],
     }
 }
 

@@ -187,6 +187,7 @@ fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
         example: None,
         same_as: Vec::new(),
         denies: Vec::new(),
+        claims: Vec::new(),
     }
 }
 

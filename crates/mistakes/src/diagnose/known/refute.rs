@@ -5,9 +5,9 @@ use super::{
     resimulate::{resimulate, step_work},
     shown::can_show,
 };
-use crate::student::{StepLog, Student, World, find};
+use crate::student::{Area, StepLog, Student, World, find};
 use fosssim_model::{
-    scene::Scene,
+    scene::{Collision, Scene},
     sim::{RootSearch, Simulation},
 };
 use std::cell::Cell;
@@ -16,11 +16,16 @@ use std::cell::Cell;
 const WORK: u64 = 200_000;
 
 /// Whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which no judge
-/// takes for round-off. False also where looking for
-/// it would take too long.
+/// takes for round-off. False also where looking for it would take too long, and where the course's library does that part of the
+/// work: in `simple` and `continuous-time` it responds, so that a program's own impulses are seen in `hybrid` only.
 #[must_use]
 pub fn shows(scene: &Scene, key: &str) -> bool {
     let Some(row) = find(key).filter(|row| can_show(scene, row)) else { return false };
+    if row.area == Area::Response
+        && matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Simple { .. })
+    {
+        return false;
+    }
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut capture = Capture::new(&scene.collision);

@@ -24,18 +24,23 @@ mod tests;
 pub use sample::Sample;
 
 use super::{
-    Detail, Explanation, PolynomialDetail,
+    Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
     guess::Guess,
+    known::{ROUND_OFF, same_polynomial},
 };
 use crate::assignments::t2m2::{
     Subject,
     exchanges::{EXCHANGES, Exchange},
     formulas::readings,
 };
+use crate::student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
 use fosssim_model::sim::PairKind;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use study::{Candidate, Study};
+
+/// So many guesses about a polynomial are kept besides the one that is told.
+const MOST_CLAIMS: usize = 64;
 
 /// So many other keys are told per explanation.
 const MOST_OTHERS: usize = 5;
@@ -97,6 +102,7 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         example: None,
         same_as: Vec::new(),
         denies: Vec::new(),
+        claims: Vec::new(),
     })
 }
 
@@ -112,10 +118,19 @@ impl Suspect<'_> {
         self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
     }
 
+    /// All that would make it as it is: these guesses, and known mistakes. A word without a guess, where there is nothing.
+    fn claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
+        let subject = self.study.subject;
+        let guesses = guesses.map(|guess| claim(subject, guess)).take(MOST_CLAIMS);
+        let all: Vec<String> = guesses.chain(known_makers(&self.study)).collect();
+        if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
+    }
+
     /// The explanation of this polynomial for itself; it has a guess.
     fn alone(&self) -> Explanation {
+        let (best, others) = (&self.candidates[0], self.full());
+        let claims = std::iter::once(claim(self.study.subject, best)).chain(self.claims(others)).collect();
         let samples = self.study.cases.len() as u64;
-        let best = &self.candidates[0];
         let equal = |other: &&Candidate| {
             let is_likely = other.cost <= best.cost + AS_LIKELY;
             is_likely && other.reproduced == best.reproduced && other.guess.key() != best.guess.key()
@@ -130,8 +145,58 @@ impl Suspect<'_> {
             example: example::smallest(&self.study).map(|(_, example)| example),
             same_as: distinct(self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned())),
             denies: Vec::new(),
+            claims: distinct_words(claims),
         }
     }
+}
+
+/// What a guess says of a polynomial, in one word ([`Explanation::claims`]). The digest is of what the program does, without what it
+/// should do.
+fn claim(subject: Subject, candidate: &Candidate) -> String {
+    let key = candidate.guess.key();
+    if candidate.guess.is_general() {
+        return format!("{subject:?}/{key}/");
+    }
+    let bare = |weight: &Weight| Weight { expected: 0.0, ..weight.clone() };
+    let form: Vec<PolynomialDetail> = candidate
+        .details
+        .iter()
+        .map(|detail| match detail {
+            PolynomialDetail::Weight(weight) => PolynomialDetail::Weight(bare(weight)),
+            PolynomialDetail::Alternative(weights) => PolynomialDetail::Alternative(weights.iter().map(bare).collect()),
+            other => other.clone(),
+        })
+        .collect();
+    // FNV-1a. Factors are rounded, which measured ones need.
+    let digest = format!("{:?} {form:.5?}", candidate.guess)
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("{subject:?}/{key}/{digest:016x}")
+}
+
+/// The known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was logged, in all samples.
+fn known_makers(study: &Study<'_>) -> Vec<String> {
+    let kind = study.subject.kind();
+    let Some(number) = Subject::of(kind).iter().position(|&other| other == study.subject) else { return Vec::new() };
+    let is_formula = |row: &&Row| {
+        let is_of_kind = row.kind_of_pair() == Some(kind)
+            && matches!(row.area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane);
+        row.kind == RowKind::Wrong && (is_of_kind || row.area == Area::Handover)
+    };
+    let makes = |row: &&Row| {
+        study.cases.iter().all(|case| {
+            let made = polynomials_of(Student::new(Some(row.mistake)), &case.sample.motion);
+            let same = |made: &Vec<f64>| same_polynomial(made, case.logged, &ROUND_OFF);
+            made.get(number).is_some_and(same)
+        })
+    };
+    CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
+}
+
+/// Each word once, in their order.
+fn distinct_words(all: Vec<String>) -> Vec<String> {
+    let mut seen = BTreeSet::new();
+    all.into_iter().filter(|word| seen.insert(word.clone())).collect()
 }
 
 /// A line of the exact form of a guess about these polynomials.
@@ -188,6 +253,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
         example: example::smallest(study).map(|(_, example)| example),
         same_as: Vec::new(),
         denies: Vec::new(),
+        claims: Vec::new(),
     })
 }
 
@@ -210,6 +276,7 @@ fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
         example: example::smallest(&first.study).map(|(_, example)| example),
         same_as: Vec::new(),
         denies: Vec::new(),
+        claims: distinct_words(hopeless.iter().flat_map(|suspect| suspect.claims(std::iter::empty())).collect()),
     })
 }
 
@@ -254,6 +321,7 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
         same_as: distinct(others.map(str::to_owned)),
         denies: Vec::new(),
+        claims: distinct_words(covered.iter().flat_map(|suspect| suspect.claims(suspect.full())).collect()),
     }
 }
 

@@ -73,6 +73,7 @@ fn observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> 
         example: None,
         same_as: Vec::new(),
         denies: Vec::new(),
+        claims: Vec::new(),
     }
 }
 

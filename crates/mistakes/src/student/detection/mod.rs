@@ -1,6 +1,7 @@
 //! Continuous-time detection of one pair: its polynomials, the time of impact, the contact vector, the decision.
 //!
 //! The root finder is the one that the course supplies (`num::first_time`); everything else is the student's.
+use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{
     first_time::first_time,
     polynomial::Polynomial,
@@ -106,6 +107,26 @@ fn axes_of(student: Student, pair: Pair) -> Axes {
         (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,
         (frame, _) => frame,
     }
+}
+
+/// The polynomials that this student's formulas give for a pair of bodies, as they are handed to the root finder.
+#[must_use]
+pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
+    let body = |point: &PointMotion, radius: f64| Body { start: point.start, displacement: point.shift, radius };
+    let (encounter, object) = match motion {
+        PairMotion::Particles { centres: [one, two], radii } => {
+            (Encounter::Particles(body(one, radii[0]), body(two, radii[1])), Object::Particle(1))
+        }
+        PairMotion::Edge { centre, ends: [first, second], radii } => {
+            let bodies = [body(centre, radii[0]), body(first, radii[1]), body(second, radii[1])];
+            (Encounter::Edge(bodies, radii[1]), Object::Edge(0))
+        }
+        PairMotion::HalfPlane { centre, radius, point, normal } => {
+            (Encounter::HalfPlane(body(centre, *radius), *point, *normal), Object::HalfPlane(0))
+        }
+    };
+    let lists = handover::hand_over(student, object, encounter.polynomials(student));
+    lists.iter().map(|list| list.coefficients().to_vec()).collect()
 }
 
 /// Looks whether a pair collides while everything moves evenly from `q_start` to `q_end`, and logs its polynomials.

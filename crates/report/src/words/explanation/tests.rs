@@ -19,7 +19,17 @@ const OVERLAP: Reading = Reading { subject: Subject::EdgeOverlap, number: 0 };
 
 fn explanation(key: &str, about: About, details: Vec<Detail>) -> Explanation {
     let (key, same_as) = (key.to_owned(), Vec::new());
-    Explanation { key, about, details, reproduced: 0, samples: 0, example: None, same_as, denies: Vec::new() }
+    Explanation {
+        key,
+        about,
+        details,
+        reproduced: 0,
+        samples: 0,
+        example: None,
+        same_as,
+        denies: Vec::new(),
+        claims: Vec::new(),
+    }
 }
 
 /// All guesses about the coefficients of a polynomial.

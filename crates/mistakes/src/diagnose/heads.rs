@@ -1,0 +1,364 @@
+//! What the traces of one program say together.
+//!
+//! Votes are by what is said, in the words in which it is told ([`Explanation::said`]): two mistakes with one key are two. A trace
+//! votes for all that would explain it as well as what it tells, so that what is told first has been tried on all traces
+//! before anything is told beside it.
+use super::{
+    Explanation,
+    about::{About, OfPolynomials},
+    fault::StepStage,
+    known::{is_empty_stage, shows},
+};
+use crate::student::{Area, CATALOGUE, Row, find};
+use fosssim_model::scene::Scene;
+use std::collections::BTreeMap;
+
+/// So many mistakes of a program are told.
+const MOST: usize = 3;
+
+/// The likeliest mistake of a program that left several traces: the one that explains most of them, whether it was told first or
+/// as not to be told apart. Ties go to mistakes of the catalogue, then to the one that was told
+/// first more often, then to the one that was told earlier. `None` when no trace has an explanation.
+///
+/// A scene alone often can't tell mistakes apart; several together nearly always can.
+#[must_use]
+pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option<Explanation> {
+    let traces: Vec<&[Explanation]> = traces.into_iter().collect();
+    let votes = votes(&traces);
+    // Of a stage, all that is seen says that it is wrong; what most of it says is wrong with it.
+    let weight = |vote: &Vote<'_>| (vote.complete.max(vote.kin), vote.traces.max(vote.kin), vote.complete);
+    let is_known = |said: &str| find(said).is_some();
+    let (said, vote) = votes.iter().filter(|(_, vote)| !vote.is_denied()).max_by(|(said, a), (other, b)| {
+        let known = is_known(said).cmp(&is_known(other));
+        weight(a).cmp(&weight(b)).then(known).then(a.first.cmp(&b.first)).then(b.order.cmp(&a.order))
+    })?;
+    // What explains as many traces as well can't be told apart.
+    let is_rival =
+        |(other, rival): &(&String, &Vote<'_>)| *other != said && is_known(other) && weight(rival) == weight(vote);
+    let same_as = votes.iter().filter(is_rival).map(|(other, _)| other.clone()).collect();
+    let shared = vote.shared?;
+    let Some(told) = vote.told else {
+        let key = find(said)?.id.to_owned();
+        return Some(Explanation { key, about: About::Mistake, same_as, ..shared.clone() });
+    };
+    Some(Explanation { same_as, ..united(told, &traces) })
+}
+
+/// An explanation with the polynomials of all traces that say the same of others.
+fn united(told: &Explanation, traces: &[&[Explanation]]) -> Explanation {
+    let mut told = told.clone();
+    let said = told.said();
+    // Of what speaks against it, nothing is reproduced.
+    let against = traces.iter().filter(|list| list.iter().all(|one| !one.bears_out(&said, Some(&told))));
+    let missed: u64 =
+        against.flat_map(|list| list.iter()).filter(|one| one.speaks_against(&told)).map(|one| one.samples).sum();
+    told.samples += missed;
+    if let About::Polynomials { subjects, .. } = &mut told.about {
+        for other in traces.iter().copied().flatten().filter(|other| other.said() == said) {
+            let About::Polynomials { subjects: theirs, .. } = &other.about else { continue };
+            subjects.extend(theirs);
+        }
+        subjects.sort_unstable();
+        subjects.dedup();
+    }
+    told
+}
+
+/// What speaks for something that is said.
+#[derive(Default)]
+struct Vote<'a> {
+    traces: usize,
+    complete: usize,
+    first: usize,
+    order: (usize, usize, usize),
+    /// Of what is seen of a stage: traces in which the same is wrong, in whatever way.
+    kin: usize,
+    /// Traces in which the same polynomials are wrong in another way.
+    against: usize,
+    told: Option<&'a Explanation>,
+    shared: Option<&'a Explanation>,
+}
+
+impl Vote<'_> {
+    /// Whether as many traces speak against a guess about polynomials as for it.
+    fn is_denied(&self) -> bool {
+        self.against > 0 && self.against >= self.complete
+    }
+}
+
+fn votes<'a>(traces: &[&'a [Explanation]]) -> BTreeMap<String, Vote<'a>> {
+    let mut votes: BTreeMap<String, Vote<'a>> = BTreeMap::new();
+    for (number, list) in traces.iter().enumerate() {
+        for (place, one) in list.iter().enumerate().filter(|(_, one)| one.is_vote()) {
+            let all = std::iter::once(one.said()).chain(one.same_as.iter().filter(|key| find(key).is_some()).cloned());
+            for (rank, said) in all.enumerate() {
+                let order = (number, place, rank);
+                let vote = votes.entry(said).or_insert_with(|| Vote { order, ..Vote::default() });
+                // Of those in the same words, the one whose exact form says most.
+                let rank_of = |one: &Explanation| (one.is_settled(), !one.details.is_empty());
+                let says_more = |told: &Explanation| rank_of(told) < rank_of(one);
+                if rank == 0 && vote.told.is_none_or(says_more) {
+                    vote.told = Some(one);
+                }
+                vote.shared = vote.shared.or(Some(one));
+            }
+        }
+    }
+    for (said, vote) in &mut votes {
+        for list in traces {
+            let is_kin = |told: &Explanation| list.iter().any(|one| one.is_of_stage() && one.key == told.key);
+            vote.kin += usize::from(vote.told.is_some_and(|told| told.is_of_stage() && is_kin(told)));
+            let mut named = list.iter().enumerate().filter(|(_, one)| one.bears_out(said, vote.told));
+            if let Some((place, one)) = named.next() {
+                vote.traces += 1;
+                vote.complete += usize::from(one.bears_out_wholly(said, vote.told));
+                vote.first += usize::from(place == 0 && one.said() == *said);
+            } else if vote.told.is_some_and(|told| list.iter().any(|one| one.speaks_against(told))) {
+                vote.against += 1;
+            }
+        }
+    }
+    votes
+}
+
+impl Explanation {
+    /// Whether it says something of the program that other traces may say, too.
+    fn is_vote(&self) -> bool {
+        let is_nothing = matches!(
+            self.about,
+            About::Scene { .. }
+                | About::NotFinite(_)
+                | About::Polynomials { found: OfPolynomials::Nothing | OfPolynomials::NearlyRight, .. }
+        );
+        !is_nothing
+    }
+
+    /// Whether it explains all that it is about, as far as that can be.
+    fn is_settled(&self) -> bool {
+        self.is_complete() || self.is_of_stage()
+    }
+
+    /// Whether it speaks for what is said with all that it is about.
+    fn bears_out_wholly(&self, said: &str, told: Option<&Self>) -> bool {
+        self.is_made_by(said, told) || (self.is_settled() && self.bears_out(said, told))
+    }
+
+    /// Whether a trace's explanation, which does not bear it out, speaks against a guess about polynomials: the same ones are wrong.
+    fn speaks_against(&self, told: &Self) -> bool {
+        let About::Polynomials { subjects, found: OfPolynomials::Guess(_) } = &told.about else { return false };
+        self.subjects().iter().any(|subject| subjects.contains(subject))
+    }
+}
+
+/// The likely mistakes of a program that left several traces, at most three: greedily, each the one that explains most of
+/// what those before leave open ([`common`]). Stages that are still empty count as one, which is told first. `refuted` are
+/// keys of mistakes that right traces of the same program speak against. What is no finite number comes before all others and
+/// counts as none.
+#[must_use]
+pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted: &[String]) -> Vec<Explanation> {
+    let traces: Vec<&[Explanation]> = traces.into_iter().collect();
+    let not_finite = not_finite(&traces);
+    let named: Vec<&Row> = traces.iter().copied().flatten().filter_map(|one| find(&one.key)).collect();
+    // A stage of which one trace shows something is not empty, whatever the others look like.
+    let denied: Vec<&String> = traces.iter().copied().flatten().flat_map(|one| &one.denies).collect();
+    let is_refuted = |key: &String| refuted.contains(key) || denied.contains(&key);
+    let kept = |list: &[Explanation]| -> Vec<Explanation> {
+        let settle = |explanation: &Explanation| {
+            let mut keys = std::iter::once(&explanation.key).chain(&explanation.same_as).filter(|key| !is_refuted(key));
+            let key = keys.next()?.clone();
+            let same_as = keys.cloned().collect();
+            if let Some(row) =
+                named.iter().find(|row| explanation.is_in_other_words(row) && !is_refuted(&row.id.to_owned()))
+            {
+                let (key, about) = (row.id.to_owned(), About::Mistake);
+                return Some(Explanation { key, about, ..explanation.clone() });
+            }
+            if key == explanation.key {
+                return Some(Explanation { same_as, ..explanation.clone() });
+            }
+            find(&key)?;
+            Some(Explanation { key, about: About::Mistake, same_as, ..explanation.clone() })
+        };
+        list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(settle).collect()
+    };
+    let mut open: Vec<Vec<Explanation>> = traces.into_iter().map(kept).filter(|list| !list.is_empty()).collect();
+    keep_earliest_stage(&mut open);
+    let mut covered = vec![false; open.len()];
+    let mut found: Vec<Explanation> = unfinished(&open).into_iter().collect();
+    for row in found.iter().flat_map(|one| &one.same_as).filter_map(|key| find(key)).collect::<Vec<_>>() {
+        leave_open(&mut open, &mut covered, row.id, None);
+    }
+    while found.len() < MOST {
+        let Some(next) = common(open.iter().map(Vec::as_slice)) else { break };
+        let said = next.said();
+        let is_told = found.is_empty()
+            || (next.is_settled()
+                && is_supported(&open, &covered, &next)
+                && !is_said_already(&found, &next, &open, &covered));
+        if is_told {
+            leave_open(&mut open, &mut covered, &said, Some(&next));
+            found.push(next);
+        } else {
+            open.iter_mut().for_each(|list| list.retain(|one| one.said() != said));
+        }
+    }
+    for one in &mut found {
+        if one.is_unfinished() && one.same_as.len() == 1 {
+            one.about = About::Mistake;
+            one.key = one.same_as.remove(0);
+        }
+    }
+    not_finite.into_iter().chain(found).collect()
+}
+
+/// Where numbers end, in the stage in which they end in most traces.
+fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
+    let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
+    let agreeing = |one: &Explanation| ends().filter(|other| other.said() == one.said()).count();
+    let likeliest = ends().rev().max_by_key(|one| agreeing(one))?;
+    let mut likeliest = likeliest.clone();
+    if let About::NotFinite(found) = &mut likeliest.about
+        && ends().count() > 1
+    {
+        found.step = None;
+    }
+    Some(likeliest)
+}
+
+/// Whether a further mistake is one that was told, in other words: a program has one formula for a polynomial, and what is seen of a
+/// stage may follow from what is told of that one or of one before it.
+fn is_said_already(found: &[Explanation], next: &Explanation, open: &[Vec<Explanation>], covered: &[bool]) -> bool {
+    let said = next.said();
+    let mut beside = open.iter().zip(covered).filter(|(_, covered)| **covered);
+    // Where both reproduce a trace together, both are needed.
+    if beside.any(|(list, _)| list.iter().any(|one| one.is_complete() && one.key == said)) {
+        return false;
+    }
+    let subjects = next.subjects();
+    let is_said = |one: &Explanation| {
+        let theirs = one.subjects();
+        let in_one_formula = !subjects.is_empty() && subjects.iter().all(|subject| theirs.contains(subject));
+        let in_one_stage = match (&one.about, &next.about) {
+            (About::Stage(one), About::Stage(next)) => {
+                let are_of_two_kinds = one.kind().zip(next.kind()).is_some_and(|(one, next)| one != next);
+                one.stage() == next.stage() && !are_of_two_kinds
+            }
+            (_, About::Stage(fault)) => find(&one.key).is_some_and(|row| {
+                fault.areas().contains(&row.area) || stage_of(row.area).is_some_and(|stage| stage <= fault.stage())
+            }),
+            (About::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
+            _ => false,
+        };
+        in_one_formula || in_one_stage
+    };
+    found.iter().any(is_said)
+}
+
+/// Leaves of what is said of stages only what concerns the earliest one: what is wrong behind it may follow. And a known mistake
+/// of that stage or a later one that explains fewer traces than there are of these is no more than like what is wrong.
+fn keep_earliest_stage(open: &mut Vec<Vec<Explanation>>) {
+    let Some(earliest) = open.iter().flatten().filter_map(Explanation::stage).min() else { return };
+    let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
+    let observed = open.iter().filter(|list| list.iter().any(is_of_it)).count();
+    let mut weak: Vec<&'static str> = Vec::new();
+    for row in CATALOGUE.iter().filter(|row| stage_of(row.area).is_some_and(|stage| stage >= earliest)) {
+        if open.iter().filter(|list| names_completely(list, row.id)).count() < observed {
+            weak.push(row.id);
+        }
+    }
+    // In another order, polynomials of one pair stand where those of another are looked for.
+    let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
+    let has_order = open.iter().flatten().any(|one| one.key == Explanation::ORDER);
+    for list in open.iter_mut() {
+        list.retain(|one| {
+            let is_weak = weak.contains(&one.key.as_str()) || (has_order && is_misread(one));
+            !is_weak && one.stage().is_none_or(|stage| stage == earliest)
+        });
+    }
+    open.retain(|list| !list.is_empty());
+}
+
+/// The stage of a step in which mistakes of this part of the assignment are made; nothing for
+/// polynomials and for the trace.
+const fn stage_of(area: Area) -> Option<StepStage> {
+    match area {
+        Area::Decision => Some(StepStage::Detection),
+        Area::ContactVector => Some(StepStage::ContactVectors),
+        Area::Response | Area::ContinuousTime | Area::ImpulseLoop => Some(StepStage::Responses),
+        Area::ImpactZones | Area::Failsafe => Some(StepStage::Zones),
+        _ => None,
+    }
+}
+
+/// Keys of mistakes that [`several`] would tell and that these scenes speak against: the program was right there, and with the
+/// mistake it would not have been ([`shows`]).
+#[must_use]
+pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
+    let mut refuted: Vec<String> = Vec::new();
+    loop {
+        let likely = several(traces.iter().copied(), &refuted);
+        // What is not written yet stands for its stages.
+        let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
+        let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
+        match keys.find(|key| right.iter().any(|scene| shows(scene, key))).cloned() {
+            Some(key) => refuted.push(key),
+            None => return refuted,
+        }
+    }
+}
+
+/// Among so many traces one that looks as if a stage were empty is no evidence.
+const MANY: usize = 8;
+
+/// Whether enough of what is left names this further mistake: a trace that nothing explains yet, or two others, where there
+/// are several. What is seen of a stage counts only where nothing explains the trace. That polynomials are missing follows from
+/// what was found before.
+fn is_supported(open: &[Vec<Explanation>], covered: &[bool], next: &Explanation) -> bool {
+    let said = next.said();
+    let naming = |wanted: bool| {
+        let of_sort = open.iter().zip(covered).filter(|(_, covered)| **covered == wanted);
+        of_sort.filter(|(list, _)| list.iter().any(|one| one.bears_out_wholly(&said, Some(next)))).count()
+    };
+    !next.is_of_missing() && (naming(false) > 0 || (!next.is_of_stage() && naming(true) >= open.len().min(2)))
+}
+
+/// Whether a trace's explanations name a mistake, told or as not to be told apart, that reproduces everything.
+fn names_completely(list: &[Explanation], key: &str) -> bool {
+    list.iter().any(|one| one.is_complete() && one.bears_out(key, None))
+}
+
+/// Leaves what this doesn't explain: of a trace that it explains only what is complete besides.
+fn leave_open(open: &mut [Vec<Explanation>], covered: &mut [bool], said: &str, told: Option<&Explanation>) {
+    for (list, covered) in open.iter_mut().zip(covered) {
+        if list.iter().any(|one| one.bears_out(said, told)) {
+            *covered = true;
+            list.retain(|one| !one.bears_out(said, told) && one.is_complete());
+        }
+    }
+}
+/// All stages that are told to be empty by a trace, or by two where there are [`MANY`], as one explanation; their keys are in [`Explanation::same_as`].
+fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
+    let told: Vec<&Explanation> = traces.iter().flatten().filter(|one| one.is_complete()).collect();
+    let naming = |key: &str| traces.iter().filter(|list| names_completely(list, key)).count();
+    // What a trace can't tell from an empty stage may explain more traces than that.
+    let is_likeliest = |row: &&Row| {
+        let rivals = told.iter().filter(|one| one.key == row.id).flat_map(|one| &one.same_as);
+        rivals.map(|rival| naming(rival)).max().unwrap_or(0) <= naming(row.id)
+    };
+    let is_told = |row: &&Row| is_empty_stage(row) && told.iter().any(|one| one.key == row.id);
+    // One trace among many may look so for another reason.
+    let is_seen_again = |row: &&Row| traces.len() < MANY || naming(row.id) > 1;
+    let rows: Vec<&Row> = CATALOGUE.iter().filter(is_told).filter(is_likeliest).filter(is_seen_again).collect();
+    let of_rows = || told.iter().filter(|one| rows.iter().any(|row| row.id == one.key));
+    (!rows.is_empty()).then(|| Explanation {
+        key: Explanation::UNFINISHED.to_owned(),
+        about: About::Unfinished,
+        details: Vec::new(),
+        reproduced: of_rows().map(|one| one.reproduced).sum(),
+        samples: of_rows().map(|one| one.samples).sum(),
+        example: None,
+        same_as: rows.iter().map(|row| row.id.to_owned()).collect(),
+        denies: Vec::new(),
+        claims: Vec::new(),
+    })
+}

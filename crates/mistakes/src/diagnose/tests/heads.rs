@@ -1,0 +1,144 @@
+//! What several traces say together, over made-up lists of what each says.
+use crate::{
+    assignments::t2m2::Subject,
+    diagnose::{
+        About, Explanation, Guess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault, WrongMotion,
+        WrongVectors, settled, several,
+    },
+};
+use fosssim_model::sim::PairKind;
+
+fn said(key: &str, about: About, counts: (u64, u64), claims: &[&str]) -> Explanation {
+    Explanation {
+        key: key.to_owned(),
+        about,
+        details: Vec::new(),
+        reproduced: counts.0,
+        samples: counts.1,
+        example: None,
+        same_as: Vec::new(),
+        denies: Vec::new(),
+        claims: claims.iter().map(|&claim| claim.to_owned()).collect(),
+    }
+}
+
+fn letter(subject: Subject, form: &str) -> Explanation {
+    let found = OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other));
+    let claim = format!("{subject:?}/letter/{form}");
+    said("letter", About::Polynomials { subjects: vec![subject], found }, (5, 5), &[&claim])
+}
+
+fn unexplained(subject: Subject) -> Explanation {
+    let about = About::Polynomials { subjects: vec![subject], found: OfPolynomials::Nothing };
+    said("unexplained", about, (0, 5), &[&format!("{subject:?}//")])
+}
+
+fn row(id: &str, claims: &[&str]) -> Explanation {
+    said(id, About::Mistake, (4, 4), claims)
+}
+
+fn stage(fault: StageFault) -> Explanation {
+    said(
+        if matches!(fault, StageFault::Motion { .. }) { "stage-failsafe" } else { "stage-contact-vectors" },
+        About::Stage(fault),
+        (0, 3),
+        &[],
+    )
+}
+
+/// The words of all heads, each with the number of traces that agree.
+fn heads(traces: &[Vec<Explanation>]) -> Vec<(String, usize)> {
+    let heads = several(traces.iter().map(Vec::as_slice), &[]);
+    let count = |head: &Explanation| traces.iter().filter(|list| head.is_named_in(list)).count();
+    heads.iter().map(|head| (head.said(), count(head))).collect()
+}
+
+fn words(expected: &[(&Explanation, usize)]) -> Vec<(String, usize)> {
+    expected.iter().map(|(one, count)| (one.said(), *count)).collect()
+}
+
+#[test]
+fn two_mistakes_with_one_key_are_two() {
+    let (edge, plane) = (letter(Subject::EdgeOverlap, "a"), letter(Subject::HalfPlaneOverlap, "b"));
+    let mut traces = vec![vec![edge.clone()]; 3];
+    traces.push(vec![edge.clone(), plane.clone()]);
+    traces.extend(vec![vec![plane.clone()]; 2]);
+    assert_eq!(heads(&traces), words(&[(&edge, 4), (&plane, 3)]));
+    // And of one polynomial, two forms are no two mistakes: a program has one formula.
+    let other = letter(Subject::EdgeOverlap, "c");
+    assert_eq!(heads(&[vec![edge.clone()], vec![edge.clone()], vec![other]]), words(&[(&edge, 2)]));
+}
+
+#[test]
+fn the_words_are_the_majority_s_and_the_count_is_of_those_who_agree() {
+    let of = |wrong| stage(StageFault::ContactVectors { kind: Some(PairKind::ParticleEdge), wrong });
+    let (direction, length) = (of(WrongVectors::Direction), of(WrongVectors::Length));
+    let mut traces = vec![vec![length.clone()]];
+    traces.extend(vec![vec![direction.clone()]; 15]);
+    assert_eq!(heads(&traces), words(&[(&direction, 15)]));
+    // Vectors of another kind of pair are another mistake.
+    let plane =
+        stage(StageFault::ContactVectors { kind: Some(PairKind::ParticleHalfPlane), wrong: WrongVectors::Reversed });
+    traces.extend(vec![vec![plane.clone()]; 4]);
+    assert_eq!(heads(&traces), words(&[(&direction, 15), (&plane, 4)]));
+}
+
+/// With equal radii, half of their sum is one of them: the scenes with other radii know which.
+#[test]
+fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
+    let half = letter(Subject::ParticleOverlap, "half");
+    let both = ["ParticleOverlap/pp-one-radius/", "ParticleOverlap/letter/half"];
+    let mut traces = vec![vec![half.clone()]; 3];
+    traces.extend(vec![vec![row("pp-one-radius", &both)]; 4]);
+    assert_eq!(heads(&traces), words(&[(&half, 7)]));
+    // Each of them says so.
+    let likely = several(traces.iter().map(Vec::as_slice), &[]);
+    assert_eq!(settled(&traces[6], &likely).explanations[0].said(), half.said());
+    // And a mistake of the catalogue explains polynomials that are as it makes them, whatever they look like alone.
+    let mut like = letter(Subject::ParticleOverlap, "other");
+    like.claims.push("ParticleOverlap/pp-one-radius/".to_owned());
+    let known = row("pp-one-radius", &both[..1]);
+    assert_eq!(heads(&[vec![known.clone()], vec![like]]), words(&[(&known, 2)]));
+}
+
+#[test]
+fn a_stage_may_be_the_second_mistake() {
+    let first = row("pp-no-two", &["ParticleOverlap/pp-no-two/"]);
+    let motion = stage(StageFault::Motion { wrong: vec![WrongMotion::Turn], or_zones: false });
+    let mut traces = vec![vec![first.clone()]; 3];
+    traces.extend(vec![vec![motion.clone()]; 2]);
+    assert_eq!(heads(&traces), words(&[(&first, 3), (&motion, 2)]));
+    // In traces that the first one explains, it follows.
+    assert_eq!(heads(&vec![vec![first.clone(), motion]; 4]), words(&[(&first, 4)]));
+}
+
+#[test]
+fn what_most_traces_speak_against_is_not_told() {
+    let guess = letter(Subject::EdgeOverlap, "a");
+    let mut traces = vec![vec![unexplained(Subject::EdgeOverlap)]; 6];
+    traces.push(vec![guess.clone()]);
+    assert_eq!(heads(&traces), []);
+    traces.extend(vec![vec![guess.clone()]; 9]);
+    assert_eq!(heads(&traces), words(&[(&guess, 10)]));
+    let likely = several(traces.iter().map(Vec::as_slice), &[]);
+    assert_eq!((likely[0].reproduced, likely[0].samples), (5, 35), "the others are counted");
+}
+
+#[test]
+fn where_numbers_end_comes_first() {
+    let end = |step, stage| {
+        let found = NotFinite { step: Some(step), stage, is_nan: true };
+        said(Explanation::NOT_FINITE, About::NotFinite(found), (0, 0), &[])
+    };
+    let first = row("pp-no-two", &[]);
+    let traces = [
+        vec![end(3, NanStage::Zones), first.clone()],
+        vec![end(7, NanStage::Responses)],
+        vec![end(9, NanStage::Zones)],
+    ];
+    let told = several(traces.iter().map(Vec::as_slice), &[]);
+    assert_eq!(told.iter().map(Explanation::said).collect::<Vec<_>>(), [end(1, NanStage::Zones).said(), first.said()]);
+    assert!(matches!(told[0].about, About::NotFinite(NotFinite { step: None, .. })));
+    let of_third = settled(&traces[2], &told).explanations;
+    assert!(matches!(of_third[0].about, About::NotFinite(NotFinite { step: Some(9), .. })), "{of_third:?}");
+}
