@@ -5,8 +5,9 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::{fs, path::Path};
 
-/// The schema of `grade.json` that is read here.
-const SCHEMA: u32 = 4;
+/// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader may be older; what is
+/// read here was the same in both.
+const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
 /// What is measured, or tells of the machine and not of the submission.
 const MEASURED: [&str; 5] = ["cpu_seconds", "wall_seconds", "memory_bytes", "cached", "sandbox"];
@@ -67,8 +68,9 @@ pub(super) fn read_grade(file: &Path) -> Result<Graded, String> {
     let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
     let damaged = |error: serde_json::Error| format!("grade.json can't be read: {error}");
     let report: Report = serde_json::from_slice(&bytes).map_err(damaged)?;
-    if report.schema != SCHEMA {
-        return Err(format!("grade.json has schema {}, this server reads {SCHEMA}", report.schema));
+    if !SCHEMAS.contains(&report.schema) {
+        let (first, last) = SCHEMAS.into_inner();
+        return Err(format!("grade.json has schema {}, this server reads {first} to {last}", report.schema));
     }
     let [grade] = report.grades.as_slice() else {
         return Err(format!("grade.json holds {} grades instead of one", report.grades.len()));
@@ -161,7 +163,7 @@ mod tests {
     fn grades_are_read_as_the_grader_writes_them() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../schemas/grade.schema.json");
         let schema: Value = serde_json::from_slice(&std::fs::read(file).expect("the schema")).expect("JSON");
-        assert_eq!(schema["properties"]["schema"]["const"], SCHEMA);
+        assert_eq!(schema["properties"]["schema"]["const"], *SCHEMAS.end());
         let text = schema.to_string();
         for name in MEASURED.iter().chain(&["right_steps", "summary", "scene"]) {
             assert!(text.contains(&format!("\"{name}\"")), "the schema has no {name}");
