@@ -75,6 +75,13 @@ fn act(job: &Job) -> FakeRun {
         Some("crash-after-right-trace") => FakeRun { ended: Ended::Signalled(11), ..FakeRun::wrote(right_trace(job)) },
         Some("exit-1-after-right-trace") => FakeRun { ended: Ended::Exited(1), ..FakeRun::wrote(right_trace(job)) },
         Some("nothing") => FakeRun::wrote([]),
+        Some("unwritten") => {
+            let (scene, trace) = (scene(job), right_trace(job));
+            let layout = Layout::of(&scene);
+            // The first record's lists are empty.
+            let record = &trace[..layout.state_bytes() + 8];
+            FakeRun::wrote(record.repeat(usize::try_from(layout.records()).expect("small")))
+        }
         Some("half") => {
             let trace = right_trace(job);
             FakeRun::wrote(&trace[..trace.len() / 2])

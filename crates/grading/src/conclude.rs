@@ -12,6 +12,7 @@ use fosssim_judge::{
     fair::{self, FairRefusal},
 };
 use fosssim_mistakes::diagnose::Explanation;
+use fosssim_model::{scene::Scene, trace::Layout};
 use fosssim_sandbox::{self as sandbox, Ended, Stream};
 
 /// What a report keeps of each of the program's streams.
@@ -28,6 +29,8 @@ pub struct Run<'a> {
     pub judged: &'a Outcome,
     /// Bytes of the trace that arrived.
     pub trace_bytes: u64,
+    /// Bytes of a trace that logs nothing ([`bytes_of_nothing`]).
+    pub nothing: Option<u64>,
     /// The rule books; the official one gives verdict, findings and right steps.
     pub rules: Rules,
     /// How much may be told.
@@ -51,7 +54,7 @@ pub enum Look {
 pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
     let of_program = verdict_of_program(&program.ended, judged);
-    let (of_trace, trace_says) = verdict_of_trace(judged, rules, run.trace_bytes);
+    let (of_trace, trace_says) = verdict_of_trace(run);
     // A program that was stopped has a trace without end; saying so too would blame it twice.
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
     let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
@@ -59,12 +62,12 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
         true => (of_program, Reason::Program(reached(&program.ended, judged, run.limits))),
         false => (of_trace, trace_says),
     };
-    let untold = hints == Hints::None && verdict == Verdict::WrongAnswer;
+    let untold = hints == Hints::None && matches!(verdict, Verdict::WrongAnswer | Verdict::Unwritten);
     let reason = if untold { Reason::Wrong(Wrong::Untold) } else { reason };
     let differs = fair::cause(judged);
     let has_fault = rules == Rules::Fair || differs.is_none();
     let look = if hints.explains() { Look::Mistakes } else { Look::NotFinite };
-    let is_explained = hints > Hints::None && has_fault && matches!(verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+    let is_explained = hints > Hints::None && has_fault && verdict.is_wrong_trace();
     SceneResult {
         scene: run.scene.to_owned(),
         verdict,
@@ -82,6 +85,16 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
         stderr: kept(&program.stderr),
         card: None,
     }
+}
+
+/// The bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are empty, too.
+#[must_use]
+pub fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
+    let layout = Layout::of(scene);
+    let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
+    // A record ends with the numbers of its impulses and of its polynomials (trace-format.md 2).
+    let record = layout.state_bytes() as u64 + 2 * size_of::<i32>() as u64;
+    (layout.polynomials && layout.steps > 0 && has_pairs).then(|| layout.records() * record)
 }
 
 /// What the program's end alone says. Bytes behind the last record mean the same however many they are: a program that is
@@ -113,7 +126,12 @@ fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
 }
 
 /// What the trace alone says.
-fn verdict_of_trace(judged: &Outcome, rules: Rules, trace_bytes: u64) -> (Verdict, Reason) {
+fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
+    let Run { judged, rules, trace_bytes, .. } = *run;
+    let is_empty = judged.stop.is_none() && run.nothing == Some(trace_bytes);
+    if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
+        return (Verdict::Unwritten, Reason::Wrong(Wrong::Nothing));
+    }
     match (&judged.stop, judged.ruling(rules.official())) {
         (Some(Stop::Trace { .. }), _) if trace_bytes == 0 => (Verdict::NoOutput, Reason::NoTrace),
         (Some(Stop::Trace { frame, step, cause, offset, message }), _) => {
@@ -183,7 +201,7 @@ mod tests {
             (Hints::Full, Some(Look::Mistakes)),
         ] {
             let (program, judged, trace_bytes, rules) = (&program, &judged, trace.len() as u64, Rules::Fair);
-            let run = Run { scene: "a/b", program, judged, trace_bytes, rules, hints, limits };
+            let run = Run { scene: "a/b", program, judged, trace_bytes, nothing: None, rules, hints, limits };
             let mut asked = None;
             let result = conclude(&run, |look| {
                 asked = Some(look);

@@ -2,7 +2,7 @@
 use super::{
     cancellation::Cancellation,
     cards::{Cards, Judged},
-    conclude::{Look, Run, conclude},
+    conclude::{Look, Run, bytes_of_nothing, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
@@ -137,6 +137,7 @@ impl Runner<'_> {
             program: &outcome,
             judged: &judged,
             trace_bytes: bytes.load(Ordering::Relaxed),
+            nothing: bytes_of_nothing(&task.scene),
             rules: self.rules,
             hints: self.hints,
             limits: self.limits,

@@ -64,11 +64,11 @@ impl Grade {
     }
 
     /// What is wrong with the submission itself, and the reason of each of its scenes: no program that can be run is in it,
-    /// or its sources do not build.
+    /// its sources do not build, or nothing is written yet.
     #[must_use]
     pub fn unfit(&self) -> Option<Unfit<'_>> {
         let first = self.scenes().next()?;
-        let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError);
+        let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError | Verdict::Unwritten);
         let why = |scene: &SceneGrade| (scene.verdict, scene.reason.clone(), scene.ended.clone());
         let same = |scene: &SceneGrade| why(scene) == why(first);
         let build = self.build.as_ref().filter(|build| !build.end.is_success());

@@ -233,7 +233,7 @@ mod tests {
         let most =
             located(&contents, |number| (number < 24 && number != 5).then_some(Failing::Crash)).expect("a place");
         assert_eq!((most.failed, most.with, most.without), (23, 24, 61));
-        let mixed = |number: usize| if number % 2 == 0 { Failing::Time } else { Failing::Memory };
+        let mixed = |number: usize| if number.is_multiple_of(2) { Failing::Time } else { Failing::Memory };
         let found = located(&contents, |number| (number < 24).then_some(mixed(number))).expect("a place");
         assert_eq!(found.failing, Failing::Several);
     }

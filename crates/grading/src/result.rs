@@ -100,6 +100,8 @@ pub enum Reason {
 pub enum Wrong {
     /// Hints tell nothing.
     Untold,
+    /// In that nothing is logged: no polynomial and no collision.
+    Nothing,
     /// In its first record alone.
     FirstRecord(#[serde(with = "mirror::kind")] FindingKind),
     /// In steps.

@@ -8,6 +8,8 @@ pub enum Verdict {
     Accepted,
     /// The scene was not run, because the grading was cut short.
     NotRun,
+    /// The trace is complete, and nothing is logged in it: what the assignment asks for is not written yet.
+    Unwritten,
     /// The trace is complete and wrong.
     WrongAnswer,
     /// The trace can't be read to its end.
@@ -34,9 +36,10 @@ pub enum Verdict {
 
 impl Verdict {
     /// All verdicts, best first.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Accepted,
         Self::NotRun,
+        Self::Unwritten,
         Self::WrongAnswer,
         Self::BadTrace,
         Self::NoOutput,
@@ -56,6 +59,7 @@ impl Verdict {
         match self {
             Self::Accepted => "AC",
             Self::NotRun => "--",
+            Self::Unwritten => "NW",
             Self::WrongAnswer => "WA",
             Self::BadTrace => "BT",
             Self::NoOutput => "NO",
@@ -76,6 +80,7 @@ impl Verdict {
         match self {
             Self::Accepted => "accepted",
             Self::NotRun => "not run",
+            Self::Unwritten => "nothing written",
             Self::WrongAnswer => "wrong answer",
             Self::BadTrace => "bad trace",
             Self::NoOutput => "no output",
@@ -94,6 +99,12 @@ impl Verdict {
     #[must_use]
     pub fn from_words(words: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|verdict| verdict.words() == words)
+    }
+
+    /// Whether it says of the trace, and not of how the program ended, that it is wrong.
+    #[must_use]
+    pub const fn is_wrong_trace(self) -> bool {
+        matches!(self, Self::Unwritten | Self::WrongAnswer | Self::BadTrace)
     }
 
     /// Whether the scene's points are due in full.

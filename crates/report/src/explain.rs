@@ -3,7 +3,7 @@
 //! They show what they are given: how much that is, [`Hints::cut`](fosssim_grading::config::Hints::cut) decides. Words may
 //! come from a submission only as numbers.
 use super::{
-    number::exact,
+    number::{counted, exact},
     view::Number,
     words::explanation::{details, known, place, what},
 };
@@ -48,16 +48,27 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
         _ => format!("likely mistake: {what} (fits {reproduced} of {samples} polynomials looked at)"),
     }];
     lines.extend(details(explanation).iter().map(|detail| format!("  {detail}")));
-    if !explanation.same_as.is_empty() && !explanation.is_unfinished() {
-        let (shown, more) = explanation.same_as.split_at(explanation.same_as.len().min(LISTED));
-        let more = if more.is_empty() { String::new() } else { format!(" And {} more.", more.len()) };
-        let shown: Vec<String> = shown.iter().map(|key| known(key)).collect();
-        lines.push(format!("  can't be told apart here from: {}{more}", shown.join(" ")));
+    if !explanation.is_unfinished() {
+        lines.extend(others(&explanation.same_as));
     }
     if let Some(example) = &explanation.example {
         lines.extend(of_example(example));
     }
     lines
+}
+
+/// What can't be told apart from an explanation. Known mistakes are named; what is only found in polynomials has no sentence of its
+/// own, and is counted.
+fn others(keys: &[String]) -> Option<String> {
+    let named: Vec<String> = keys.iter().filter_map(|key| known(key)).collect();
+    let (shown, more) = named.split_at(named.len().min(LISTED));
+    let more = more.len() + keys.len() - named.len();
+    match (shown.is_empty(), more) {
+        (true, 0) => None,
+        (true, more) => Some(format!("  can't be told apart here from {}", counted(more as u64, "other formula"))),
+        (false, 0) => Some(format!("  can't be told apart here from: {}", shown.join(" "))),
+        (false, more) => Some(format!("  can't be told apart here from: {} And {more} more.", shown.join(" "))),
+    }
 }
 
 fn of_example(example: &Example) -> Vec<String> {

@@ -2,6 +2,7 @@
 pub mod explanation;
 mod located;
 
+use crate::number::counted;
 pub use located::located;
 
 use fosssim_grading::{
@@ -85,8 +86,21 @@ pub fn details(result: &SceneResult) -> Vec<String> {
 pub fn unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
         Unfit::Build(end) => build(end),
+        Unfit::Scene(result) if result.verdict == Verdict::Unwritten => unwritten(grade),
         Unfit::Scene(result) => summary(result),
     })
+}
+
+/// What is said of a submission that logs nothing in any scene: what is not written yet, as far as that may be told.
+fn unwritten(grade: &Grade) -> String {
+    let nothing = format!(
+        "no trace of its {} holds a polynomial or a collision",
+        counted(grade.scenes().count() as u64, "scene")
+    );
+    match grade.likely_mistakes().first() {
+        Some((likely, _)) if likely.is_unfinished() => format!("{} ({nothing})", explanation::what(likely)),
+        _ => format!("Not written yet: the detection ({nothing})."),
+    }
 }
 
 /// In one sentence why not everything is accepted; nothing where it is.
@@ -122,6 +136,10 @@ fn number(count: u64) -> String {
 fn of_wrong(wrong: &Wrong, steps: u32) -> String {
     match wrong {
         Wrong::Untold => "the trace is wrong".to_owned(),
+        Wrong::Nothing => {
+            "the trace holds no polynomial and no collision: detection asks the course's root finder about no pair"
+                .to_owned()
+        }
         Wrong::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         Wrong::Steps { wrong, first, kind } => {
             format!("{}, first step {first}: {kind}", share::wrong(*wrong, steps, number))

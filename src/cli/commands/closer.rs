@@ -2,7 +2,7 @@
 use crate::{
     assignments::Assignment,
     cli::grading::Grade as Arguments,
-    suite::{Grade, SceneGrade, Submission, Verdict, config::Hints, library, plan::Plan},
+    suite::{Grade, SceneGrade, Submission, config::Hints, library, plan::Plan},
 };
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ impl Closer<'_> {
             return Vec::new();
         };
         let mut lines = Vec::new();
-        let of_trace = matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+        let of_trace = scene.verdict.is_wrong_trace();
         let hints = if self.plan.hints < Hints::Full && of_trace { " --hints full" } else { "" };
         let alone = self.plan.scenes().count() == 1;
         if !alone || !hints.is_empty() {

@@ -14,7 +14,7 @@ use crate::{
     report::grade::{Format, Text, rehearse},
     sandbox::RunOutcome,
     suite::{
-        Grade, Look, Reason, Run, SceneResult, SceneTask, Verdict,
+        Grade, Look, Reason, Run, SceneResult, SceneTask, Verdict, bytes_of_nothing,
         cards::{Cards, Judged},
         conclude,
         config::Visibility,
@@ -147,6 +147,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
         program: &program,
         judged: outcome,
         trace_bytes: trace.len() as u64,
+        nothing: bytes_of_nothing(&task.scene),
         rules: plan.rules,
         hints: plan.hints,
         limits: &plan.limits,

@@ -4,7 +4,7 @@ use crate::{
     grader::Options,
     located::Failing,
     plan::{self, Plan},
-    result::{Activity, BadTrace, Failure, KeptTrace, NotRunReason, Reason},
+    result::{Activity, BadTrace, Failure, KeptTrace, NotRunReason, Reason, Wrong},
     results::FolderResults,
     told::ToldFinding,
     verdict::Verdict,
@@ -245,6 +245,19 @@ fn a_program_that_crashes_in_the_failsafe_is_told_so() {
     let silent = stage.grade_by(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
     assert_eq!(silent.located, None, "hints say less");
     assert_eq!(stage.grade_by(&suite("what"), &["right"]).remove(0).located, None);
+}
+
+#[test]
+fn what_logs_nothing_is_not_written_yet() {
+    let stage = Stage::new();
+    let text = "schema = 1\nname = \"test\"\n[[group]]\nname = \"all\"\ncredit = \"steps\"\nscenes = \
+                [\"asset:ContinuousTimeTests/*\", \"asset:ImpulsesTests/o*\"]\n";
+    let plan = plan::load(text, Path::new("nowhere")).expect("a sound suite");
+    let grades = stage.grade_by(&plan, &["unwritten", "nothing", "half"]);
+    let verdicts: Vec<_> = grades.iter().map(|grade| grade.verdict).collect();
+    assert_eq!(verdicts, [Verdict::Unwritten, Verdict::NoOutput, Verdict::BadTrace], "of the one all scenes say so");
+    assert_eq!((grades[0].points, grades[0].unfit().is_some()), (Some(0.0), true));
+    assert!(grades[0].scenes().all(|scene| scene.reason == Reason::Wrong(Wrong::Nothing)));
 }
 
 #[test]

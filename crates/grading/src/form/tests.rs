@@ -176,7 +176,8 @@ fn every_reason_and_every_end_reads_back() {
         Reason::Stopped,
         Reason::DoesNotBuild,
     ];
-    let wrong = [Wrong::Untold, Wrong::FirstRecord(FindingKind::Position), Wrong::Damaged, Wrong::SmallErrors];
+    let wrong =
+        [Wrong::Untold, Wrong::Nothing, Wrong::FirstRecord(FindingKind::Position), Wrong::Damaged, Wrong::SmallErrors];
     reasons.extend(wrong.map(Reason::Wrong));
     reasons.extend(errors.map(|error| Reason::Trace(BadTrace::NoResult(error))));
     reasons.extend(causes.map(|cause| Reason::Trace(unreadable(cause))));

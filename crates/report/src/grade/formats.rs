@@ -1,6 +1,10 @@
 //! Every format: against its schema, and as a snapshot that people read.
 use super::{Format, csv_of_submissions, json_line, samples};
-use fosssim_grading::Grade;
+use fosssim_grading::{
+    Grade, Verdict,
+    config::Visibility,
+    located::{Content, Failing, Located},
+};
 use fosssim_testing::{Need, skip};
 use std::path::Path;
 
@@ -95,6 +99,48 @@ fn what_is_wrong_with_a_submission_itself_is_said_once() {
     let csv = csv_of_submissions(&[samples::unfit()]);
     assert!(csv.contains("dan,unusable submission,0,20,0,3,"), "{csv}");
     insta::assert_snapshot!("grade_unfit_text", Format::Text.render(&[samples::unfit()]));
+}
+
+#[test]
+fn an_untouched_template_is_told_in_ten_lines() {
+    let grades = [samples::unwritten()];
+    let text = Format::Text.render(&grades);
+    assert!(text.lines().count() <= 10, "{text}");
+    insta::assert_snapshot!("grade_unwritten_text", text);
+    for format in
+        [Format::Junit, Format::Gradescope, Format::Prairielearn, Format::Github, Format::Markdown, Format::Html]
+    {
+        let document = format.render(&grades).replace('\\', "");
+        assert_eq!(document.matches("Not written yet: ").count(), 1, "{format:?}: {document}");
+        assert!(document.to_lowercase().contains("nothing written"), "{format:?}: {document}");
+    }
+    assert_valid("grade.schema.json", &Format::Json.render(&grades));
+    assert!(csv_of_submissions(&grades).contains("template,nothing written,0,20,"), "{}", csv_of_submissions(&grades));
+}
+
+/// Where a program crashes stands in every format at the top.
+#[test]
+fn what_failing_scenes_have_in_common_is_told_in_every_format() {
+    let mut grade = samples::good();
+    grade.groups[0].scenes[0].result.verdict = Verdict::RuntimeError;
+    grade.groups[1].visibility = Visibility::Visible;
+    grade.verdict = Verdict::RuntimeError;
+    grade.located = Some(Located {
+        failing: Failing::Crash,
+        contents: vec![Content { family: 4, value: None }],
+        failed: 24,
+        with: 24,
+        without: 61,
+        first: "Detection/a".to_owned(),
+        step: 14,
+    });
+    let sentence = "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others.";
+    for format in Format::ALL.iter().filter(|format| **format != Format::Csv) {
+        let document = format.render(std::slice::from_ref(&grade));
+        assert!(document.contains(sentence), "{format:?}: {document}");
+    }
+    assert!(csv_of_submissions(std::slice::from_ref(&grade)).contains(sentence));
+    assert_valid("grade.schema.json", &Format::Json.render(&[grade]));
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::{super::explain, difference, head_lines, plain, points, printed};
+use super::{super::explain, difference, head_lines, plain, points, printed, see_above};
 use crate::{number::counted, words};
 use fosssim_grading::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
@@ -53,7 +53,7 @@ pub(super) fn render(grade: &Grade) -> String {
                 name: format!("{} ({})", plain(&scene.scene), plain(&group.name)),
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.unfit() {
-                    Some(_) => format!("{}: not run, see above", scene.verdict),
+                    Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
                     None => output(scene, grade.shows_output),
                 },
                 tags: vec![scene.verdict.code().to_owned()],

@@ -137,8 +137,8 @@ pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use github::annotation;
 pub use json::line as json_line;
 pub(crate) use phrases::without_codes;
-use phrases::wrong_first;
 pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, plain, points, printed, reached};
+use phrases::{see_above, wrong_first};
 pub use text::{Advice, Text, TextDetail, changes, score, table as text_table};
 
 /// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at hand,

@@ -95,7 +95,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::unfit(grade) {
         return vec![unfit];
     }
-    let wrong = |scene: &&SceneGrade| matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+    let wrong = |scene: &&SceneGrade| scene.verdict.is_wrong_trace();
     let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
     let line = |(number, (mistake, explained)): (usize, (Explanation, usize))| {
         let rank = if number == 0 { "most likely mistake" } else { "also likely" };
@@ -103,6 +103,14 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     };
     let located = grade.located.as_ref().map(words::located);
     located.into_iter().chain(likely_mistakes(grade).into_iter().enumerate().map(line)).collect()
+}
+
+/// What is said of a scene whose reason is that of the whole submission.
+pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
+    match scene.result.verdict {
+        Verdict::Unwritten => "see above",
+        _ => "not run, see above",
+    }
 }
 
 /// The scenes of some groups, those that are not accepted first.

@@ -1,5 +1,5 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
-use super::{super::explain, difference, head_lines, one_line, plain, printed, wrong_first};
+use super::{super::explain, difference, head_lines, one_line, plain, printed, see_above, wrong_first};
 use crate::words;
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
@@ -37,11 +37,7 @@ pub(super) fn render(grade: &Grade) -> String {
             description: scene.verdict.words().to_owned(),
             points: scene.points,
             max_points: scene.max_points,
-            message: if grade.unfit().is_some() {
-                "not run, see above".to_owned()
-            } else {
-                cut(&words::summary(scene))
-            },
+            message: if grade.unfit().is_some() { see_above(scene).to_owned() } else { cut(&words::summary(scene)) },
             output: cut(&output(scene)),
         })
         .collect();

@@ -2,11 +2,12 @@
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Marking, Visibility},
-    result::{BuildEnd, Ended, Failure, FolderContents, Unusable},
+    result::{BuildEnd, Ended, Failure, FolderContents, Unusable, Wrong},
     score,
     told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{Book, FindingCounts, FindingKind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
+use fosssim_mistakes::diagnose::{About, Explanation};
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::time::Duration;
 
@@ -93,7 +94,7 @@ pub(crate) fn bad() -> Grade {
     let mut crash = scene("Detection/b", Verdict::RuntimeError, "the program ended by signal 11");
     crash.stderr =
         "\u{1b}[32mOverall success: Passed.\u{1b}[m\n<b>]]></b>&amp;\u{202e}\0\n::error::forged\n".to_owned();
-    let rest = Verdict::ALL[2..12]
+    let rest = Verdict::ALL[2..13]
         .iter()
         .filter(|verdict| !matches!(verdict, Verdict::WrongAnswer | Verdict::RuntimeError))
         .map(|&verdict| scene(&format!("Rest/{}", verdict.code()), verdict, "=cmd|' /C calc'!A0 <i>*_`%0A::"))
@@ -152,4 +153,33 @@ pub(crate) fn fault() -> Grade {
             vec![scene("Detection/a", Verdict::JudgeError, "no space left on device")],
         )],
     )
+}
+
+/// The handed-out template, in which nothing is written yet.
+pub(crate) fn unwritten() -> Grade {
+    let empty = |key: &str| Explanation {
+        key: key.to_owned(),
+        about: About::Mistake,
+        reproduced: 4,
+        samples: 4,
+        details: Vec::new(),
+        example: None,
+        same_as: Vec::new(),
+        denies: Vec::new(),
+    };
+    let result = |name: String| SceneResult {
+        ended: Some(Ended::Exited(0)),
+        explanations: ["pp-empty", "pe-empty", "loop-empty"].map(empty).into(),
+        ..SceneResult::without_run(&name, 100, Verdict::Unwritten, Reason::Wrong(Wrong::Nothing))
+    };
+    let scenes = |group: &str| (0..20).map(|number| result(format!("{group}/{number}"))).collect();
+    let mut grade = grade(
+        "template",
+        vec![
+            group("Detection", Visibility::Visible, scenes("Detection")),
+            group("Impulses", Visibility::Visible, scenes("Impulses")),
+        ],
+    );
+    grade.settle();
+    grade
 }

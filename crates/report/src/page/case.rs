@@ -1,11 +1,11 @@
 //! One judged trace on a page.
 use super::{Case, call, data, markup::text, packed::Precision, strip};
 use crate::{
-    check::{divergence_text, headline},
+    check::{divergence_text, follows, headline},
     explain,
     number::count,
 };
-use fosssim_evidence::{Evidence, Focus};
+use fosssim_evidence::{Evidence, Focus, InspectedCall};
 use fosssim_grading::config::Hints;
 use fosssim_judge::{Book, BookFindings, Outcome, Ruling};
 use fosssim_mistakes::diagnose::Explanation;
@@ -96,12 +96,21 @@ impl Case<'_> {
                 let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
                 let mut calls: Vec<_> = calls.collect();
                 calls.sort_by_key(|(step, _)| Some(*step) != first.map(|first| first.step));
-                if !calls.is_empty() {
+                // What only follows from where the passes before it led is no mistake of detection.
+                let follows = follows::count(outcome) > 0;
+                let (follow, wrong): (Vec<_>, Vec<_>) =
+                    calls.into_iter().partition(|(_, call)| follows && call.pass.index > 0);
+                if !wrong.is_empty() {
                     out += &heading("The detection calls that are wrong");
-                    out.extend(calls.iter().take(CALLS).map(|(step, one)| call::html(*step, one, depth + 2)));
-                    if calls.len() > CALLS {
-                        let _ = writeln!(out, "<p>{} more are not shown.</p>", calls.len() - CALLS);
-                    }
+                    out += &some(&wrong, depth);
+                }
+                if !follow.is_empty() {
+                    let _ = write!(
+                        out,
+                        "<details class=\"table\"><summary>Polynomials that follow from wrong positions</summary>\n\
+                         <p>Their formulas are right: they look at where the responses or the failsafe before them led.</p>\n{}</details>\n",
+                        some(&follow, depth)
+                    );
                 }
             }
         }
@@ -111,6 +120,15 @@ impl Case<'_> {
         }
         out
     }
+}
+
+/// The first ones of some calls, each with its step.
+fn some(calls: &[(u32, &InspectedCall)], depth: usize) -> String {
+    let mut out: String = calls.iter().take(CALLS).map(|(step, one)| call::html(*step, one, depth + 2)).collect();
+    if calls.len() > CALLS {
+        let _ = writeln!(out, "<p>{} more are not shown.</p>", calls.len() - CALLS);
+    }
+    out
 }
 
 /// Explanations, each in a box.

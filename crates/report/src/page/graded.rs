@@ -129,7 +129,7 @@ impl GradePage<'_> {
         }
         let likely = likely_mistakes(grade);
         if !likely.is_empty() {
-            let wrong = |scene: &&SceneGrade| matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace);
+            let wrong = |scene: &&SceneGrade| scene.verdict.is_wrong_trace();
             let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
             let plural = if likely.len() == 1 { "" } else { "s" };
             let _ = writeln!(out, "<h2>Likely mistake{plural}</h2>");

@@ -25,7 +25,8 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::located(located)));
     }
-    let mistakes = likely_mistakes(grade);
+    // What is wrong with the submission itself says it all.
+    let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
     let wrong = grade.scenes().filter(|scene| is_wrong(scene)).count() as u64;
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {
@@ -52,7 +53,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
 
 /// Whether an explanation of what is wrong is to be looked for.
 fn is_wrong(scene: &SceneGrade) -> bool {
-    matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace)
+    scene.verdict.is_wrong_trace()
 }
 
 /// A row per group: points, and how many scenes are accepted.

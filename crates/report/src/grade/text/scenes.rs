@@ -34,8 +34,10 @@ type Words = (Verdict, String, Vec<String>);
 
 /// A wrong trace differs from scene to scene; a program that does not run ends in the same words each time.
 fn told(scene: &SceneGrade) -> Option<Words> {
-    let fails = !matches!(scene.verdict, Verdict::Accepted | Verdict::WrongAnswer | Verdict::BadTrace);
-    fails.then(|| (scene.verdict, words::ending(scene), words::details(scene)))
+    let fails = !(scene.verdict.is_accepted() || scene.verdict.is_wrong_trace());
+    // Where nothing is logged, it does not matter where that shows first.
+    let details = || if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
+    fails.then(|| (scene.verdict, words::ending(scene), details()))
 }
 
 /// The scenes of which the same is told.
@@ -107,7 +109,9 @@ impl<'a> Scenes<'a, '_> {
             lines.push(one_line(&words::summary(scene)));
         }
         lines.extend(difference(scene));
-        lines.extend(words::details(scene).iter().map(|line| one_line(line)));
+        if scene.verdict != Verdict::Unwritten {
+            lines.extend(words::details(scene).iter().map(|line| one_line(line)));
+        }
         lines.extend(explain::lines(&scene.settled).iter().map(|line| one_line(line)));
         let alike = told(scene).and_then(|words| self.alike.get(&words)).map_or(&[][..], |names| &names[1..]);
         if !alike.is_empty() {

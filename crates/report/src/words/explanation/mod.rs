@@ -19,7 +19,7 @@ pub(crate) use places::place;
 #[must_use]
 pub fn what(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {
-        About::Mistake => known(&explanation.key),
+        About::Mistake => known(&explanation.key).unwrap_or_else(|| format!("{}.", explanation.key)),
         About::Unfinished => format!("Not written yet: {}.", unfinished(&explanation.same_as)),
         About::Scene { has_length } => {
             let length = if *has_length { "" } else { ", and neither is its length" };
@@ -63,9 +63,9 @@ pub(crate) fn is_known(explanation: &Explanation) -> bool {
     !matches!(explanation.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
 }
 
-/// The sentence about a known mistake; its key, if it is no known one.
-pub(crate) fn known(key: &str) -> String {
-    find(key).map_or_else(|| format!("{key}."), Row::sentence)
+/// The sentence about a known mistake.
+pub(crate) fn known(key: &str) -> Option<String> {
+    find(key).map(Row::sentence)
 }
 
 /// The stages that are not written yet, in a few words each.
