@@ -231,7 +231,7 @@ pub(crate) mod tests {
         insta::assert_snapshot!(lines(&explanations()).join("\n"), @r"
         likely mistake: Particle-edge: The sum of the radii is not squared. (in 11 of 12 wrong steps tried)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
-          can't be told apart here from: a. b. c. And 2 more.
+          can't be told apart here from 5 other formulas
           example: step 3, particle 3 and edge 1, pass 0, overlap polynomial
             given     x1 = (0.5, -1), re = 0.25
             expected  1, -0.125

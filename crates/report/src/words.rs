@@ -93,14 +93,12 @@ pub fn unfit(grade: &Grade) -> Option<String> {
 
 /// What is said of a submission that logs nothing in any scene: what is not written yet, as far as that may be told.
 fn unwritten(grade: &Grade) -> String {
-    let nothing = format!(
-        "no trace of its {} holds a polynomial or a collision",
-        counted(grade.scenes().count() as u64, "scene")
-    );
-    match grade.likely_mistakes().first() {
-        Some((likely, _)) if likely.is_unfinished() => format!("{} ({nothing})", explanation::what(likely)),
-        _ => format!("Not written yet: the detection ({nothing})."),
-    }
+    let scenes = counted(grade.scenes().count() as u64, "scene");
+    let missing = match grade.likely_mistakes().first() {
+        Some((likely, _)) if likely.is_unfinished() => explanation::what(likely),
+        _ => "Not written yet: the detection.".to_owned(),
+    };
+    format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
 }
 
 /// In one sentence why not everything is accepted; nothing where it is.

@@ -162,10 +162,7 @@ pub(crate) fn unwritten() -> Grade {
         about: About::Mistake,
         reproduced: 4,
         samples: 4,
-        details: Vec::new(),
-        example: None,
-        same_as: Vec::new(),
-        denies: Vec::new(),
+        ..crate::explain::tests::explanations().swap_remove(1)
     };
     let result = |name: String| SceneResult {
         ended: Some(Ended::Exited(0)),

@@ -127,7 +127,8 @@ impl GradePage<'_> {
             let words = text(&one_line(&words::located(located)));
             let _ = writeln!(out, "<h2>Where it fails</h2>\n<div class=\"mistake\"><p>{words}</p></div>");
         }
-        let likely = likely_mistakes(grade);
+        // What is wrong with the submission itself says it all.
+        let likely = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
         if !likely.is_empty() {
             let wrong = |scene: &&SceneGrade| scene.verdict.is_wrong_trace();
             let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
