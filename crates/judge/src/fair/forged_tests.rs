@@ -387,3 +387,23 @@ fn what_is_gone_is_no_mixture_of_forms() {
         }
     }
 }
+
+/// Behind a response fixed particles are where they were, without any round-off: what is zero then is nothing else.
+#[test]
+fn fixed_particles_are_not_moved_by_a_response() {
+    let scene = scene(
+        r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.5"/>
+        <collision type="continuous-time" COR="1"/>
+        <particle m="1" px="0.3" py="0.7" vx="0" vy="0" fixed="1" radius="0.1"/>
+        <particle m="1" px="0.31" py="2" vx="0" vy="-3" fixed="0" radius="0.1"/>
+        <halfplane px="0.1" py="-0.3" nx="0.3" ny="1.7"/></scene>"#,
+    );
+    let frames = run(&scene, ());
+    assert!(!frames[2].impulses.is_empty() && frames[2].polynomials.get(3).is_empty());
+    let forged = changed(&scene, |frames| {
+        for frame in &mut frames[1..3] {
+            relog(frame, |index, list| if index == 3 { vec![0.25] } else { list.to_vec() });
+        }
+    });
+    assert_eq!(fair(&scene, &forged).verdict, FairVerdict::Rejected);
+}

@@ -127,6 +127,10 @@ impl BoundedPairMotion {
     pub fn widened(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
         let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };
+            if way.shift.x.bound == 0.0 && way.shift.y.bound == 0.0 {
+                // It rests for certain, whatever is done to others.
+                return;
+            }
             // In units of the running error bound, whose tolerance is twice FAIR_UNITS of them.
             let units = FAIR_SENSITIVITY / (2.0 * FAIR_UNITS * UNIT_ROUNDOFF);
             way.shift.x.bound += units * deviations[2 * particle];

@@ -17,9 +17,6 @@ use fosssim_model::{
 };
 use fosssim_num::{bounded::Bounded, polynomial::Polynomial};
 
-/// What the course's library drops.
-const DROPPED: f64 = 1e-12;
-
 /// Products of such coefficients overflow.
 const OVERFLOWS: f64 = 1e100;
 
@@ -84,10 +81,11 @@ impl Observer for Note<'_> {
 /// Multiplies polynomials; the course's library drops what becomes small, and the step goes on with the rest.
 struct Multiply<F>(F);
 
-impl<F: FnMut(PairKind, usize) -> f64> Observer for Multiply<F> {
+impl<F: FnMut(Pair, usize, &[f64]) -> f64> Observer for Multiply<F> {
     fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
         for (number, polynomial) in polynomials.iter_mut().enumerate() {
-            *polynomial = scaled(polynomial.coefficients(), (self.0)(pair.kind, number));
+            let factor = (self.0)(pair, number, polynomial.coefficients());
+            *polynomial = scaled(polynomial.coefficients(), factor);
         }
     }
 }
@@ -107,7 +105,10 @@ impl Stage {
             simulation.step(&mut note).ok()?;
             steps.push(note.1);
         }
-        steps.iter().any(|step| !step.is_empty()).then(|| Self { name: name.to_owned(), scene, frames, steps })
+        let stage = Self { name: name.to_owned(), scene, frames, steps };
+        let is_logged = |step: usize| stage.frames[step * stage.records_per_step()].polynomials.len();
+        let are_logged = (1..=stage.steps.len()).all(|step| is_logged(step) == stage.steps[step - 1].len());
+        (are_logged && stage.steps.iter().any(|step| !step.is_empty())).then_some(stage)
     }
 
     fn known(&self, step: usize, index: usize) -> &Known {
@@ -168,6 +169,33 @@ fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
         frames.push(frame.clone());
     }
     Some(frames)
+}
+
+/// The factors of a right trace's polynomials.
+#[derive(Debug, Clone, Copy)]
+enum Base {
+    One,
+    Constant(f64),
+    /// Each is divided by its size.
+    Size,
+}
+
+impl Base {
+    fn draw(random: &mut Random) -> Self {
+        match random.below(4) {
+            0 => Self::Constant(random.log(-5.0, 5.0)),
+            1 => Self::Size,
+            _ => Self::One,
+        }
+    }
+
+    fn of(&self, own: &[f64]) -> f64 {
+        match *self {
+            Self::One => 1.0,
+            Self::Constant(factor) => factor,
+            Self::Size => own.iter().map(|c| c.abs()).fold(0.0, f64::max).recip(),
+        }
+    }
 }
 
 /// Which polynomials are changed.
@@ -293,33 +321,37 @@ impl Change {
     }
 }
 
-/// Why a polynomial that is not the reference's may pass, whatever others say: it is zero but for round-off and has numbers, so it
-/// may be anything; or it is right with the factor 1; or it is right with a factor that two of its coefficients agree on, or that
-/// takes nothing from it.
-fn has_reason(known: &Known, list: &[f64]) -> bool {
+/// Why a polynomial that is not the program's may pass, whatever others say: it is zero but for round-off and has numbers, so it
+/// may be anything; or it is right with the program's factor; or it is right with a factor that two of its coefficients agree on, or
+/// that takes nothing from it.
+fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
     let of_form = |expected: &[Bounded]| {
-        let Ok(found) = compare(expected, list, &[1.0]) else { return false };
-        let kept = expected.iter().skip_while(|c| c.value.abs() < DROPPED).count();
+        let scaled: Vec<Bounded> =
+            expected.iter().map(|c| Bounded { value: factor * c.value, bound: factor * c.bound }).collect();
+        let Ok(found) = compare(&scaled, list, &[1.0]) else { return false };
         let is_one = found.scale.is_none_or(|scale| (scale - 1.0).abs() < 1e-9);
-        says_nothing(expected) || is_one || list.len() >= kept || shows_factor(expected, list)
+        says_nothing(&scaled) || is_one || list.len() >= own.len() || shows_factor(&scaled, list)
     };
     of_form(known.expected.polynomial(known.number)) || known.expected.other_form(known.number).is_some_and(of_form)
 }
 
 /// Makes a right trace wrong. What the fair rules say about it that they must not, if anything.
 pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
+    let base = Base::draw(random);
     let (target, change) = (Target::draw(stage, random), Change::draw(random));
     // One with a factor may be to vouch for what is gone. Among few it does.
     let is_alone = random.below(3) == 0 && stage.steps.len() > FEW;
     let voucher = is_alone.then(|| (Target::draw(stage, random), random.log(-13.0, -6.0)));
     let changed = |step, index, own: &[f64]| {
         let at = (step, index);
+        let own = scaled(own, base.of(own));
+        let own = own.coefficients();
         match voucher {
-            _ if target.holds(stage, at) => Some(change.of(stage, at, own)),
+            _ if target.holds(stage, at) => change.of(stage, at, own),
             Some((other, factor)) if matches!(other, Target::One { .. }) && other.holds(stage, at) => {
-                Some(Change::Factor(factor).of(stage, at, own))
+                Change::Factor(factor).of(stage, at, own)
             }
-            _ => None,
+            _ => own.to_vec(),
         }
     };
     let same = |one: &[f64], other: &[f64]| {
@@ -329,15 +361,16 @@ pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
     let is_of_program = matches!(change, Change::Factor(_));
     let without_reason = (1..=stage.steps.len())
         .flat_map(|step| (0..stage.steps[step - 1].len()).map(move |index| (step, index)))
+        .filter(|&at| target.holds(stage, at))
         .find(|&(step, index)| {
             let own = stage.own(step, index);
-            changed(step, index, own).is_some_and(|list| {
-                let is_changed = target.holds(stage, (step, index)) && !same(own, &list);
-                is_changed && !has_reason(stage.known(step, index), &list)
-            })
+            let (factor, list) = (base.of(own), changed(step, index, own));
+            let right = scaled(own, factor);
+            let (right, factor) = (right.coefficients(), if factor.is_finite() { factor } else { 1.0 });
+            !same(right, &list) && !has_reason(stage.known(step, index), right, &list, factor)
         });
-    let trace = stage.relogged(changed);
-    let what = || format!("{}: {change:?} of {target:?}, {voucher:?}", stage.name);
+    let trace = stage.relogged(|step, index, own| Some(changed(step, index, own)));
+    let what = || format!("{}: {change:?} of {target:?}, {base:?}, {voucher:?}", stage.name);
     match stage.judged(&trace) {
         Err(fault) => Some(format!("{}: {fault}", what())),
         Ok(judged) if judged.verdict == FairVerdict::Accepted && !is_of_program => {
@@ -360,6 +393,11 @@ enum Factors {
     Number(PairKind, usize, f64),
     /// Another one of each polynomial, between 1 and this.
     Each(f64),
+    /// Another one of each pair, between this and its reciprocal.
+    Pair(f64),
+    /// Each is divided by its size, or by the modulus of its leading coefficient.
+    Size,
+    Leading,
 }
 
 /// Runs a program whose polynomials have factors. What the fair rules say about it that they must not, if anything: it may be
@@ -367,19 +405,27 @@ enum Factors {
 pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     let kind = random.pick(&PairKind::ALL);
     let factor = if random.below(2) == 0 { random.log(-300.0, 300.0) } else { random.log(-12.0, 6.0) };
-    let factors = match random.below(8) {
+    let factors = match random.below(11) {
         0..=2 => Factors::All(factor),
         3..=4 => Factors::Kind(kind, factor),
         5..=6 => Factors::Number(kind, random.below(kind.polynomials()), factor),
-        _ => Factors::Each(random.log(0.0, 6.0)),
+        7 => Factors::Each(random.log(0.0, 6.0)),
+        8 => Factors::Pair(random.log(0.0, 6.0)),
+        9 => Factors::Size,
+        _ => Factors::Leading,
     };
     let mut each = Random::new(random.bits());
-    let mut steer = Multiply(|kind: PairKind, number: usize| match factors {
-        Factors::All(factor) => factor,
-        Factors::Kind(of, factor) if of == kind => factor,
-        Factors::Number(of, by, factor) if (of, by) == (kind, number) => factor,
-        Factors::Each(most) => each.log(0.0, most.log10()),
-        Factors::Kind(..) | Factors::Number(..) => 1.0,
+    let mut steer = Multiply(|pair: Pair, number: usize, own: &[f64]| match (factors, pair.kind) {
+        (Factors::All(factor), _) => factor,
+        (Factors::Kind(of, factor), kind) if of == kind => factor,
+        (Factors::Number(of, by, factor), kind) if (of, by) == (kind, number) => factor,
+        (Factors::Each(most), _) => each.log(0.0, most.log10()),
+        (Factors::Pair(most), _) => {
+            Random::new(1_000_003 * u64::from(pair.first) + u64::from(pair.second)).log(-most.log10(), most.log10())
+        }
+        (Factors::Size, _) => Base::Size.of(own),
+        (Factors::Leading, _) => own.first().map_or(1.0, |c| c.abs().recip()),
+        (Factors::Kind(..) | Factors::Number(..), _) => 1.0,
     });
     let frames = run(&stage.scene, &mut steer)?;
     let is_whole = |frame: &Frame| frame.polynomials.iter().flatten().all(|c| c.is_finite());
