@@ -1,0 +1,201 @@
+use super::*;
+
+/// Numbers from 0 to 1, always the same ones.
+fn numbers() -> impl FnMut() -> f64 {
+    let mut seed = 1_u64;
+    move || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// The quick answer is the long one, bit for bit.
+#[test]
+fn what_fits_at_once_is_what_a_close_look_says() {
+    let mut next = numbers();
+    let mut answered = 0;
+    for round in 0..20_000 {
+        let length = 2 + round % 5;
+        let expected: Vec<Bounded> = (0..length)
+            .map(|_| {
+                let value = (next() - 0.5) * [1.0, 1e-9, 1e3][(next() * 3.0) as usize];
+                Bounded { value, bound: value.abs() * 40.0 * next() }
+            })
+            .collect();
+        let (factor, noise) = (4.0 * next(), [0.0, 1e-15, 1e-13][round % 3]);
+        let actual: Vec<f64> = expected.iter().map(|r| factor * (r.value + noise * (next() - 0.5) * r.bound)).collect();
+        if let Some(found) = fits(&expected, &actual) {
+            let close = compare_closely(&expected, &actual, &[1.0]).expect("right");
+            let bits = |found: Match| (found.scale.map(f64::to_bits), found.share.to_bits());
+            assert_eq!(bits(found), bits(close));
+            answered += 1;
+        }
+    }
+    assert!(answered > 5000, "{answered}");
+}
+
+/// What is right at once is right in a close look, too, and by the same factor but for round-off.
+#[test]
+fn what_is_right_at_once_is_right() {
+    let mut next = numbers();
+    let mut answered = 0;
+    for round in 0..40_000 {
+        let length = 2 + round % 5;
+        let expected: Vec<Bounded> = (0..length)
+            .map(|_| {
+                let value = (next() - 0.5) * [1.0, 1e-9, 1e3, 1e-13][(next() * 4.0) as usize];
+                Bounded { value, bound: value.abs() * (1.0 + 40.0 * next()) }
+            })
+            .collect();
+        let factor = [1.0, 0.25, 1.0 / 3.0, 3.0, 1e7][round / 5 % 5];
+        let noise = [0.0, 1e-16, 1e-15, 4e-15][round / 25 % 4];
+        let size: f64 = expected.iter().map(|r| r.value.abs()).sum();
+        let kept = expected.iter().skip_while(|r| r.value.abs() < LEADING_COEFFICIENT);
+        let actual: Vec<f64> = kept.map(|r| factor * (r.value + noise * (next() - 0.5) * size)).collect();
+        let Some(found) = is_clear(&expected, &actual) else { continue };
+        if let Some(scale) = found.scale {
+            let close = compare_closely(&expected, &actual, &[1.0]);
+            // A factor near 1 may have moved lost coefficients to four times the library's bound.
+            let has_lost = actual.len() < expected.len();
+            assert!(has_lost || close.is_ok(), "{expected:?} {actual:?}");
+            assert!((scale / factor - 1.0).abs() < 1e-14 && found.share <= FAIR_CLEAR, "{found:?}");
+            answered += 1;
+        }
+    }
+    assert!(answered > 15_000, "{answered}");
+    assert_eq!(is_clear(&parabola(), &parabola().map(|c| -c.value)), None);
+}
+
+fn parabola() -> [Bounded; 3] {
+    [-0.37, 2.2, -0.71].map(|value: f64| Bounded { value, bound: 8.0 * value.abs() })
+}
+
+#[test]
+fn every_positive_factor_is_right_and_no_other() {
+    let right = parabola();
+    for factor in [1.0, 3.0, 1e-6, 1e9, 0.1] {
+        let logged = right.map(|c| factor * c.value);
+        let found = compare(&right, &logged, &[1.0]).expect("right");
+        assert!((found.scale.expect("a factor") / factor - 1.0).abs() < 1e-15);
+    }
+    for factor in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
+        assert!(compare(&right, &right.map(|c| factor * c.value), &[1.0]).is_err(), "{factor}");
+    }
+}
+
+#[test]
+fn the_wrong_coefficient_is_named_in_spite_of_a_factor() {
+    let right = parabola();
+    let mut logged = right.map(|c| 3.0 * c.value);
+    logged[1] *= 2.0;
+    let Err(Mismatch::Coefficient { power, expected, actual, .. }) = compare(&right, &logged, &[1.0]) else {
+        panic!("a wrong coefficient")
+    };
+    assert_eq!((power, actual), (1, logged[1]));
+    assert!((expected - 6.6).abs() < 1e-12);
+}
+
+/// What is wrong with every factor is wrong in a close look, too, whatever the hints; and most of what is wrong in one
+/// coefficient is found to be so.
+#[test]
+fn what_fits_with_no_factor_is_wrong() {
+    let mut next = numbers();
+    let (mut wrong, mut certain) = (0, 0);
+    for round in 0..40_000 {
+        let length = 2 + round % 5;
+        let mut expected: Vec<Bounded> = (0..length)
+            .map(|_| {
+                let value = (next() - 0.5) * [1.0, 1e-9, 1e3, 0.0][(next() * 4.0) as usize];
+                Bounded { value, bound: value.abs() * 40.0 * next() + [0.0, 1.0][round / 5 % 2] }
+            })
+            .collect();
+        let factor = [1.0, 0.25, 1.0 / 3.0, 1e-7, -1.0][round / 10 % 5];
+        let noise = [0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-6][round / 50 % 7];
+        let mut logged: Vec<f64> = expected.iter().map(|r| factor * r.value * (1.0 + noise * next())).collect();
+        if round % 3 == 0 {
+            logged[(next() * length as f64) as usize] += noise * factor.abs() * next();
+        }
+        if round % 4 == 0 {
+            // The course's library drops what is small.
+            let dropped = 1.2e-12 * (next() - 0.5);
+            expected[0].value = dropped / factor.abs();
+            logged.remove(0);
+        }
+        let is_wrong = compare(&expected, &logged, &[factor.abs(), 1.0]).is_err();
+        let is_certain = fits_with_no_factor(&expected, &logged);
+        assert!(is_wrong || !is_certain, "{expected:?} {logged:?}");
+        wrong += u32::from(is_wrong);
+        certain += u32::from(is_certain);
+    }
+    assert!(certain > wrong / 2 && certain > 2000, "{certain} of {wrong}");
+}
+
+#[test]
+fn one_part_in_a_billion_is_wrong_and_a_few_roundings_are_not() {
+    let right = parabola();
+    let mut logged = right.map(|c| c.value);
+    logged[2] *= 1.0 + 1e-9;
+    assert!(compare(&right, &logged, &[1.0]).is_err());
+    logged[2] = right[2].value * (1.0 + 1e-15);
+    assert!(compare(&right, &logged, &[1.0]).expect("round-off").share > 0.0);
+}
+
+/// Small leading coefficients are dropped after scaling; others can't be missing.
+#[test]
+fn only_small_leading_coefficients_may_be_missing() {
+    let right = [1e-7, 2.2, -0.71].map(|value: f64| Bounded { value, bound: 8.0 * value.abs() });
+    assert!(compare(&right, &[2.2e-6, -0.71e-6], &[1.0]).is_ok(), "dropped at scale 1e-6: 1e-13");
+    assert!(compare(&right, &[2.2, -0.71], &[1.0]).is_err(), "not small at scale 1");
+}
+
+/// Whoever divides polynomials by their size makes ordinary numbers of round-off.
+#[test]
+fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
+    let right = [1e-16, 0.0].map(|value: f64| Bounded { value, bound: 1.0 });
+    for logged in [&[] as &[f64], &[1e-11], &[-1.0, 0.3], &[1e100]] {
+        assert_eq!(compare(&right, logged, &[1.0]), Ok(Match { scale: None, share: 0.0 }), "{logged:?}");
+    }
+    assert!(compare(&right, &[f64::NAN], &[1.0]).is_err());
+    assert!(compare(&right, &[f64::INFINITY, 1.0], &[1.0]).is_err());
+}
+
+/// Where nothing moves there is no round-off either.
+#[test]
+fn what_is_exactly_zero_is_zero() {
+    let right = [Bounded::exact(0.0); 2];
+    assert!(compare(&right, &[], &[1.0]).is_ok() && compare(&right, &[0.0, -0.0], &[1.0]).is_ok());
+    assert!(compare(&right, &[1e-11], &[1.0]).is_err());
+}
+
+/// The trace's own states may have lost all numbers: then its polynomials have none, and that is no second error.
+#[test]
+fn no_number_stands_where_none_is_expected() {
+    let (lost, kept) = (Bounded { value: f64::NAN, bound: f64::NAN }, Bounded::rounded(0.3));
+    assert!(compare(&[lost, kept], &[f64::NAN, 0.3], &[1.0]).is_ok());
+    assert!(compare(&[lost, kept], &[f64::INFINITY, 0.3], &[1.0]).is_ok());
+    for logged in [&[1.0, 0.3], &[f64::NAN, f64::NAN]] {
+        assert!(compare(&[lost, kept], logged, &[1.0]).is_err(), "{logged:?}");
+    }
+}
+
+/// Newton's divided differences of values at 0, 1/4, 1/2, 3/4 and 1 have coefficients with the round-off of all values, up to
+/// some hundred times; it cancels within the step.
+#[test]
+fn round_off_that_cancels_within_the_step_is_right() {
+    let right = [1e-3, -2e-3, 0.4, -1.1, 0.7].map(|value: f64| Bounded { value, bound: 4.0 * value.abs() });
+    // A hundred roundings of the quartic that is small on the whole step: t (t - 1/4) (t - 3/4) (t - 1).
+    let small = [1.0, -2.0, 1.1875, -0.1875, 0.0];
+    let turned = |size: f64| -> Vec<f64> {
+        right.iter().zip(small).map(|(right, small)| right.value + size * UNIT_ROUNDOFF * small).collect()
+    };
+    assert!(compare(&right, &turned(8e3), &[1.0]).is_ok());
+    assert!(compare(&right, &turned(8e5), &[1.0]).is_err());
+}
+
+#[test]
+fn garbage_of_constant_size_check() {
+    assert!(compare(&parabola(), &[1e-11; 3], &[1.0]).is_err());
+    assert!(compare(&parabola(), &[0.0; 3], &[1.0]).is_err());
+    assert!(compare(&parabola(), &[], &[1.0]).is_err());
+    assert!(compare(&parabola(), &[1.0; 9], &[1.0]).is_err());
+}
