@@ -31,8 +31,8 @@ pub struct Explanation {
     pub same_as: Vec<String>,
     /// Keys of empty stages that the trace speaks against: it shows something of them.
     pub denies: Vec<String>,
-    /// All that would make its polynomials as they are, one word each: the polynomial, the guess or the known mistake, and a digest of the
-    /// exact form, which gives nothing of it away. The guess that it tells stands first. A polynomial that nothing makes has a
+    /// All that would make its polynomials as they are, one word each: the polynomial, then the known mistake, or a digest of the guess and
+    /// one of its exact form, which give nothing of them away. The guess that it tells stands first. A polynomial that nothing makes has a
     /// word without a guess.
     pub claims: Vec<String>,
 }
@@ -169,7 +169,8 @@ impl Explanation {
         match told.map(|told| &told.about) {
             None | Some(About::Mistake) => find(said).is_some() && is_made(&|guess, _| guess == said),
             Some(About::Polynomials { found: OfPolynomials::Guess(guess), .. }) if guess.is_general() => {
-                is_made(&|own, _| own == guess.key())
+                let word = guess.word();
+                is_made(&|own, _| own == word)
             }
             Some(About::Polynomials { found: OfPolynomials::Guess(_), .. }) => is_made(&|_, claim| claim == said),
             _ => false,

@@ -21,6 +21,11 @@ pub enum Guess {
 }
 
 impl Guess {
+    /// Its key as claims have it, which may be the name of a formula: a digest.
+    pub(super) fn word(&self) -> String {
+        format!("{:08x}", digest(self.key()) >> 32)
+    }
+
     /// Whether it may be made of several polynomials, as one mistake.
     #[must_use]
     pub(super) const fn is_general(&self) -> bool {
@@ -37,6 +42,11 @@ impl Guess {
             Self::Coefficients { wrong, .. } => wrong.key(),
         }
     }
+}
+
+/// A digest of a text, the same on every machine (FNV-1a).
+pub(super) fn digest(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// What is likely wrong with a whole list of coefficients.

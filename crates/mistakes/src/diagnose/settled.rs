@@ -1,5 +1,5 @@
 //! What a trace alone says, in the light of what all traces of its program say together.
-use super::Explanation;
+use super::{About, Explanation};
 
 /// What is to be said of one trace, once all traces of its program have been heard.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -33,11 +33,11 @@ fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
         return own.iter().filter(|one| likely.same_as.contains(&one.key)).cloned().collect();
     }
     let shown = own.iter().find(|one| likely.is_named_in(std::slice::from_ref(one)));
-    let as_shown = |one: &Explanation| Explanation {
-        reproduced: one.reproduced,
-        samples: one.samples,
-        example: one.example.clone(),
-        ..likely.clone()
+    let as_shown = |one: &Explanation| {
+        // Steps are counted for known mistakes, and polynomials for guesses about these.
+        let has_same_counts = matches!(one.about, About::Mistake) == matches!(likely.about, About::Mistake);
+        let (reproduced, samples) = if has_same_counts { (one.reproduced, one.samples) } else { (0, 0) };
+        Explanation { reproduced, samples, example: one.example.clone(), ..likely.clone() }
     };
     shown.map(as_shown).into_iter().collect()
 }
@@ -45,7 +45,7 @@ fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::{About, several};
+    use crate::diagnose::several;
 
     fn named(key: &str, same_as: &[&str], counts: (u64, u64)) -> Explanation {
         Explanation {

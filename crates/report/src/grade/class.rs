@@ -97,11 +97,11 @@ pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, Share)>, usize) {
 
 /// Likely mistakes with the number of submissions that make them, the most frequent first.
 fn frequent(grades: &[Grade]) -> Vec<(String, usize)> {
-    let mut counts: BTreeMap<String, (String, usize)> = BTreeMap::new();
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for (mistake, _) in grades.iter().flat_map(likely_mistakes) {
-        counts.entry(mistake.key.clone()).or_insert_with(|| (words::explanation::what(&mistake), 0)).1 += 1;
+        *counts.entry(words::explanation::what(&mistake)).or_default() += 1;
     }
-    let mut sorted: Vec<(String, usize)> = counts.into_values().collect();
+    let mut sorted: Vec<(String, usize)> = counts.into_iter().collect();
     sorted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     sorted
 }

@@ -190,7 +190,7 @@ fn by_mistake(grades: &[Grade]) -> (Vec<(String, Vec<usize>)>, Vec<usize>) {
         }
         for (mistake, _) in likely {
             let told = || (words::explanation::what(&mistake), Vec::new());
-            found.entry(mistake.key.clone()).or_insert_with(told).1.push(number);
+            found.entry(mistake.said()).or_insert_with(told).1.push(number);
         }
     }
     let mut several: Vec<_> = found.into_values().filter(|(_, members)| members.len() > 1).collect();

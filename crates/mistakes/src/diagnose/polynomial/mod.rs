@@ -26,7 +26,7 @@ pub use sample::Sample;
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
-    guess::Guess,
+    guess::{Guess, digest},
     known::{ROUND_OFF, same_polynomial},
 };
 use crate::assignments::t2m2::{
@@ -40,7 +40,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use study::{Candidate, Study};
 
 /// So many guesses about a polynomial are kept besides the one that is told.
-const MOST_CLAIMS: usize = 64;
+const MOST_CLAIMS: usize = 32;
 
 /// So many other keys are told per explanation.
 const MOST_OTHERS: usize = 5;
@@ -153,9 +153,9 @@ impl Suspect<'_> {
 /// What a guess says of a polynomial, in one word ([`Explanation::claims`]). The digest is of what the program does, without what it
 /// should do.
 fn claim(subject: Subject, candidate: &Candidate) -> String {
-    let key = candidate.guess.key();
+    let guess = candidate.guess.word();
     if candidate.guess.is_general() {
-        return format!("{subject:?}/{key}/");
+        return format!("{subject:?}/{guess}/");
     }
     let bare = |weight: &Weight| Weight { expected: 0.0, ..weight.clone() };
     let form: Vec<PolynomialDetail> = candidate
@@ -167,11 +167,8 @@ fn claim(subject: Subject, candidate: &Candidate) -> String {
             other => other.clone(),
         })
         .collect();
-    // FNV-1a. Factors are rounded, which measured ones need.
-    let digest = format!("{:?} {form:.5?}", candidate.guess)
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-    format!("{subject:?}/{key}/{digest:016x}")
+    // Factors are rounded, which measured ones need.
+    format!("{subject:?}/{guess}/{:016x}", digest(&format!("{:?} {form:.5?}", candidate.guess)))
 }
 
 /// The known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was logged, in all samples.
