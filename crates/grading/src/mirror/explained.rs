@@ -6,8 +6,8 @@ use fosssim_mistakes::{
     diagnose::{
         About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
         ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
-        StageDetail, StageFault, Stand, StepRecord, Weight, WrongDecisions, WrongMotion, WrongNumber, WrongResponses,
-        WrongVectors, WrongZoneRounds, WrongZones,
+        StageDetail, StageFault, Stand, StepRecord, Weight, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+        WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::{Area, CATALOGUE, find},
 };
@@ -235,6 +235,7 @@ enum StageFaultForm {
         kind: Option<PairKind>,
         #[serde(with = "WrongResponsesForm")]
         wrong: WrongResponses,
+        in_rounds: bool,
     },
     ManyContacts,
     Unresolved {
@@ -246,9 +247,14 @@ enum StageFaultForm {
         quantity: Option<Quantity>,
         #[serde(with = "end_or_none")]
         when: Option<LoopEnd>,
+        or_response: bool,
     },
     FirstRound,
     LaterRounds,
+    RoundsOfPrediction,
+    BehindFirstRound,
+    Geometric(#[serde(with = "WrongGeometricForm")] WrongGeometric),
+    ZonePositions(#[serde(with = "WrongPositionsForm")] WrongPositions),
     AfterRounds,
     ZoneRounds(#[serde(with = "WrongZoneRoundsForm")] WrongZoneRounds),
     Zones(#[serde(with = "WrongZonesForm")] WrongZones),
@@ -257,6 +263,21 @@ enum StageFaultForm {
         wrong: Vec<WrongMotion>,
         or_zones: bool,
     },
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "WrongGeometric")]
+enum WrongGeometricForm {
+    Left { always: bool },
+    Superfluous,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "WrongPositions")]
+enum WrongPositionsForm {
+    Prediction,
+    First,
+    BeforeFailsafe,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -272,6 +293,8 @@ enum WrongDecisionsForm {
 enum WrongVectorsForm {
     Perpendicular,
     Direction,
+    Zero,
+    Inexact,
     Reversed,
     Length,
 }
@@ -330,8 +353,13 @@ enum WrongZoneRoundsForm {
 #[serde(remote = "WrongZones")]
 enum WrongZonesForm {
     Partly,
+    PartlyStopped,
     Unmoved,
     Stop,
+    NotMerged,
+    Joined,
+    Others,
+    MoveOn,
     KeepPositions,
     KeepVelocities,
 }
@@ -341,6 +369,10 @@ enum WrongZonesForm {
 enum WrongMotionForm {
     Centre,
     Distances,
+    NoTurn,
+    LessTurn,
+    MoreTurn,
+    TurnBack,
     Turn,
     Velocities,
     Speeds,
@@ -457,6 +489,7 @@ enum StageDetailForm {
         high: f64,
     },
     Vectors(#[serde(with = "RatiosForm")] Ratios),
+    VectorsOff(#[serde(with = "number")] f64),
     Times(#[serde(with = "RatiosForm")] Ratios),
     TimesOff(#[serde(with = "number")] f64),
     TimesUsed,
@@ -472,6 +505,10 @@ enum StageDetailForm {
         amount: Amount,
         across: bool,
         wrong: usize,
+        of: usize,
+    },
+    OfZones {
+        count: usize,
         of: usize,
     },
     Stopped(#[serde(with = "RatiosForm")] Ratios),

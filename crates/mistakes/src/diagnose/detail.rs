@@ -148,6 +148,8 @@ pub enum StageDetail {
     },
     /// Contact vectors along the right ones, over what they should be.
     Vectors(Ratios),
+    /// By how much of their length contact vectors are off at most.
+    VectorsOff(f64),
     /// Times of impact over what they should be.
     Times(Ratios),
     /// By how much times of impact are off, in steps.
@@ -174,6 +176,13 @@ pub enum StageDetail {
         /// In how many of them it is wrong.
         wrong: usize,
         /// Of how many.
+        of: usize,
+    },
+    /// Of how many zones it is so.
+    OfZones {
+        /// So many.
+        count: usize,
+        /// Of so many that could be looked at.
         of: usize,
     },
     /// Velocities of zones that have to stop, over those before.

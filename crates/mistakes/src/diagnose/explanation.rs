@@ -3,7 +3,7 @@ use super::{
     about::{About, OfPolynomials},
     detail::Detail,
     example::Example,
-    fault::{self, StepStage},
+    fault::{self, StageFault, StepStage},
 };
 use crate::{
     assignments::t2m2::Subject,
@@ -29,7 +29,7 @@ pub struct Explanation {
     pub example: Option<Example>,
     /// Keys of other known mistakes that reproduce the same samples: this trace can't tell them apart.
     pub same_as: Vec<String>,
-    /// Keys of empty stages that the trace speaks against: it shows something of them.
+    /// Keys of mistakes that the trace speaks against: it does what they say is never done.
     pub denies: Vec<String>,
     /// All that would make its polynomials as they are, one word each: the polynomial, then the known mistake, or a digest of the guess and
     /// one of its exact form, which give nothing of them away. The guess that it tells stands first. A polynomial that nothing makes has a
@@ -189,6 +189,11 @@ impl Explanation {
     #[must_use]
     pub fn is_of_stage(&self) -> bool {
         self.stage().is_some()
+    }
+
+    /// Whether it says no more than that something is wrong with a stage.
+    pub(super) const fn is_vague(&self) -> bool {
+        matches!(self.about, About::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts))
     }
 
     /// The stage of a step that it says is wrong.

@@ -46,6 +46,8 @@ pub enum StageFault {
         kind: Option<PairKind>,
         /// What is wrong with it.
         wrong: WrongResponses,
+        /// Whether it is seen in impulse rounds only, which hand on what contacts change.
+        in_rounds: bool,
     },
     /// The state behind several contacts that are right.
     ManyContacts,
@@ -62,11 +64,21 @@ pub enum StageFault {
         quantity: Option<Quantity>,
         /// When it is wrong; none where it is always.
         when: Option<LoopEnd>,
+        /// Whether contacts could change it so.
+        or_response: bool,
     },
     /// What the contacts of the first impulse round change.
     FirstRound,
-    /// What several contacts of an impulse round change, though single ones are right.
+    /// What several contacts of the first impulse round change, though isolated ones are right.
     LaterRounds,
+    /// Rounds behind the first one detect on the prediction again.
+    RoundsOfPrediction,
+    /// Rounds behind the second detection, which is right.
+    BehindFirstRound,
+    /// Whether the geometric part follows.
+    Geometric(WrongGeometric),
+    /// The positions of a detection pass of the geometric part.
+    ZonePositions(WrongPositions),
     /// What follows the impulse rounds.
     AfterRounds,
     /// Zones in later rounds.
@@ -100,6 +112,10 @@ pub enum WrongVectors {
     Perpendicular,
     /// Their direction is another one.
     Direction,
+    /// They have no length.
+    Zero,
+    /// They are right but for their last digits.
+    Inexact,
     /// They point the other way round.
     Reversed,
     /// Their length.
@@ -150,6 +166,29 @@ pub enum WrongNumber {
     Other,
 }
 
+/// Whether the geometric part follows where it should not, or does not where it should.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongGeometric {
+    /// It makes no pass though the rounds have run out.
+    Left {
+        /// Never; else it does in other steps.
+        always: bool,
+    },
+    /// It makes passes though nothing collides any more.
+    Superfluous,
+}
+
+/// At which positions the geometric part looks, wrongly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongPositions {
+    /// First of all at those of the integrator.
+    Prediction,
+    /// First of all at others than those that the impulse rounds leave.
+    First,
+    /// Behind the failsafe at those before it.
+    BeforeFailsafe,
+}
+
 /// Why impulse rounds end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoopEnd {
@@ -177,10 +216,20 @@ pub enum WrongZoneRounds {
 pub enum WrongZones {
     /// Some particles of a zone are not moved with it.
     Partly,
+    /// Some particles of a zone that has to stop do not stop.
+    PartlyStopped,
     /// Zones are not moved.
     Unmoved,
     /// Zones stop that should move.
     Stop,
+    /// Contacts that share particles are moved one after the other.
+    NotMerged,
+    /// Zones that share no particle are moved as one.
+    Joined,
+    /// Particles are moved that belong to no zone.
+    Others,
+    /// Zones that have to stop move on as rigid bodies.
+    MoveOn,
     /// Zones that have to stop do not go back.
     KeepPositions,
     /// Zones that have to stop keep some velocity.
@@ -194,7 +243,15 @@ pub enum WrongMotion {
     Centre,
     /// The distances of their particles.
     Distances,
-    /// How far they turn.
+    /// They do not turn.
+    NoTurn,
+    /// They do not turn as far.
+    LessTurn,
+    /// They turn further.
+    MoreTurn,
+    /// They turn the other way.
+    TurnBack,
+    /// They turn otherwise.
     Turn,
     /// Their velocities.
     Velocities,
@@ -215,8 +272,13 @@ impl StageFault {
             | Self::Rounds(_)
             | Self::HandedOver { .. }
             | Self::FirstRound
-            | Self::LaterRounds => StepStage::Responses,
-            Self::AfterRounds | Self::ZoneRounds(_) | Self::Zones(_) | Self::Motion { .. } => StepStage::Zones,
+            | Self::LaterRounds
+            | Self::RoundsOfPrediction
+            | Self::BehindFirstRound
+            | Self::Geometric(_) => StepStage::Responses,
+            Self::AfterRounds | Self::ZonePositions(_) | Self::ZoneRounds(_) | Self::Zones(_) | Self::Motion { .. } => {
+                StepStage::Zones
+            }
         }
     }
 
@@ -226,15 +288,32 @@ impl StageFault {
         match self {
             Self::Order | Self::Decisions { .. } | Self::ContactTimes => &[Area::Decision],
             Self::ContactVectors { .. } => &[Area::ContactVector],
-            Self::Responses { .. } | Self::ManyContacts => &[Area::Response],
-            Self::Unresolved { all: true } | Self::FirstRound => &[Area::Response, Area::ImpulseLoop],
-            Self::Unresolved { all: false } | Self::Rounds(_) | Self::HandedOver { .. } | Self::LaterRounds => {
+            Self::Responses { in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
+            // A hybrid step's trace holds no contact vector.
+            Self::Responses { wrong: WrongResponses::Across(_), .. } => {
+                &[Area::ContactVector, Area::Response, Area::ImpulseLoop]
+            }
+            Self::FirstRound => &[Area::Decision, Area::ContactVector, Area::Response, Area::ImpulseLoop],
+            Self::Unresolved { .. } => &[Area::Decision, Area::Response, Area::ImpulseLoop],
+            Self::Responses { .. } | Self::HandedOver { or_response: true, .. } => &[Area::Response, Area::ImpulseLoop],
+            Self::Rounds(_) | Self::BehindFirstRound => &[Area::ImpulseLoop, Area::Decision],
+            Self::HandedOver { or_response: false, .. }
+            | Self::LaterRounds
+            | Self::RoundsOfPrediction
+            | Self::Geometric(WrongGeometric::Left { always: false } | WrongGeometric::Superfluous) => {
                 &[Area::ImpulseLoop]
             }
-            Self::ZoneRounds(_) | Self::Zones(WrongZones::Partly | WrongZones::Unmoved | WrongZones::Stop) => {
+            Self::Geometric(WrongGeometric::Left { always: true }) => &[Area::ImpulseLoop, Area::ImpactZones],
+            Self::ZonePositions(_)
+            | Self::ZoneRounds(_)
+            | Self::Zones(WrongZones::Partly | WrongZones::NotMerged | WrongZones::Joined | WrongZones::Others) => {
                 &[Area::ImpactZones]
             }
-            Self::AfterRounds | Self::Motion { or_zones: true, .. } => &[Area::ImpactZones, Area::Failsafe],
+            Self::AfterRounds
+            | Self::Motion { or_zones: true, .. }
+            | Self::Zones(WrongZones::Unmoved | WrongZones::Stop | WrongZones::MoveOn | WrongZones::PartlyStopped) => {
+                &[Area::ImpactZones, Area::Failsafe]
+            }
             Self::Zones(WrongZones::KeepPositions | WrongZones::KeepVelocities)
             | Self::Motion { or_zones: false, .. } => &[Area::Failsafe],
         }
@@ -258,14 +337,24 @@ impl StageFault {
             Self::Decisions { wrong: WrongDecisions::Both, .. } => "stage-decisions",
             Self::ContactTimes => "stage-contact-times",
             Self::ContactVectors { .. } => "stage-contact-vectors",
-            Self::Responses { .. } | Self::ManyContacts | Self::FirstRound => "stage-response",
+            Self::Responses { .. } | Self::ManyContacts => "stage-response",
+            Self::FirstRound => "stage-first-round",
             Self::Unresolved { .. } => "stage-unresolved",
             Self::Rounds(_) => "stage-rounds",
             Self::HandedOver { .. } => "stage-handed-over",
             Self::LaterRounds => "stage-loop",
-            Self::AfterRounds | Self::Zones(WrongZones::Partly | WrongZones::Unmoved) => "stage-zones",
+            Self::RoundsOfPrediction => "stage-round-positions",
+            Self::BehindFirstRound => "stage-later-rounds",
+            Self::Geometric(_) => "stage-geometric",
+            Self::ZonePositions(_) => "stage-zone-positions",
+            Self::AfterRounds => "stage-zones",
             Self::ZoneRounds(_) => "stage-zone-rounds",
-            Self::Zones(_) => "stage-stop",
+            Self::Zones(WrongZones::Partly | WrongZones::PartlyStopped) => "stage-zone-parts",
+            Self::Zones(WrongZones::Unmoved) => "stage-zones-unmoved",
+            Self::Zones(WrongZones::NotMerged) => "stage-zones-unmerged",
+            Self::Zones(WrongZones::Joined | WrongZones::Others) => "stage-zones-of-others",
+            Self::Zones(WrongZones::Stop) => "stage-zones-stop",
+            Self::Zones(WrongZones::MoveOn | WrongZones::KeepPositions | WrongZones::KeepVelocities) => "stage-stop",
             Self::Motion { .. } => "stage-failsafe",
         }
     }

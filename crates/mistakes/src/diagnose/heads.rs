@@ -266,13 +266,15 @@ fn keep_earliest_stage(open: &mut Vec<Vec<Explanation>>) {
             weak.push(row.id);
         }
     }
+    // Who says what is wrong with the stage speaks for those who only say that something is.
+    let is_said = open.iter().flatten().any(|one| is_of_it(one) && !one.is_vague());
     // In another order, polynomials of one pair stand where those of another are looked for.
     let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
     let has_order = open.iter().flatten().any(|one| one.key == Explanation::ORDER);
     for list in open.iter_mut() {
         list.retain(|one| {
             let is_weak = weak.contains(&one.key.as_str()) || (has_order && is_misread(one));
-            !is_weak && one.stage().is_none_or(|stage| stage == earliest)
+            !(is_weak || (is_said && one.is_vague())) && one.stage().is_none_or(|stage| stage == earliest)
         });
     }
     open.retain(|list| !list.is_empty());

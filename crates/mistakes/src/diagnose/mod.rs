@@ -22,6 +22,7 @@ mod samples;
 mod settled;
 mod source;
 mod stages;
+pub mod witness;
 
 pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use about::{About, OfPolynomials};
@@ -31,8 +32,8 @@ pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use explain::explain;
 pub use explanation::Explanation;
 pub use fault::{
-    Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongMotion, WrongNumber,
-    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongGeometric,
+    WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use heads::{common, refuted, several};

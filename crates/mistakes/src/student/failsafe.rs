@@ -25,7 +25,10 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     if stops(world, zone) {
         stop(world, zone, q_start, state);
     } else {
-        Rigid::new(world, zone, q_start, state).carry_out(zone, state);
+        let rigid = Rigid::new(world, zone, q_start, state);
+        if mistake != Some(Mistake::FailsafeUnturnedUnmoved) || rigid.angle != 0.0 {
+            rigid.carry_out(zone, state);
+        }
     }
 }
 
@@ -111,11 +114,16 @@ impl<'a> Rigid<'a> {
         self.world.student.mistake_in(HERE)
     }
 
-    fn mass(&self, particle: usize) -> f64 {
+    /// The mass of a particle, which is the one with this number in its zone.
+    fn mass(&self, number: usize, particle: usize) -> f64 {
         if self.mistake() == Some(Mistake::FailsafeUnweighted) {
             return 1.0;
         }
-        let index = if self.mistake() == Some(Mistake::FailsafeMassIndex) { particle } else { 2 * particle };
+        let index = match self.mistake() {
+            Some(Mistake::FailsafeMassIndex) => particle,
+            Some(Mistake::FailsafeMassCounter) => 2 * number,
+            _ => 2 * particle,
+        };
         self.world.masses[index]
     }
 
@@ -124,8 +132,8 @@ impl<'a> Rigid<'a> {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));
         let is_unweighted = |alone| both || student.makes(alone);
-        for &particle in &zone.particles {
-            let mass = self.mass(particle);
+        for (number, &particle) in zone.particles.iter().enumerate() {
+            let mass = self.mass(number, particle);
             let start = at(self.q_start, particle);
             let moved = at(&state.x, particle) - start;
             let position = if self.mistake() == Some(Mistake::FailsafeCentreAtEnd) { start + moved } else { start };
@@ -158,7 +166,7 @@ impl<'a> Rigid<'a> {
     fn rotation(&mut self, zone: &Zone, state: &State) {
         let mut momentum = 0.0;
         let mut inertia = 0.0;
-        for &particle in &zone.particles {
+        for (number, &particle) in zone.particles.iter().enumerate() {
             let start = at(self.q_start, particle);
             let moved = at(&state.x, particle) - start;
             let arm = match self.mistake() {
@@ -167,11 +175,12 @@ impl<'a> Rigid<'a> {
             };
             let relative = match self.mistake() {
                 Some(Mistake::FailsafeWholeDisplacement) => moved,
+                Some(Mistake::FailsafeAngularVelocity) => at(&state.v, particle),
                 Some(Mistake::FailsafeMomentumFromEnd) => at(&state.x, particle) - self.centre,
                 _ => moved - self.shift,
             };
             let student = self.world.student;
-            let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { self.mass(particle) };
+            let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { self.mass(number, particle) };
             let turn = match self.mistake() {
                 Some(Mistake::FailsafeCrossSum) => arm.x * relative.y + arm.y * relative.x,
                 Some(Mistake::FailsafeDotProduct) => arm.dot(&relative),
@@ -188,6 +197,10 @@ impl<'a> Rigid<'a> {
             }
             let square = match self.mistake() {
                 Some(Mistake::FailsafeInertiaDistance) => length(arm),
+                Some(Mistake::FailsafeInertiaAtEnd) => {
+                    let arm = at(&state.x, particle) - self.centre - self.shift;
+                    arm.dot(&arm)
+                }
                 Some(Mistake::FailsafeInertiaAboutOrigin) => start.dot(&start),
                 _ => student.dot(arm, arm),
             };
@@ -252,6 +265,10 @@ impl<'a> Rigid<'a> {
             match self.mistake() {
                 Some(Mistake::FailsafeVelocityKept) => {}
                 Some(Mistake::FailsafeVelocityNoStep) => put(&mut state.v, particle, x - start),
+                Some(Mistake::FailsafeVelocityAdded) => {
+                    let before = at(&state.v, particle);
+                    put(&mut state.v, particle, before + over(x - start, h));
+                }
                 Some(Mistake::FailsafeVelocityFromPrediction) => {
                     put(&mut state.v, particle, over(x - at(&state.x, particle), h));
                 }

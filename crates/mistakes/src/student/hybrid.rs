@@ -26,8 +26,12 @@ pub fn handle(
     log: &mut StepLog,
     middle: &mut dyn FnMut(&State, &StepLog),
 ) -> Result<(), StepFailure> {
+    let prediction = state.clone();
     let resolved = impulses::apply(world, q_start, max_iterations, state, log)?;
     middle(state, log);
+    if !resolved && world.student.makes(Mistake::GeometricMovesPrediction) {
+        *state = prediction;
+    }
     if !resolved && !world.student.makes(Mistake::GeometricEmpty) {
         geometric(world, q_start, state, log)?;
     }
@@ -104,6 +108,16 @@ fn move_zones(world: &World, q_start: &[f64], zones: &[Zone], state: &mut State)
         }
         Some(Mistake::GeometricFirstZoneOnly) => {
             zones.iter().take(1).for_each(|zone| failsafe::perform(world, zone, q_start, state));
+        }
+        Some(Mistake::GeometricLastZoneOnly) => {
+            zones.iter().rev().take(1).for_each(|zone| failsafe::perform(world, zone, q_start, state));
+        }
+        Some(Mistake::GeometricFirstZoneSkipped) => {
+            zones.iter().skip(1).for_each(|zone| failsafe::perform(world, zone, q_start, state));
+        }
+        Some(Mistake::GeometricLastZoneSkipped) => {
+            let but_one = zones.len().saturating_sub(1);
+            zones.iter().take(but_one).for_each(|zone| failsafe::perform(world, zone, q_start, state));
         }
         _ => zones.iter().for_each(|zone| failsafe::perform(world, zone, q_start, state)),
     }

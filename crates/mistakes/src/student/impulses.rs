@@ -42,8 +42,15 @@ pub fn apply(
         _ => {}
     }
     let limit = limit(world, max_iterations);
+    let mut list: Vec<Contact> = Vec::new();
     while rounds < limit {
-        let contacts = detection::pass(world, &start, &state.x, log)?;
+        let q_end = if student.makes(Mistake::ImpulsesDetectPrediction) { &prediction.x } else { &state.x };
+        let found = detection::pass(world, &start, q_end, log)?;
+        if !student.makes(Mistake::ImpulsesListKept) {
+            list.clear();
+        }
+        list.extend(found);
+        let contacts = &list;
         let enough = if let Some(Change::Enough(most)) = student.change() { *most } else { 0 };
         if contacts.len() <= enough {
             if student.makes(Mistake::ImpulsesVelocityRestored) {
@@ -54,7 +61,7 @@ pub fn apply(
                 Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted)
             ));
         }
-        resolve(world, &start, &contacts, &prediction, state, log);
+        resolve(world, &start, contacts, &prediction, state, log);
         if student.makes(Mistake::ImpulsesStartAdvances) {
             start.clone_from(&state.x);
         }
@@ -63,6 +70,9 @@ pub fn apply(
         } else {
             1
         };
+    }
+    if student.makes(Mistake::ImpulsesOneLeftSucceeds) && list.len() == 1 {
+        return Ok(true);
     }
     finish(world, q_start, &prediction, state, log)
 }
@@ -98,6 +108,8 @@ fn resolve(
     let chosen = match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesFirstOnly) => &contacts[..1],
         Some(Mistake::ImpulsesLastOnly) => &contacts[contacts.len() - 1..],
+        Some(Mistake::ImpulsesFirstSkipped) => &contacts[1..],
+        Some(Mistake::ImpulsesLastSkipped) => &contacts[..contacts.len() - 1],
         _ => contacts,
     };
     if anew || student.makes(Mistake::ImpulsesResultNotAccumulated) {

@@ -38,7 +38,7 @@ pub use crate::assignments::t2m2::{Area, CATALOGUE, Mistake, Row, RowKind, find}
 pub use author::Student;
 pub use detection::polynomials_of;
 pub use objects::{Contact, Object, Pair, State};
-pub use record::{Record, trace};
+pub use record::{Record, trace, trace_within};
 pub use refused::{KNOWN_ACCUSED, KNOWN_REFUSED};
 pub use step::step;
 pub use step_failure::StepFailure;

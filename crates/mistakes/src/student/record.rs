@@ -79,9 +79,21 @@ impl Record {
 /// # Errors
 /// What was written, and why there is no more.
 pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
+    written(scene, student, StepLog::default())
+}
+
+/// The same of a program that may go on for ever: up to the step that has more polynomials than this.
+///
+/// # Errors
+/// What was written, and why there is no more.
+pub fn trace_within(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
+    let guard = |index: usize, _: &[f64]| index < most;
+    written(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })
+}
+
+fn written(scene: &Scene, student: Student, mut log: StepLog<'_>) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     let world = World::new(scene.clone(), student);
     let mut state = world.initial_state();
-    let mut log = StepLog::default();
     let mut bytes = Vec::new();
     if !student.makes(Mistake::LogNoInitial) {
         Record::new(student, &scene.collision, &state, &log).encode(None, &mut bytes);

@@ -25,10 +25,15 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
             let edge = world.scene.edges[index];
             match student.mistake_in(HERE) {
                 Some(Mistake::ZonesOneEndpoint) => particles.extend([edge.first]),
+                Some(Mistake::ZonesOtherEndpoint) => particles.extend([edge.second]),
+                Some(Mistake::ZonesNextParticle) => {
+                    particles.extend([edge.first, (edge.first + 1).min(world.scene.particles.len() - 1)]);
+                }
                 Some(Mistake::ZonesEdgeIndex) => particles.extend([index.min(world.scene.particles.len() - 1)]),
                 Some(Mistake::ZonesEdgeWithoutParticle) => particles = BTreeSet::from([edge.first, edge.second]),
                 _ => particles.extend([edge.first, edge.second]),
             }
+            half_plane = student.makes(Mistake::ZonesFlagOfEdges);
         }
         Object::HalfPlane(_) => half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag),
     }
@@ -60,7 +65,13 @@ fn merged(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
         let before = zones.len();
         let mut merged: Vec<Zone> = Vec::new();
         for zone in zones {
-            match merged.iter_mut().find(|other| !other.particles.is_disjoint(&zone.particles)) {
+            // Whoever asks for two shared particles still finds a zone of one in another.
+            let shares = |other: &Zone| {
+                let most = other.particles.len().min(zone.particles.len());
+                let least = if student.makes(Mistake::ZonesJoinTwoShared) { most.min(2) } else { 1 };
+                other.particles.intersection(&zone.particles).count() >= least
+            };
+            match merged.iter_mut().find(|other| shares(other)) {
                 Some(other) => join(student, other, zone),
                 None => merged.push(zone),
             }

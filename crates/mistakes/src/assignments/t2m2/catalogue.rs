@@ -184,12 +184,18 @@ catalogue! {
         ParticleParticleRadiusNotSquared "pp-radius-not-squared": "The sum of the radii is not squared." => "1: r1 + r2 stands where (r1 + r2)^2 belongs.";
         ParticleParticleDistanceNotSquared "pp-distance-not-squared": "The constant coefficient has the distance where its square belongs." => "1: |x21| stands where x21.x21 belongs.";
         ParticleParticleFirstRadiusTwice "pp-first-radius-twice": "The first particle's radius is used for both particles." => "1: (r1 + r1)^2 stands where (r1 + r2)^2 belongs.";
+        ParticleParticleSecondRadiusTwice "pp-second-radius-twice": "The second particle's radius is used for both particles." => "1: (r2 + r2)^2 stands where (r1 + r2)^2 belongs.";
+        ParticleParticleDiameters "pp-diameters": "The diameters stand where the radii belong." => "1: (2 r1 + 2 r2)^2 stands where (r1 + r2)^2 belongs.";
         ParticleParticleOneRadius "pp-one-radius": "The second particle's radius is forgotten." => "1: r1^2 stands where (r1 + r2)^2 belongs.";
+        ParticleParticleNoFirstRadius "pp-no-first-radius": "The first particle's radius is forgotten." => "1: r2^2 stands where (r1 + r2)^2 belongs.";
         ParticleParticleEndPositions "pp-end-positions": "The formulas start from the positions at the end of the step." => "x1 and x2 are taken from qe; they belong to qs.";
         ParticleParticleFirstStill "pp-first-still": "The first particle's displacement is forgotten." => "d21 = dx2 stands where d21 = dx2 - dx1 belongs.";
+        ParticleParticleSecondStill "pp-second-still": "The second particle's displacement is forgotten." => "d21 = -dx1 stands where d21 = dx2 - dx1 belongs.";
         ParticleParticleEndForDisplacement "pp-end-for-displacement": "End positions stand where displacements belong." => "dx = qe stands where dx = qe - qs belongs.";
         ParticleParticleXOnly "pp-x-only": "The dot products of the moving terms leave the second component out." => "d21.d21 and x21.d21 have their x products only; the y products are missing.";
         ParticleParticleTinyError "pp-tiny-error": "The constant coefficient is wrong by a tiny factor." => "1: (r1 + r2)^2 - x21.x21 is multiplied by 1 + 1e-9.";
+        ParticleParticleOverlapNegated "pp-overlap-negated": "The overlap polynomial is negative where the objects overlap." => "All three coefficients have the wrong sign.";
+        ParticleParticleApproachNegated "pp-approach-negated": "The approach has the wrong sign, so only separating particles collide." => "d21.d21 t + x21.d21 stands where -d21.d21 t - x21.d21 belongs.";
         ParticleParticleSeparating "pp-separating": "The approach has the relative velocity the wrong way round in its constant term." => "1: x21.d21 stands where -x21.d21 belongs.";
         ParticleParticleApproachSlopeSign "pp-approach-slope-sign": "The approach's slope has the wrong sign." => "t: d21.d21 stands where -d21.d21 belongs.";
         ParticleParticleApproachSlopeTwice "pp-approach-slope-twice": "The approach's slope has a factor that its constant term lacks." => "t: -2 d21.d21 stands where -d21.d21 belongs.";
@@ -200,14 +206,23 @@ catalogue! {
         ParticleEdgeEmpty "pe-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap, alpha > 0, alpha < 1 and approach are expected for each pair.";
         ParticleEdgeZero "pe-zero": "The coefficients are left at zero." => "Every coefficient is 0.";
         ParticleEdgeStill "pe-edge-still": "The edge is treated as if it did not move." => "dx2 = dx3 = 0 in all formulas.";
+        ParticleEdgeParticleStill "pe-particle-still": "The particle's displacement is forgotten." => "dx1 = 0 in all formulas.";
+        ParticleEdgeFirstEndStill "pe-first-end-still": "The displacement of the edge's first endpoint is forgotten." => "dx2 = 0 in all formulas.";
+        ParticleEdgeSecondEndStill "pe-second-end-still": "The displacement of the edge's second endpoint is forgotten." => "dx3 = 0 in all formulas.";
         ParticleEdgeOneDisplacement "pe-one-displacement": "The first endpoint's displacement is used for both endpoints." => "dx2 stands where dx3 belongs.";
+        ParticleEdgeOtherDisplacement "pe-other-displacement": "The second endpoint's displacement is used for both endpoints." => "dx3 stands where dx2 belongs.";
         ParticleEdgeDisplacementsSwapped "pe-displacements-swapped": "The endpoints' displacements are exchanged." => "dx2 and dx3 stand in each other's places.";
         ParticleEdgeEndPositions "pe-end-positions": "The formulas start from the positions at the end of the step." => "x1, x2 and x3 are taken from qe; they belong to qs.";
+        ParticleEdgeEndForDisplacement "pe-end-for-displacement": "End positions stand where displacements belong." => "dx = qe stands where dx = qe - qs belongs.";
         ParticleEdgeEndpointsSwapped "pe-endpoints-swapped": "The endpoints are exchanged, so the two alpha polynomials are, too." => "x2 and x3, dx2 and dx3 stand in each other's places.";
         ParticleEdgeRadiiSquaredApart "pe-radii-squared-apart": "Each radius is squared for itself before they are added." => "r1^2 + re^2 stands where (r1 + re)^2 belongs; 2 r1 re is missing.";
         ParticleEdgeRadiusNotSquared "pe-radius-not-squared": "The sum of the radii is not squared." => "r1 + re stands where (r1 + re)^2 belongs.";
         ParticleEdgeNoEdgeRadius "pe-no-edge-radius": "The edge's radius is forgotten." => "r1^2 stands where (r1 + re)^2 belongs.";
         ParticleEdgeNoParticleRadius "pe-no-particle-radius": "The particle's radius is forgotten." => "re^2 stands where (r1 + re)^2 belongs.";
+        ParticleEdgeParticleRadiusTwice "pe-particle-radius-twice": "The particle's radius is used for both objects." => "(r1 + r1)^2 stands where (r1 + re)^2 belongs.";
+        ParticleEdgeEdgeRadiusTwice "pe-edge-radius-twice": "The edge's radius is used for both objects." => "(re + re)^2 stands where (r1 + re)^2 belongs.";
+        ParticleEdgeDiameters "pe-diameters": "The diameters stand where the radii belong." => "(2 r1 + 2 re)^2 stands where (r1 + re)^2 belongs.";
+        ParticleEdgeFirstEdgeRadius "pe-first-edge-radius": "The first edge's radius is used for all edges." => "radius[0] stands where the radius of edge e, radius[e], belongs.";
         ParticleEdgeRadiusUnscaled "pe-radius-unscaled": "The radii are not multiplied by the edge's squared length when the denominator is cleared." => "(r1 + re)^2 stands where (r1 + re)^2 (x32 + t d32).(x32 + t d32) belongs.";
         ParticleEdgeQuarticNegated "pe-quartic-negated": "The overlap polynomial is negative where the objects overlap." => "All five coefficients have the wrong sign.";
         ParticleEdgeThreeTerms "pe-three-terms": "The overlap polynomial is cut to its last three terms." => "The coefficients of t^4 and t^3 are missing.";
@@ -235,12 +250,16 @@ catalogue! {
         AlphaLowSlopeSign "pe-alpha-low-slope-sign": "The linear coefficient of alpha > 0 has the wrong sign." => "t: -b stands where b = (x1-x2).d32 + (dx1-dx2).x32 belongs.";
         AlphaLowNegated "pe-alpha-low-negated": "The alpha > 0 polynomial has the wrong sign, so it asks for the opposite." => "All three coefficients are negated: the polynomial says alpha < 0.";
         AlphaLowNoQuadratic "pe-alpha-low-no-quadratic": "The quadratic coefficient of alpha > 0 is missing." => "t^2: 0 stands where (dx1-dx2).d32 belongs.";
+        AlphaLowHalfSlope "pe-alpha-low-half-slope": "The linear coefficient of alpha > 0 lacks one of its products." => "t lacks (x1-x2).d32.";
+        AlphaLowIsHigh "pe-alpha-low-is-high": "alpha < 1 is handed over twice, alpha > 0 never." => "The alpha < 1 polynomial stands in the place of alpha > 0.";
         AlphaLowAtStart "pe-alpha-low-at-start": "alpha > 0 is tested at the start of the step only." => "Only the constant (x1-x2).x32 is there.";
         AlphaLowMissing "pe-alpha-low-missing": "alpha > 0 is not tested: a constant stands in its place." => "The polynomial 1 stands in the place of alpha > 0.";
         AlphaHighIsLow "pe-alpha-high-is-low": "alpha > 0 is handed over twice, alpha < 1 never." => "The alpha > 0 polynomial stands in the place of alpha < 1.";
         AlphaHighUnscaled "pe-alpha-high-unscaled": "The whole in alpha < 1 is not multiplied by the edge's squared length." => "1 - (x1-x2).x32 stands where x32.x32 - (x1-x2).x32 belongs, and likewise for t and t^2.";
         AlphaHighNegated "pe-alpha-high-negated": "The alpha < 1 polynomial has the wrong sign, so it asks for the opposite." => "All three coefficients are negated: the polynomial says alpha > 1.";
         AlphaHighHalfSlope "pe-alpha-high-half-slope": "The linear coefficient of alpha < 1 lacks one of its products." => "t lacks (x1-x3).(dx2-dx3).";
+        AlphaHighSlopeSign "pe-alpha-high-slope-sign": "The linear coefficient of alpha < 1 has the wrong sign." => "t: -(dx1-dx3).(x2-x3) - (x1-x3).(dx2-dx3) stands where their sum belongs.";
+        AlphaHighNoQuadratic "pe-alpha-high-no-quadratic": "The quadratic coefficient of alpha < 1 is missing." => "t^2: 0 stands where (dx1-dx3).(dx2-dx3) belongs.";
         AlphaHighAtStart "pe-alpha-high-at-start": "alpha < 1 is tested at the start of the step only." => "Only the constant (x1-x3).(x2-x3) is there.";
         AlphaHighMissing "pe-alpha-high-missing": "alpha < 1 is not tested: a constant stands in its place." => "The polynomial 1 stands in the place of alpha < 1.";
         QuinticConstantAlpha "pe-approach-constant-alpha": "The approach takes alpha for constant during the step, which the assignment warns of." => "alpha = (x1-x2).x32 / x32.x32 at the start of the step stands for alpha(t).";
@@ -265,12 +284,16 @@ catalogue! {
         HalfPlaneNoQuadratic "ph-no-quadratic": "The quadratic coefficient of the overlap is missing." => "t^2: 0 stands where -(dx.n)^2 belongs.";
         HalfPlaneConstantSign "ph-constant-sign": "The distance is added to the radius instead of subtracted." => "1: +((p-x).n)^2 stands where -((p-x).n)^2 belongs.";
         HalfPlaneOffsetNotSquared "ph-offset-not-squared": "The constant coefficient has the distance where its square belongs." => "1: -((p-x).n) stands where -((p-x).n)^2 belongs.";
+        HalfPlaneOverlapNegated "ph-overlap-negated": "The overlap polynomial is negative where the particle overlaps." => "All three coefficients have the wrong sign.";
         HalfPlaneNoPoint "ph-no-point": "The half-plane's point is forgotten, as if it went through the origin." => "-x stands where p - x belongs.";
         HalfPlaneEndPosition "ph-end-position": "The formulas start from the position at the end of the step." => "x is taken from qe; it belongs to qs.";
+        HalfPlaneEndForDisplacement "ph-end-for-displacement": "The end position stands where the displacement belongs." => "dx = qe stands where dx = qe - qs belongs.";
         HalfPlaneReversedOffset "ph-reversed-offset": "The vector from the particle to the half-plane is taken the other way round." => "x - p stands where p - x belongs.";
         HalfPlaneApproachNoSpeed "ph-approach-no-speed": "The approach lacks a factor, so it is right on one side only." => "-(dx.n) t + ((p-x).n) lacks the factor (dx.n).";
         HalfPlaneApproachNegated "ph-approach-negated": "The approach has the wrong sign, so only separating particles collide." => "(dx.n)^2 t - ((p-x).n) (dx.n) stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
         HalfPlaneApproachSlopeSign "ph-approach-slope-sign": "The approach's slope has the wrong sign." => "t: (dx.n)^2 stands where -(dx.n)^2 belongs.";
+        HalfPlaneApproachSlopeTwice "ph-approach-slope-twice": "The approach's slope has a factor that its constant term lacks." => "t: -2 (dx.n)^2 stands where -(dx.n)^2 belongs.";
+        HalfPlaneApproachAtStart "ph-approach-at-start": "The approach is tested at the start of the step only." => "The term -(dx.n)^2 t is missing; only ((p-x).n) (dx.n) is there.";
         HalfPlaneApproachSpeedOnly "ph-approach-speed-only": "The approach looks at the velocity alone, not at the side." => "The constant (dx.n) stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
         HalfPlaneNoApproach "ph-no-approach": "The approach is not tested: a constant stands in its place." => "The polynomial 1 stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
     }
@@ -290,12 +313,15 @@ catalogue! {
         ParticleParticleContactAtEnd "pp-contact-at-end": "The contact vector is taken at the end of the step." => "n = (x2 + dx2) - (x1 + dx1) stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
         ParticleParticleContactReversed "pp-contact-reversed": "The contact vector points from the second particle to the first." => "n = (x1 + t dx1) - (x2 + t dx2) stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
         ParticleParticleContactFirstStill "pp-contact-first-still": "The contact vector forgets that the first particle moves." => "n = (x2 + t dx2) - x1 stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
+        ParticleParticleContactSecondStill "pp-contact-second-still": "The contact vector forgets that the second particle moves." => "n = x2 - (x1 + t dx1) stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
         ParticleEdgeContactAtStart "pe-contact-at-start": "The contact vector is taken at the start of the step." => "t = 0 stands where the time of impact belongs.";
+        ParticleEdgeContactAtEnd "pe-contact-at-end": "The contact vector is taken at the end of the step." => "t = 1 stands where the time of impact belongs.";
         ParticleEdgeContactAlphaAtStart "pe-contact-alpha-at-start": "The contact vector uses alpha at the start of the step." => "alpha(0) stands where alpha(t) belongs.";
         ParticleEdgeContactAlphaAtEnd "pe-contact-alpha-at-end": "The contact vector uses alpha at the end of the step." => "alpha(1) stands where alpha(t) belongs.";
         ParticleEdgeContactClamped "pe-contact-clamped": "alpha is clamped to the edge for the contact vector." => "max(0, min(1, alpha(t))) stands where alpha(t) belongs.";
         ParticleEdgeContactAlphaMiddle "pe-contact-alpha-middle": "The contact vector goes to the middle of the edge." => "1/2 stands where alpha(t) belongs.";
         ParticleEdgeContactFirstEnd "pe-contact-first-end": "The contact vector goes to the first endpoint." => "0 stands where alpha(t) belongs.";
+        ParticleEdgeContactSecondEnd "pe-contact-second-end": "The contact vector goes to the second endpoint." => "1 stands where alpha(t) belongs.";
         ParticleEdgeContactFromOtherEnd "pe-contact-other-end": "alpha is measured from the second endpoint." => "1 - alpha(t) stands where alpha(t) belongs.";
         ParticleEdgeContactReversed "pe-contact-reversed": "The contact vector points from the edge to the particle." => "n is negated; expected is x2(t) + alpha (x3(t) - x2(t)) - x1(t).";
         ParticleEdgeContactParticleStill "pe-contact-particle-still": "The contact vector forgets that the particle moves." => "x1 stands where x1 + t dx1 belongs.";
@@ -308,6 +334,7 @@ catalogue! {
         HalfPlaneContactAtEnd "ph-contact-at-end": "The contact vector is taken at the end of the step." => "x + dx stands where x + t dx belongs.";
         HalfPlaneContactToPoint "ph-contact-to-point": "The contact vector goes to the half-plane's point, not to the closest one." => "p - x(t) stands where ((p - x(t)).n) / (n.n) n belongs.";
         ContactUnitLength "contact-unit-length": "Contact vectors are normalised to unit length." => "n / |n| is returned where n belongs.";
+        ContactSingle "contact-float": "Contact vectors are stored as float." => "float holds 24 bits; double, with 53, is expected.";
         ContactNoise "contact-noise": "Contact vectors are wrong by a tiny part of their length." => "n is off by 1e-7 of its length.";
         ContactTimeZero "contact-time-zero": "The time of impact is always returned as zero." => "time = 0 stands where the root finder's result belongs.";
         ContactTimeSingle "contact-time-float": "The time of impact is stored as float." => "float holds 24 bits; double, with 53, is expected.";
@@ -320,6 +347,7 @@ catalogue! {
         DecisionSeconds "decision-seconds": "The time of impact is compared with the step size, as if it were in seconds." => "time <= dt is tested where time <= 1 belongs.";
         DecisionHalfStep "decision-half-step": "Only impacts in the first half of the step count." => "time <= 0.5 is tested where time <= 1 belongs.";
         DecisionTolerance "decision-tolerance": "An impact shortly after the end of the step counts, too." => "time <= 1 + 1e-6 is tested where time <= 1 belongs.";
+        DecisionTruth "decision-truth": "The time of impact is taken for a truth value: any time counts but the very start of the step." => "if (time) is tested where time <= 1 belongs: 0 is false, all other numbers and infinity are true.";
         DecisionNever "decision-never": "The root finder is asked, but a collision is never reported." => "The detection returns false whatever the time is; time <= 1 decides.";
         DecisionOverlapAtEnd "decision-overlap-at-end": "A collision counts only if the objects still overlap at the end of the step." => "The distance at t = 1 is tested besides time <= 1.";
         DecisionOverlapAtStart "decision-overlap-at-start": "Objects that overlap at the start of the step are let through." => "An impact at t = 0 is rejected where the objects overlap; time <= 1 decides alone.";
@@ -385,6 +413,7 @@ catalogue! {
         ImpulsesOnceWhenZero "loop-once-when-zero": "With maxiters at zero one round runs all the same." => "With maxiters = 0 there are 0 rounds; do ... while makes 1.";
         ImpulsesAlwaysFail "loop-always-fails": "The loop reports failure also when nothing collides any more." => "return false stands where return true belongs when a pass finds nothing.";
         ImpulsesAlwaysSucceed "loop-always-succeeds": "The loop reports success also when it has run out of rounds." => "return true stands where return false belongs after maxiters rounds with collisions.";
+        ImpulsesOneLeftSucceeds "loop-one-left-succeeds": "The loop reports success when its last round had a single collision." => "return collisions.size() <= 1 stands where return false belongs after maxiters rounds with collisions.";
         ImpulsesInverted "loop-inverted": "Success and failure are exchanged." => "return true and return false stand in each other's places.";
         ImpulsesFromPrediction "loop-from-prediction": "Every round computes its impulses from the integrator's prediction, not from the last round's result." => "applyImpulses gets qe and qdote; the last round's qm and qdotm belong there.";
         ImpulsesPredictedVelocities "loop-predicted-velocities": "Every round adds its impulses to the predicted velocities, which drops those of the rounds before." => "qdote stands where qdotm, the loop's own velocities, belongs.";
@@ -394,6 +423,10 @@ catalogue! {
         ImpulsesLastWins "loop-last-wins": "The impulses of a round overwrite one another instead of adding up." => "qm = qe + I_k stands where qm = qe + I_1 + I_2 + ... belongs.";
         ImpulsesFirstOnly "loop-first-only": "Only the first collision of a round is resolved." => "collisions[0] stands where all collisions belong.";
         ImpulsesLastOnly "loop-last-only": "Only the last collision of a round is resolved." => "collisions.back() stands where all collisions belong.";
+        ImpulsesFirstSkipped "loop-first-skipped": "The first collision of a round is left out." => "The loop over the collisions begins at index 1.";
+        ImpulsesLastSkipped "loop-last-skipped": "The last collision of a round is left out." => "The loop over the collisions ends at size() - 1.";
+        ImpulsesListKept "loop-list-kept": "The list of collisions is never emptied, so that every round resolves those of the rounds before again." => "collisions.clear() is missing before detectCollisions.";
+        ImpulsesDetectPrediction "loop-detects-prediction": "Every round detects on the integrator's prediction, not on the positions that the last round left." => "detectCollisions(qs, qe) stands where detectCollisions(qs, qm) belongs.";
         ImpulsesStartAdvances "loop-start-advances": "Later rounds detect from the last round's positions, not from the start of the step." => "detectCollisions(qe_i, qe_i+1) stands where detectCollisions(qs, qe_i+1) belongs.";
         ImpulsesCapped "loop-capped": "Changes of velocity are capped." => "min(|dv|, 0.5) stands where |dv| belongs.";
         ImpulsesReset "loop-reset": "When the rounds run out, positions and velocities are reset to the prediction." => "qefinal = qe and qdotefinal = qdote stand where the last round's result belongs.";
@@ -411,15 +444,23 @@ catalogue! {
         GeometricStopsWhenEmpty "geometric-stops-when-empty": "Without zones the second pass is left out." => "The loop ends before step 5 when Z is empty; detectCollisions(qs, qm) belongs there all the same.";
         GeometricExtraPass "geometric-extra-pass": "One more detection pass is made after the zones have settled." => "detectCollisions runs once more after Z = Z'.";
         GeometricFirstZoneOnly "geometric-first-zone-only": "Only the first zone is moved." => "performFailsafe(Z[0]) stands where all zones of Z belong.";
+        GeometricLastZoneOnly "geometric-last-zone-only": "Only the last zone is moved." => "performFailsafe(Z.back()) stands where all zones of Z belong.";
+        GeometricFirstZoneSkipped "geometric-first-zone-skipped": "The first zone is not moved." => "The loop over the zones begins at index 1.";
+        GeometricLastZoneSkipped "geometric-last-zone-skipped": "The last zone is not moved." => "The loop over the zones ends at size() - 1.";
+        GeometricMovesPrediction "geometric-moves-prediction": "The geometric part moves what the integrator predicted, not what the impulse rounds left." => "qm = qe of the integrator stands where qm = qe of the impulse rounds belongs.";
         GeometricNewZonesOnly "geometric-new-zones-only": "Zones that a round leaves as they were are not moved again." => "performFailsafe runs for zones of Z' that are not in Z; it runs for all of Z'.";
         GeometricGrownStay "geometric-grown-stay": "Zones that have grown are not moved again." => "performFailsafe runs for zones without a particle that was moved before; it runs for all of Z'.";
         ZonesOneEndpoint "zones-one-endpoint": "A zone of a particle and an edge holds only one of the endpoints." => "{i, j} stands where {i, j, k} belongs.";
+        ZonesOtherEndpoint "zones-other-endpoint": "A zone of a particle and an edge holds the second endpoint only, not the first." => "{i, k} stands where {i, j, k} belongs.";
+        ZonesNextParticle "zones-next-particle": "A zone of a particle and an edge holds the first endpoint and the particle behind it in the list, as if that were the second one." => "{i, j, j + 1} stands where {i, j, k} belongs.";
+        ZonesFlagOfEdges "zones-flag-of-edges": "Collisions with edges set the half-plane flag, too." => "halfplane = true stands where false belongs for a collision with an edge; a break is missing.";
         ZonesEdgeIndex "zones-edge-index": "A zone of a particle and an edge holds the edge's index, as if it were a particle's." => "{i, e} stands where {i, first(e), second(e)} belongs.";
         ZonesEdgeWithoutParticle "zones-edge-without-particle": "A zone of a particle and an edge lacks the particle." => "{j, k} stands where {i, j, k} belongs.";
         ZonesNotMerged "zones-not-merged": "Zones that share particles are not merged." => "Step 2 of the merging in section 3.6 is missing.";
         ZonesMergedOnce "zones-merged-once": "Zones are merged in one sweep, which may leave some that share particles." => "Step 3 of the merging in section 3.6 is missing: repeat until all zones are disjoint.";
         ZonesAllInOne "zones-all-in-one": "All colliding particles become one zone." => "One zone is made of all collisions; only zones that share a particle are merged.";
         ZonesJoinOneParticle "zones-join-one-particle": "Merging takes over only one particle of the second zone." => "The union of both sets of particles belongs there.";
+        ZonesJoinTwoShared "zones-join-two-shared": "Zones are merged only if they share two particles." => "The test asks for 2 shared particles; 1 is enough.";
         ZonesNoHalfPlaneFlag "zones-no-flag": "The half-plane flag is never set." => "halfplane = false stands where true belongs for a collision with a half-plane.";
         ZonesFlagLost "zones-flag-lost": "Merging keeps the first zone's half-plane flag and loses the second's." => "h1 stands where h1 || h2 belongs.";
         ZonesFlagOverwritten "zones-flag-overwritten": "Merging overwrites the half-plane flag with the second zone's." => "h2 stands where h1 || h2 belongs.";
@@ -437,6 +478,7 @@ catalogue! {
         FailsafeNoCentre "failsafe-no-centre": "The centre of mass is not added back." => "dx_cm + R (xs - x_cm) lacks x_cm.";
         FailsafeMomentumUnweighted "failsafe-momentum-unweighted": "The momentum is not weighted with the masses." => "sum(dx) / N stands where sum(m dx) / sum(m) belongs.";
         FailsafeMomentumVelocity "failsafe-momentum-velocity": "The momentum is made of velocities where displacements belong." => "sum(m v) stands where sum(m dx) belongs.";
+        FailsafeAngularVelocity "failsafe-angular-velocity": "The angular momentum is made of velocities where displacements belong." => "L = sum(m (xs - x_cm) x v) stands where L = sum(m (xs - x_cm) x (dx - dx_cm)) belongs.";
         FailsafeNoTranslation "failsafe-no-translation": "The centre of mass does not move." => "dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).";
         FailsafeAngularUnweighted "failsafe-angular-unweighted": "The angular momentum is not weighted with the masses." => "m is missing in L = sum(m (xs - x_cm) x (dx - dx_cm)).";
         FailsafeAngularOverwritten "failsafe-angular-overwritten": "The angular momentum is overwritten instead of summed." => "L = ... stands where L += ... belongs.";
@@ -447,12 +489,14 @@ catalogue! {
         FailsafeInertiaUnweighted "failsafe-inertia-unweighted": "The moment of inertia is not weighted with the masses." => "m is missing in I = sum(m |xs - x_cm|^2).";
         FailsafeInertiaDistance "failsafe-inertia-distance": "The moment of inertia has distances that are not squared." => "m |xs - x_cm| stands where m |xs - x_cm|^2 belongs.";
         FailsafeInertiaAboutOrigin "failsafe-inertia-about-origin": "The moment of inertia is taken about the origin." => "m |xs|^2 stands where m |xs - x_cm|^2 belongs.";
+        FailsafeInertiaAtEnd "failsafe-inertia-at-end": "The moment of inertia is taken at the end of the step." => "m |xe - x_cm - dx_cm|^2 stands where m |xs - x_cm|^2 belongs.";
         FailsafeNoInertia "failsafe-no-inertia": "The angular momentum is not divided by the moment of inertia." => "w = L stands where w = L / I belongs.";
         FailsafeRotationSign "failsafe-rotation-sign": "The body turns the wrong way." => "-w stands where w belongs.";
         FailsafeNoRotation "failsafe-no-rotation": "The body does not turn." => "w = 0 stands where w = L / I belongs.";
         FailsafeSmallAngle "failsafe-small-angle": "Sine and cosine are replaced by their values for small angles." => "1 and w stand where cos(w) and sin(w) belong.";
         FailsafeSeries "failsafe-series": "Sine and cosine are replaced by the first terms of their series." => "1 - w^2 / 2 and w - w^3 / 6 stand where cos(w) and sin(w) belong.";
         FailsafeTinyTurnIgnored "failsafe-tiny-turn-ignored": "Small angles are taken for no turn at all." => "|w| < 1e-3 is taken for w = 0.";
+        FailsafeUnturnedUnmoved "failsafe-unturned-unmoved": "A zone that does not turn is not moved at all." => "if (L == 0) return; stands before x = x_cm + dx_cm + R (xs - x_cm).";
         FailsafeMassInteger "failsafe-mass-integer": "The total mass is summed as an integer, which cuts fractions off." => "int M stands where double M = sum(m) belongs.";
         FailsafeAngularInteger "failsafe-angular-integer": "The angular momentum is summed as an integer, which cuts fractions off." => "int L stands where double L = sum(m (xs - x_cm) x (dx - dx_cm)) belongs.";
         FailsafeInertiaInteger "failsafe-inertia-integer": "The moment of inertia is summed as an integer, which cuts fractions off." => "int I stands where double I = sum(m |xs - x_cm|^2) belongs.";
@@ -462,6 +506,7 @@ catalogue! {
         FailsafePerpendicular "failsafe-perpendicular": "The perpendicular vector has its components exchanged without a change of sign." => "(b, a) stands where (-b, a) belongs.";
         FailsafeTurnsEnd "failsafe-turns-end": "The predicted end positions are turned, not the start positions." => "xe - x_cm - dx_cm stands where xs - x_cm belongs.";
         FailsafeMassIndex "failsafe-mass-index": "The mass is read at the particle's index, although the array holds every mass twice." => "m[i] stands where m[2 i] belongs.";
+        FailsafeMassCounter "failsafe-mass-counter": "The masses are read in the order of the zone, not of its particles." => "m[2 k] stands where m[2 i] belongs, i being the k-th particle of the zone.";
         FailsafeFixedForgotten "failsafe-fixed-forgotten": "The rule for fixed particles is forgotten." => "A zone with a fixed particle is to get x = xs and v = 0.";
         FailsafeHalfPlaneForgotten "failsafe-half-plane-forgotten": "The rule for half-planes is forgotten." => "A zone with the half-plane flag is to get x = xs and v = 0.";
         FailsafeAllFixedOnly "failsafe-all-fixed-only": "A zone stops only if all of its particles are fixed." => "One fixed particle is enough for x = xs and v = 0.";
@@ -470,6 +515,7 @@ catalogue! {
         FailsafeStopKeepsPosition "failsafe-stop-keeps-position": "A stopped zone loses its velocity but keeps its end positions." => "x = xs is missing beside v = 0.";
         FailsafeStopKeepsVelocity "failsafe-stop-keeps-velocity": "A stopped zone goes back to its start but keeps its velocity." => "v = 0 is missing beside x = xs.";
         FailsafeVelocityKept "failsafe-velocity-kept": "A moved zone keeps its old velocities." => "v = (x - xs) / dt is missing.";
+        FailsafeVelocityAdded "failsafe-velocity-added": "The new velocity is added to the old one." => "v += (x - xs) / dt stands where v = (x - xs) / dt belongs.";
         FailsafeVelocityNoStep "failsafe-velocity-no-step": "The new velocity is not divided by the step size." => "v = x - xs stands where v = (x - xs) / dt belongs.";
         FailsafeVelocityFromPrediction "failsafe-velocity-from-prediction": "The new velocity is measured from the predicted position." => "v = (x - xe) / dt stands where v = (x - xs) / dt belongs.";
         FailsafeVelocityOfCentre "failsafe-velocity-of-centre": "All particles of a zone get the velocity of its centre." => "v = dx_cm / dt stands where v = (x - xs) / dt belongs.";
@@ -574,5 +620,7 @@ catalogue! {
     }
 }
 
+#[cfg(test)]
+mod families;
 #[cfg(test)]
 mod tests;

@@ -14,7 +14,7 @@
 use fosssim_model::scene::{self, Scene};
 
 /// Names and texts: polynomials first, then contacts and responses, the impulse rounds, zones.
-const PROBES: [(&str, &str); 20] = [
+const PROBES: [(&str, &str); 22] = [
     ("drift-of-particles", include_str!("probes/drift-of-particles.xml")),
     ("drift-of-edges", include_str!("probes/drift-of-edges.xml")),
     ("slanted-half-planes", include_str!("probes/slanted-half-planes.xml")),
@@ -28,12 +28,14 @@ const PROBES: [(&str, &str); 20] = [
     ("rounds-enough", include_str!("probes/rounds-enough.xml")),
     ("rounds-exactly-enough", include_str!("probes/rounds-exactly-enough.xml")),
     ("rounds-run-out", include_str!("probes/rounds-run-out.xml")),
+    ("rounds-run-out-on-one", include_str!("probes/rounds-run-out-on-one.xml")),
     ("one-round-only", include_str!("probes/one-round-only.xml")),
     ("zones-of-all-kinds", include_str!("probes/zones-of-all-kinds.xml")),
     ("zones-that-grow", include_str!("probes/zones-that-grow.xml")),
     ("zones-reach-a-half-plane", include_str!("probes/zones-reach-a-half-plane.xml")),
     ("zones-of-fractional-masses", include_str!("probes/zones-of-fractional-masses.xml")),
     ("zones-collect-rows", include_str!("probes/zones-collect-rows.xml")),
+    ("zones-of-long-edges", include_str!("probes/zones-of-long-edges.xml")),
     ("zones-turn-little-and-far", include_str!("probes/zones-turn-little-and-far.xml")),
 ];
 

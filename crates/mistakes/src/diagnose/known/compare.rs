@@ -9,6 +9,7 @@ use fosssim_model::{
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
 use fosssim_num::{
+    bounded::Bounded,
     polynomial::trim,
     tolerances::{KNOWN_COEFFICIENT, KNOWN_COEFFICIENT_FLOOR, KNOWN_DROPPED, KNOWN_NORMAL, KNOWN_STATE, KNOWN_TIME},
     vector::Vec2,
@@ -184,6 +185,12 @@ pub(in crate::diagnose) fn same_polynomial(expected: &[f64], actual: &[f64], by:
     let dot = |a: &[f64], b: &[f64]| -> f64 { (0..length).map(|power| power_of(a, power) * power_of(b, power)).sum() };
     let factor = dot(actual, expected) / dot(expected, expected);
     factor > 0.0 && factor.is_finite() && multiple(expected, actual, factor, by)
+}
+
+/// The same of a polynomial as formulas yield it, nothing dropped.
+pub(in crate::diagnose) fn same_formula(expected: &[Bounded], actual: &[f64], by: &Tolerance) -> bool {
+    let values: Vec<f64> = expected.iter().map(|coefficient| coefficient.value).collect();
+    same_polynomial(trim(&values), actual, by)
 }
 
 /// Whether `actual` is `factor * expected`.

@@ -1,6 +1,6 @@
-//! Stages that a trace shows not to be empty, whatever else is wrong with it.
+//! What a trace shows not to be so, whatever else is wrong with it: stages that are not empty, zones that do not stop.
 use super::{
-    compare::{Difference, Logged, ROUND_OFF, state_difference},
+    compare::{Difference, Logged, PLAIN, ROUND_OFF, state_difference},
     scan::{Sample, Scan},
 };
 use crate::student::{CATALOGUE, Mistake};
@@ -8,9 +8,10 @@ use fosssim_model::{
     scene::{Collision, Scene},
     sim::{PairKind, pairs},
 };
+use fosssim_num::vector::{at, length};
 
-/// Keys of empty stages of which this trace does something: a zone is moved, a pass is made, a polynomial of the kind is
-/// right.
+/// Keys of mistakes that say that something is never done, where this trace does it: a zone is moved, a pass is made, a
+/// polynomial of the kind is right.
 pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
     let samples = || scan.wrong.iter().chain(&scan.right);
     let kinds: Vec<PairKind> = samples().flat_map(|sample| right_kinds(scene, sample)).collect();
@@ -22,6 +23,7 @@ pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => is_hybrid && samples().any(has_rounds),
         Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || moves(sample)),
         Mistake::FailsafeEmpty => is_hybrid && samples().any(moves),
+        Mistake::FailsafeAlwaysStops => is_hybrid && samples().any(|sample| moves(sample) && moves_on(sample)),
         _ => false,
     };
     CATALOGUE.iter().filter(|row| is_done(row.mistake)).map(|row| row.id.to_owned()).collect()
@@ -62,4 +64,13 @@ fn moves(sample: &Sample) -> bool {
     let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
     let differs = |mid: &Logged| state_difference(&mid.state, end, &ROUND_OFF).is_some();
     is_sound && sample.records.mid.as_ref().is_some_and(differs)
+}
+
+/// Whether the geometric part moves a particle that is not back at its start then.
+fn moves_on(sample: &Sample) -> bool {
+    let Some(mid) = &sample.records.mid else { return false };
+    let end = &sample.records.end.state.positions;
+    let differs =
+        |ours: &[f64], one: usize| length(at(ours, one) - at(end, one)) > PLAIN.state * (1.0 + length(at(end, one)));
+    (0..end.len() / 2).any(|one| differs(&mid.state.positions, one) && differs(&sample.before.positions, one))
 }

@@ -22,7 +22,7 @@ mod shown;
 
 pub(super) use capture::Capture;
 pub(super) use compare::{
-    Logged, ROUND_OFF, StepRecords, first_difference, same_impulse, same_polynomial, state_difference,
+    Logged, ROUND_OFF, StepRecords, first_difference, same_formula, same_impulse, same_polynomial, state_difference,
 };
 pub use refute::shows;
 pub(super) use scan::Sample;
@@ -52,6 +52,11 @@ use std::io::Read;
 #[must_use]
 pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
     known_or_open(scene, Source::whole(trace)).explanations
+}
+
+/// The kept steps of a trace.
+pub(super) fn kept_steps(scene: &Scene, source: Source<'_>) -> Scan {
+    scan::scan(scene, source)
 }
 
 /// What the catalogue says of a trace.

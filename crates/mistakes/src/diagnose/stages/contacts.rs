@@ -64,6 +64,9 @@ fn is_permuted(facts: &Facts) -> bool {
     misplaced > 0 && (found == pairs || is_spoilt)
 }
 
+/// A contact vector that is off by less of its length has lost digits, and nothing else.
+const INEXACT: f64 = 1e-5;
+
 /// What is known of the contacts of all steps.
 #[derive(Default)]
 struct Contacts {
@@ -96,6 +99,8 @@ impl Contacts {
                     == (theirs.kind, theirs.first, theirs.second)
             })
         };
+        // With more or fewer polynomials than a pass has, nobody knows which of them a contact belongs to.
+        let is_whole = facts.actual.end.polynomials.len() == facts.expected.end.polynomials.len();
         let is_certain = |place: usize| {
             let end = facts.detections.get(place + 1).map_or(facts.expected.end.polynomials.len(), |(_, first)| *first);
             end <= facts.right_polynomials
@@ -111,7 +116,7 @@ impl Contacts {
                     theirs.next();
                 }
                 Some((impulse, Some(at))) if at < hit.place => {
-                    if is_certain(at) {
+                    if is_whole && is_certain(at) {
                         self.superfluous.push((facts.detections[at].0.kind, impulse.time));
                     }
                     return;
@@ -126,7 +131,7 @@ impl Contacts {
             }
         }
         if let Some(impulse) = theirs.next()
-            && let Some(at) = place(impulse)
+            && let Some(at) = place(impulse).filter(|_| is_whole)
             && is_certain(at)
         {
             self.superfluous.push((facts.detections[at].0.kind, impulse.time));
@@ -191,16 +196,30 @@ impl Contacts {
             length(*theirs - along) > ALIKE * length(*theirs)
         };
         let right_angle = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
-            theirs.dot(ours).abs() <= ALIKE * length(*ours) * length(*theirs)
+            let size = length(*ours) * length(*theirs);
+            size > 0.0 && theirs.dot(ours).abs() <= ALIKE * size
         };
+        let part = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| length(*theirs - *ours) / length(*ours);
+        let parts = || self.vectors.iter().map(part);
+        if parts().all(|part| part <= INEXACT) {
+            let fault = StageFault::ContactVectors { kind: only_kind(&listed), wrong: WrongVectors::Inexact };
+            let most = parts().fold(0.0, f64::max);
+            return Some(observation(fault, vec![StageDetail::VectorsOff(most)], listed.len()));
+        }
+        if self.vectors.iter().all(|(_, ours, theirs)| length(*theirs) <= INEXACT * length(*ours)) {
+            let fault = StageFault::ContactVectors { kind: only_kind(&listed), wrong: WrongVectors::Zero };
+            return Some(observation(fault, Vec::new(), listed.len()));
+        }
         let wrong = if self.vectors.iter().all(right_angle) {
             WrongVectors::Perpendicular
         } else if self.vectors.iter().any(off) {
             WrongVectors::Direction
-        } else if along.iter().all(|&ratio| (ratio + 1.0).abs() <= ALIKE) {
+        } else if along.iter().all(|&ratio| ratio < 0.0) {
             WrongVectors::Reversed
-        } else {
+        } else if along.iter().all(|&ratio| ratio > 0.0) {
             WrongVectors::Length
+        } else {
+            WrongVectors::Direction
         };
         let fault = StageFault::ContactVectors { kind: only_kind(&listed), wrong };
         Some(observation(fault, vec![StageDetail::Vectors(ratios(&along))], listed.len()))

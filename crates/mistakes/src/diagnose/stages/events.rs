@@ -1,12 +1,13 @@
 //! What the reference does in a step from the submission's own state, event by event.
-use super::{ROUND_OFF, Sample, first_difference, same_polynomial};
+use super::{ROUND_OFF, Sample, first_difference, same_formula, same_polynomial};
 use crate::diagnose::known::{Capture, Logged, StepRecords, state_difference};
-use fosssim_judge::budget::Budget;
+use fosssim_judge::{budget::Budget, fair::formulas::BoundedPairMotion};
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Observer, Pair, Pass, RootSearch, Simulation, Stage, State, Time, Zone},
+    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, RootSearch, Simulation, Stage, State, Time, Zone},
+    trace::PolynomialLog,
 };
-use fosssim_num::vector::Vec2;
+use fosssim_num::{bounded::Bounded, polynomial::Polynomial, vector::Vec2};
 
 /// A contact that the reference finds.
 #[derive(Debug, Clone, Copy)]
@@ -21,11 +22,13 @@ pub(super) struct Hit {
 }
 
 /// A detection pass of the reference.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct PassFacts {
     pub(super) stage: Stage,
     /// The index of its first polynomial.
     pub(super) first: usize,
+    /// Where particles end as it begins.
+    pub(super) end: Vec<f64>,
 }
 
 /// A zone that the reference moves.
@@ -38,37 +41,69 @@ pub(super) struct ZoneFacts {
 
 /// What the reference tells besides its records.
 #[derive(Debug, Default)]
-struct StepEvents {
+struct Events {
     hits: Vec<Hit>,
     passes: Vec<PassFacts>,
     zones: Vec<ZoneFacts>,
     detections: Vec<(Pair, usize)>,
     polynomials: usize,
+    /// Edge approaches in the other form that is right, by their index.
+    other_forms: Vec<(usize, Vec<f64>)>,
 }
 
-impl Observer for StepEvents {
+#[derive(Debug)]
+struct StepEvents<'a> {
+    scene: &'a Scene,
+    heard: Events,
+}
+
+impl Observer for StepEvents<'_> {
     fn begin_step(&mut self, _step: u32) {
-        *self = Self::default();
+        self.heard = Events::default();
     }
 
     fn begin_pass(&mut self, pass: Pass) {
-        self.passes.push(PassFacts { stage: pass.stage, first: self.polynomials });
+        let first = self.heard.polynomials;
+        self.heard.passes.push(PassFacts { stage: pass.stage, first, end: Vec::new() });
+    }
+
+    fn pass_positions(&mut self, _q_start: &[f64], q_end: &[f64]) {
+        if let Some(pass) = self.heard.passes.last_mut() {
+            pass.end = q_end.to_vec();
+        }
+    }
+
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
+        if pair.kind != PairKind::ParticleEdge {
+            return;
+        }
+        let expected = BoundedPairMotion::of(self.scene, pair, q_start, q_end).polynomials();
+        let values = |form: &[Bounded]| form.iter().map(|one| one.value).collect::<Vec<f64>>();
+        if let Some(other) = expected.other_form(APPROACH).map(values)
+            && other != values(expected.polynomial(APPROACH))
+        {
+            self.heard.other_forms.push((self.heard.polynomials + APPROACH, other));
+        }
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
+        let heard = &mut self.heard;
         if let Decision::Hit { time, normal } = detection.decision {
-            let (pass, place) = (self.passes.len().saturating_sub(1), self.detections.len());
-            self.hits.push(Hit { pair: detection.pair, normal, time, pass, place });
+            let (pass, place) = (heard.passes.len().saturating_sub(1), heard.detections.len());
+            heard.hits.push(Hit { pair: detection.pair, normal, time, pass, place });
         }
-        self.detections.push((detection.pair, self.polynomials));
-        self.polynomials += detection.polynomials.len();
+        heard.detections.push((detection.pair, heard.polynomials));
+        heard.polynomials += detection.polynomials.len();
     }
 
     fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
         let particles = zone.particles.iter().map(|&particle| particle as usize).collect();
-        self.zones.push(ZoneFacts { round, particles, half_plane: zone.half_plane });
+        self.heard.zones.push(ZoneFacts { round, particles, half_plane: zone.half_plane });
     }
 }
+
+/// The number of an edge's approach among its polynomials.
+const APPROACH: usize = 3;
 
 /// The observer of a step in which nothing collides.
 struct NoCollisions;
@@ -118,23 +153,47 @@ impl Facts {
                 && state_difference(&expected.state, &actual.state, &ROUND_OFF).is_none()
         })
     }
+
+    /// How many passes the submission logged before the middle of the step, and how many behind it; none where these are no
+    /// whole passes.
+    pub(super) fn logged_passes(&self) -> Option<(usize, usize)> {
+        let (size, (_, middle)) = (self.pass_size(), self.middles()?);
+        let (first, all) = (middle.polynomials.len(), self.actual.end.polynomials.len());
+        let is_whole = size > 0 && first <= all && first.is_multiple_of(size) && all.is_multiple_of(size);
+        is_whole.then(|| (first / size, (all - first) / size))
+    }
+
+    /// Whether a pass that the submission logged (from 0) is about the motion from the start of the step to these positions, as
+    /// far as these pairs show, named by their places in the order of a pass.
+    pub(super) fn detects(&self, scene: &Scene, pass: usize, end: &[f64], is_asked: impl Fn(Pair) -> bool) -> bool {
+        let (logged, size) = (&self.actual.end.polynomials, self.pass_size());
+        if (pass + 1) * size > logged.len() {
+            return false;
+        }
+        let of_pass = self.detections.iter().take_while(|(_, first)| *first < size);
+        of_pass.filter(|(pair, _)| is_asked(*pair)).all(|(pair, first)| {
+            let expected = BoundedPairMotion::of(scene, *pair, &self.before.positions, end).polynomials();
+            (0..expected.count()).all(|number| {
+                let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
+                let index = pass * size + first + number;
+                forms.into_iter().flatten().any(|form| same_formula(form, logged.get(index), &ROUND_OFF))
+            })
+        })
+    }
 }
 
 /// Lets the reference run steps.
 pub(super) struct Reference<'a> {
     budget: Budget<'a>,
     simulation: Simulation,
-    observers: (Capture, StepEvents),
+    observers: (Capture, StepEvents<'a>),
 }
 
 impl<'a> Reference<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-        Self {
-            budget: Budget::new(scene, false),
-            simulation,
-            observers: (Capture::new(&scene.collision), StepEvents::default()),
-        }
+        let events = StepEvents { scene, heard: Events::default() };
+        Self { budget: Budget::new(scene, false), simulation, observers: (Capture::new(&scene.collision), events) }
     }
 
     fn set(&mut self, sample: &Sample) {
@@ -150,8 +209,9 @@ impl<'a> Reference<'a> {
         self.set(sample);
         self.budget.step(&mut self.simulation, &mut self.observers).ok()?;
         let (capture, events) = &mut self.observers;
-        let events = std::mem::take(events);
-        let (expected, actual) = (capture.records.clone(), sample.records.clone());
+        let events = std::mem::take(&mut events.heard);
+        let (mut expected, actual) = (capture.records.clone(), sample.records.clone());
+        take_other_forms(&mut expected, &actual, &events.other_forms);
         let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
         let differing =
             ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, &ROUND_OFF));
@@ -173,6 +233,34 @@ impl<'a> Reference<'a> {
         facts.has_wrong_formula = differing.is_some_and(|index| index < facts.certain_polynomials());
         Some(facts)
     }
+}
+
+/// Puts the other form of an edge's approach into what is expected, where that is what was logged: it is right, too.
+fn take_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[(usize, Vec<f64>)]) {
+    let theirs = &actual.end.polynomials;
+    let is_right = |index: usize| same_polynomial(expected.end.polynomials.get(index), theirs.get(index), &ROUND_OFF);
+    let is_taken = |(index, other): &&(usize, Vec<f64>)| {
+        let index = *index;
+        index < theirs.len().min(expected.end.polynomials.len())
+            && !is_right(index)
+            && same_polynomial(other, theirs.get(index), &ROUND_OFF)
+            && (index - APPROACH..index).all(is_right)
+    };
+    let taken: Vec<usize> = others.iter().filter(is_taken).map(|(index, _)| *index).collect();
+    if taken.is_empty() {
+        return;
+    }
+    let replaced = |ours: &PolynomialLog| {
+        let mut log = PolynomialLog::default();
+        for (index, list) in ours.iter().enumerate() {
+            log.push(if taken.binary_search(&index).is_ok() { theirs.get(index) } else { list });
+        }
+        log
+    };
+    if let Some(mid) = &mut expected.mid {
+        mid.polynomials = replaced(&mid.polynomials);
+    }
+    expected.end.polynomials = replaced(&expected.end.polynomials);
 }
 
 impl Facts {

@@ -1,9 +1,16 @@
-//! The impulse rounds of `hybrid`: how many there are, and what they hand over.
-use super::{ALIKE, Explanation, events::Facts, observation, responses::Responses};
-use crate::diagnose::{LoopEnd, Quantity, StageDetail, StageFault, WrongNumber, known::ROUND_OFF};
+//! The impulse rounds of `hybrid`: how many there are, which positions they look at, and what they hand over.
+//!
+//! The polynomials of a round say where particles were when it began: what the round before left.
+use super::{
+    ALIKE, Explanation,
+    events::Facts,
+    observation,
+    responses::{Responses, bodies_of},
+};
+use crate::diagnose::{LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber, known::ROUND_OFF};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::Stage,
+    sim::{Pair, Stage},
 };
 use std::cmp::Ordering;
 
@@ -14,24 +21,38 @@ pub(super) fn explain(scene: &Scene, facts: &[Facts], responses: &Responses) -> 
     if wrong.is_empty() {
         return None;
     }
-    rounds(&wrong, max_iterations).or_else(|| handed_over(&wrong)).or_else(|| later(&wrong, responses))
+    rounds(&wrong, max_iterations)
+        .or_else(|| of_prediction(scene, &wrong))
+        .or_else(|| handed_over(&wrong, responses))
+        .or_else(|| later(scene, &wrong))
 }
 
-/// Expected and actual numbers of detection passes in the loop.
-fn counts(facts: &Facts) -> Option<(usize, usize)> {
-    let (expected, actual) = facts.middles()?;
-    let size = facts.pass_size().max(1);
-    if !actual.polynomials.len().is_multiple_of(size) {
-        return None;
+/// What is wrong with whether the geometric part follows, where the impulse rounds are right.
+pub(super) fn geometric(facts: &[Facts]) -> Option<Explanation> {
+    let (mut left, mut superfluous, mut followed) = (0, 0, 0);
+    for facts in facts.iter().filter(|facts| facts.has_right_middle()) {
+        let ran_out = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
+        match (ran_out, facts.logged_passes()) {
+            (true, Some((_, 0))) => left += 1,
+            (true, Some(_)) => followed += 1,
+            (false, Some((_, passes))) if passes > 0 => superfluous += 1,
+            _ => {}
+        }
     }
-    Some((expected.polynomials.len() / size, actual.polynomials.len() / size))
+    let (wrong, count) = match (left, superfluous) {
+        (0, 0) => return None,
+        (0, _) => (WrongGeometric::Superfluous, superfluous),
+        _ => (WrongGeometric::Left { always: followed == 0 }, left),
+    };
+    Some(observation(StageFault::Geometric(wrong), Vec::new(), count))
 }
 
 /// Steps whose polynomials are right as far as they go, but of which there are too many or too few.
 fn rounds(wrong: &[&Facts], max_iterations: i32) -> Option<Explanation> {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
-        let (Some(counts), Some((expected, actual))) = (counts(facts), facts.middles()) else { continue };
+        let (Some((passes, _)), Some((expected, actual))) = (facts.logged_passes(), facts.middles()) else { continue };
+        let counts = (expected.polynomials.len() / facts.pass_size(), passes);
         if counts.0 != counts.1 && facts.right_polynomials >= expected.polynomials.len().min(actual.polynomials.len()) {
             seen.push(counts);
         }
@@ -56,23 +77,47 @@ fn rounds(wrong: &[&Facts], max_iterations: i32) -> Option<Explanation> {
     Some(observation(StageFault::Rounds(number), details, seen.len()))
 }
 
+/// Steps whose later rounds look at the integrator's positions, which the first round has left.
+fn of_prediction(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
+    let mut count = 0;
+    for facts in wrong {
+        let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return None };
+        if passes < 2 {
+            continue;
+        }
+        let prediction = &facts.prediction.positions;
+        let is_again = |pass| facts.detects(scene, pass, prediction, |_| true);
+        let is_right = facts.right_polynomials >= 2 * facts.pass_size();
+        if is_right || !(1..passes).all(is_again) || differs(prediction, &middle.state.positions).is_none() {
+            return None;
+        }
+        count += 1;
+    }
+    (count > 0).then(|| observation(StageFault::RoundsOfPrediction, Vec::new(), count))
+}
+
+/// The first number that is another one, but for round-off.
+fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
+    let within = ROUND_OFF.state.max(ALIKE * 1e-3);
+    ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
+}
+
 /// Steps whose polynomials are all right, but not the state behind the loop.
-fn handed_over(wrong: &[&Facts]) -> Option<Explanation> {
+fn handed_over(wrong: &[&Facts], responses: &Responses) -> Option<Explanation> {
     let (mut ran_out, mut ended, mut positions, mut velocities) = (0, 0, false, false);
+    let mut or_response = false;
     for facts in wrong {
         let Some((expected, actual)) = facts.middles() else { continue };
         let all = expected.polynomials.len();
         if actual.polynomials.len() != all || facts.right_polynomials < all {
             continue;
         }
-        let differs = |ours: &[f64], theirs: &[f64]| {
-            let within = ROUND_OFF.state.max(ALIKE * 1e-3);
-            ours.iter().zip(theirs).any(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
-        };
-        positions |= differs(&expected.state.positions, &actual.state.positions);
-        velocities |= differs(&expected.state.velocities, &actual.state.velocities);
+        positions |= differs(&expected.state.positions, &actual.state.positions).is_some();
+        velocities |= differs(&expected.state.velocities, &actual.state.velocities).is_some();
         let has_geometric = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
         *(if has_geometric { &mut ran_out } else { &mut ended }) += 1;
+        // The polynomials show the positions up to the last pass, and no velocity.
+        or_response |= !facts.hits.iter().all(|hit| responses.is_right(hit.pair.kind));
     }
     let count = ran_out + ended;
     if count == 0 || 2 * count < wrong.len() {
@@ -88,16 +133,63 @@ fn handed_over(wrong: &[&Facts]) -> Option<Explanation> {
         (0, _) => Some(LoopEnd::Settled),
         _ => None,
     };
-    Some(observation(StageFault::HandedOver { quantity, when }, Vec::new(), count))
+    Some(observation(StageFault::HandedOver { quantity, when, or_response }, Vec::new(), count))
+}
+
+/// What the second detection of a step shows of the contacts of the first round.
+#[derive(Default)]
+struct SecondPass {
+    /// Isolated ones that led where they should.
+    right: usize,
+    /// Isolated ones that did not.
+    wrong: usize,
+    /// Those that changed nothing.
+    unresolved: usize,
+    contacts: usize,
+}
+
+impl SecondPass {
+    fn look(&mut self, scene: &Scene, facts: &Facts) {
+        let Some(second) = facts.passes.get(1) else { return };
+        let first: Vec<Pair> = facts.hits.iter().filter(|hit| hit.pass == 0).map(|hit| hit.pair).collect();
+        for pair in &first {
+            let own = bodies_of(scene, *pair);
+            let touches = |other: &Pair| other != pair && bodies_of(scene, *other).iter().any(|one| own.contains(one));
+            let leads_to = |positions: &[f64]| facts.detects(scene, 1, positions, |other| other == *pair);
+            self.contacts += 1;
+            if leads_to(&second.end) {
+                self.right += usize::from(!first.iter().any(touches));
+            } else if leads_to(&facts.prediction.positions) {
+                self.unresolved += 1;
+            } else {
+                self.wrong += usize::from(!first.iter().any(touches));
+            }
+        }
+    }
 }
 
 /// Steps whose later rounds are wrong though their first one is right.
-fn later(wrong: &[&Facts], responses: &Responses) -> Option<Explanation> {
-    let is_later = |facts: &&Facts| facts.right_polynomials >= facts.pass_size() && !facts.hits.is_empty();
-    if !wrong.iter().all(is_later) {
+fn later(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
+    let reaches = |passes: usize| {
+        let is_right = |facts: &&Facts| facts.right_polynomials >= passes * facts.pass_size();
+        wrong.iter().all(is_right) && wrong.iter().all(|facts| !facts.hits.is_empty())
+    };
+    if !reaches(1) {
         return None;
     }
-    let is_right = |facts: &&Facts| facts.hits.iter().all(|hit| responses.is_right(hit.pair.kind));
-    let fault = if wrong.iter().any(is_right) { StageFault::LaterRounds } else { StageFault::FirstRound };
+    if reaches(2) {
+        return Some(observation(StageFault::BehindFirstRound, Vec::new(), wrong.len()));
+    }
+    let mut seen = SecondPass::default();
+    wrong.iter().filter(|facts| facts.logged_passes().is_some_and(|(passes, _)| passes > 1)).for_each(|facts| {
+        seen.look(scene, facts);
+    });
+    let fault = match seen {
+        SecondPass { unresolved, contacts, .. } if unresolved > 0 => {
+            StageFault::Unresolved { all: unresolved == contacts }
+        }
+        SecondPass { wrong: 0, right, .. } if right > 0 => StageFault::LaterRounds,
+        _ => StageFault::FirstRound,
+    };
     Some(observation(fault, Vec::new(), wrong.len()))
 }

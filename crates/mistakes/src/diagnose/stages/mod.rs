@@ -10,12 +10,13 @@ mod events;
 mod loops;
 mod responses;
 mod rigid;
+mod zones;
 
 use super::{
     Detail, Explanation, Ratios, StageDetail,
     about::About,
     fault::StageFault,
-    known::{ROUND_OFF, Sample, first_difference, same_polynomial},
+    known::{ROUND_OFF, Sample, first_difference, same_formula, same_polynomial},
 };
 use events::{Facts, Reference};
 use fosssim_model::scene::{Collision, Scene};

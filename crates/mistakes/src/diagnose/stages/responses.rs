@@ -9,8 +9,8 @@ use crate::diagnose::{
     known::{ROUND_OFF, same_impulse},
 };
 use fosssim_model::{
-    scene::Scene,
-    sim::{PairKind, Stage, State},
+    scene::{Collision, Scene},
+    sim::{Pair, PairKind, Stage, State},
 };
 use fosssim_num::vector::{Vec2, at, length, unit};
 use std::collections::BTreeMap;
@@ -34,11 +34,13 @@ pub(super) struct Responses {
     contacts: usize,
     /// Contacts of impulse rounds that changed nothing: nobody knows whether they were found.
     unresolved: usize,
+    in_rounds: bool,
 }
 
 impl Responses {
     pub(super) fn new(scene: &Scene, facts: &[Facts]) -> Self {
-        let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0 };
+        let in_rounds = matches!(scene.collision, Collision::Hybrid { .. });
+        let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0, in_rounds };
         for facts in facts {
             for (hit, expected, actual) in isolated(scene, facts) {
                 let mut changes: Vec<(Changed, Change)> = Vec::new();
@@ -97,7 +99,11 @@ impl Responses {
             WrongResponses::Amount(whose())
         };
         let details = wrong.iter().map(|(changed, wrong)| detail(*changed, wrong, changes[changed].len())).collect();
-        Some(observation(StageFault::Responses { kind, wrong: what }, details, self.contacts))
+        Some(observation(
+            StageFault::Responses { kind, wrong: what, in_rounds: self.in_rounds },
+            details,
+            self.contacts,
+        ))
     }
 
     /// Contacts of impulse rounds that are not resolved.
@@ -115,7 +121,7 @@ fn isolated<'a>(scene: &'a Scene, facts: &'a Facts) -> Vec<(&'a Hit, &'a State, 
         let own = bodies(scene, hit);
         let touches =
             |other: &Hit| other.place != hit.place && bodies(scene, other).iter().any(|one| own.contains(one));
-        !hits().any(touches)
+        !hits().any(touches) && is_final(scene, facts, hit)
     };
     let (expected, actual) = match facts.passes.first().map(|pass| pass.stage) {
         Some(Stage::ContinuousTime) => {
@@ -140,6 +146,15 @@ fn isolated<'a>(scene: &'a Scene, facts: &'a Facts) -> Vec<(&'a Hit, &'a State, 
     hits().filter(is_alone).map(|hit| (hit, expected, actual)).collect()
 }
 
+/// Whether nothing changes the bodies of an impulse round's contact a second time: all passes behind it are about the
+/// positions that the loop hands over.
+fn is_final(scene: &Scene, facts: &Facts, hit: &Hit) -> bool {
+    let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return true };
+    matches!(facts.passes.first().map(|pass| pass.stage), Some(Stage::ContinuousTime))
+        || (hit.pass + 1..passes)
+            .all(|pass| facts.detects(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
+}
+
 /// Steps with several contacts, all of which are right though the state is not.
 fn of_many(facts: &[Facts]) -> Option<Explanation> {
     let is_right = |facts: &&Facts| {
@@ -155,10 +170,14 @@ fn of_many(facts: &[Facts]) -> Option<Explanation> {
     (count > 0).then(|| observation(StageFault::ManyContacts, Vec::new(), count))
 }
 
-/// The bodies of a pair, in the order of the assignment.
 fn bodies(scene: &Scene, hit: &Hit) -> Vec<usize> {
-    let (first, second) = (hit.pair.first as usize, hit.pair.second as usize);
-    match hit.pair.kind {
+    bodies_of(scene, hit.pair)
+}
+
+/// The bodies of a pair, in the order of the assignment.
+pub(super) fn bodies_of(scene: &Scene, pair: Pair) -> Vec<usize> {
+    let (first, second) = (pair.first as usize, pair.second as usize);
+    match pair.kind {
         PairKind::ParticleParticle => vec![first, second],
         PairKind::ParticleEdge => vec![first, scene.edges[second].first, scene.edges[second].second],
         PairKind::ParticleHalfPlane => vec![first],

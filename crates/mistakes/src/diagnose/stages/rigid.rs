@@ -1,18 +1,23 @@
-//! Impact zones and the rigid failsafe: steps whose first part is right, zone by zone.
+//! Impact zones and the rigid failsafe: steps whose first part is right.
+//!
+//! What is wrong with zones is told where other zones, moved as they should be, lead where the particles are. What is wrong with
+//! the failsafe is told of zones that are right: of one contact, or whose particles move as one body.
 use super::{
     ALIKE, Explanation, common_value,
-    events::{Facts, ZoneFacts},
-    observation, ratios,
+    events::Facts,
+    loops, observation, ratios,
+    zones::{Fate, FirstRound, Group, SMALL, centre, near},
 };
-use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongZoneRounds, WrongZones};
+use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongPositions, WrongZoneRounds, WrongZones};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::State,
 };
 use fosssim_num::vector::{Vec2, at, length, over};
+use std::collections::BTreeMap;
 
-/// Differences below this are round-off (relative to the size of the numbers, and 1).
-const SMALL: f64 = 1e-9;
+/// A turn by less is none.
+const LITTLE_TURN: f64 = 1e-6;
 
 /// What is wrong with the geometric part, whose start is right.
 pub(super) fn explain(scene: &Scene, facts: &[Facts]) -> Option<Explanation> {
@@ -24,106 +29,147 @@ pub(super) fn explain(scene: &Scene, facts: &[Facts]) -> Option<Explanation> {
     if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_middle()) {
         return None;
     }
+    if let Some(geometric) = loops::geometric(facts) {
+        return Some(geometric);
+    }
+    if let Some(positions) = first_positions(scene, &wrong) {
+        return Some(positions);
+    }
     let mut moved = Moved::default();
-    for facts in facts.iter().filter(|facts| facts.has_right_middle()) {
+    for facts in facts {
         moved.look(scene, facts);
     }
-    moved.explain().or_else(|| rounds(&wrong, moved.right > 0))
+    moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| rounds(scene, &wrong))
 }
 
-/// The passes of the geometric part, expected and actual.
-fn passes(facts: &Facts) -> (usize, usize) {
-    let (Some((middle, _)), size) = (facts.middles(), facts.pass_size().max(1)) else { return (0, 0) };
-    let of = |all: usize| all.saturating_sub(middle.polynomials.len()) / size;
-    (of(facts.expected.end.polynomials.len()), of(facts.actual.end.polynomials.len()))
+/// The index of the first polynomial behind so many passes of the geometric part.
+fn behind(facts: &Facts, passes: usize) -> usize {
+    facts.middles().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }
 
-/// What is wrong where zones grow.
-fn rounds(wrong: &[&Facts], is_right_at_first: bool) -> Option<Explanation> {
-    let mut fewer = 0;
-    let mut more = 0;
-    let mut later = 0;
+/// The first geometric pass, where it is not about what the impulse rounds left.
+fn first_positions(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
+    let is_wrong = |facts: &&&Facts| facts.logged_passes().is_some() && facts.right_polynomials < behind(facts, 1);
+    let seen: Vec<&&Facts> = wrong.iter().filter(is_wrong).collect();
+    if seen.is_empty() {
+        return None;
+    }
+    let is_prediction = |facts: &&&Facts| {
+        let pass = behind(facts, 0) / facts.pass_size();
+        facts.detects(scene, pass, &facts.prediction.positions, |_| true)
+    };
+    let positions = if seen.iter().all(is_prediction) { WrongPositions::Prediction } else { WrongPositions::First };
+    Some(observation(StageFault::ZonePositions(positions), Vec::new(), seen.len()))
+}
+
+/// The second geometric pass, where it is about what was there before the failsafe, although that moves something.
+fn before_failsafe(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
+    let is_so = |facts: &&&Facts| {
+        let Some((_, middle)) = facts.middles() else { return false };
+        let (middle, end) = (&middle.state.positions, &facts.actual.end.state.positions);
+        let pass = behind(facts, 1) / facts.pass_size();
+        facts.right_polynomials < behind(facts, 2)
+            && middle.iter().zip(end).any(|(ours, theirs)| (ours - theirs).abs() > SMALL * (1.0 + ours.abs()))
+            && facts.detects(scene, pass, middle, |_| true)
+    };
+    let count = wrong.iter().filter(is_so).count();
+    let fault = StageFault::ZonePositions(WrongPositions::BeforeFailsafe);
+    (count == wrong.len()).then(|| observation(fault, Vec::new(), count))
+}
+
+/// What is wrong behind the first round of zones.
+fn rounds(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
+    let (mut fewer, mut more, mut later, mut ends) = (0, 0, 0, Vec::new());
     for facts in wrong {
-        let (ours, theirs) = passes(facts);
-        let shorter = facts.expected.end.polynomials.len().min(facts.actual.end.polynomials.len());
-        let is_whole = facts.actual.end.polynomials.len().is_multiple_of(facts.pass_size().max(1));
-        if ours != theirs && is_whole && facts.right_polynomials >= shorter {
+        let (ours, theirs) = (facts.expected.end.polynomials.len(), facts.actual.end.polynomials.len());
+        let all_right = facts.right_polynomials >= ours.min(theirs);
+        if all_right && ours == theirs {
+            ends.push(*facts);
+        } else if all_right && facts.logged_passes().is_some() {
             *(if theirs < ours { &mut fewer } else { &mut more }) += 1;
-        } else {
+        } else if facts.right_polynomials >= behind(facts, 2) {
             later += 1;
+        } else {
+            return Some(observation(StageFault::AfterRounds, Vec::new(), wrong.len()));
         }
     }
-    if !is_right_at_first && later > 0 {
-        return Some(observation(StageFault::AfterRounds, Vec::new(), wrong.len()));
-    }
-    let rounds = match (fewer, more, later) {
-        (0, 0, _) => WrongZoneRounds::Growth,
-        (_, 0, 0) => WrongZoneRounds::Fewer,
-        (0, _, 0) => WrongZoneRounds::More,
-        _ => WrongZoneRounds::Later,
+    let rounds = match (fewer, more, later, ends.len()) {
+        (0, 0, 0, _) => return Some(velocities(scene, &ends)),
+        (0, 0, _, 0) => WrongZoneRounds::Growth,
+        (_, 0, 0, 0) => WrongZoneRounds::Fewer,
+        (0, _, 0, 0) => WrongZoneRounds::More,
+        (.., 0) => WrongZoneRounds::Later,
+        _ => return Some(observation(StageFault::AfterRounds, Vec::new(), wrong.len())),
     };
     Some(observation(StageFault::ZoneRounds(rounds), Vec::new(), wrong.len()))
 }
 
-/// What became of zones that were moved once.
+/// Steps whose polynomials are all right, but not their end: the velocities of zones, where positions are right.
+fn velocities(scene: &Scene, ends: &[&Facts]) -> Explanation {
+    let mut measured = Measured::default();
+    for facts in ends {
+        let (expected, actual) = (&facts.expected.end.state, &facts.actual.end.state);
+        let count = scene.particles.len();
+        if !(0..count).all(|one| near(at(&expected.positions, one), at(&actual.positions, one))) {
+            return observation(StageFault::AfterRounds, Vec::new(), ends.len());
+        }
+        let Some(last) = facts.zones.iter().map(|zone| zone.round).max() else { continue };
+        for zone in facts.zones.iter().filter(|zone| zone.round == last) {
+            let group = Group { particles: zone.particles.clone(), half_plane: zone.half_plane };
+            if group.stops(scene) {
+                return observation(StageFault::AfterRounds, Vec::new(), ends.len());
+            }
+            measured.velocities(scene, &facts.before, actual, &group);
+        }
+    }
+    let (wrong, details) = measured.told();
+    if wrong.is_empty() {
+        return observation(StageFault::AfterRounds, Vec::new(), ends.len());
+    }
+    observation(StageFault::Motion { wrong, or_zones: false }, details, ends.len())
+}
+
+/// What became of the zones of first rounds.
 #[derive(Default)]
 struct Moved {
-    right: usize,
-    zones: usize,
-    unmoved: usize,
-    partly: usize,
-    stops: usize,
-    kept_positions: usize,
+    fates: BTreeMap<Fate, usize>,
     /// Velocities of zones that have to stop, over what they were.
     stopped: Vec<f64>,
     has_stopped_otherwise: bool,
-    bent: usize,
-    shifts: Vec<f64>,
-    has_side_shift: bool,
-    turns: Vec<f64>,
-    velocities: Vec<f64>,
-    has_other_velocity: bool,
+    /// Zones of several contacts, and of one, whose particles do not keep their distances.
+    bent_of_many: usize,
+    bent_of_one: usize,
+    bent_stops: usize,
+    measured: Measured,
 }
 
 impl Moved {
-    /// Looks at the zones of a step that stay as they are from the first round to the last.
     fn look(&mut self, scene: &Scene, facts: &Facts) {
-        let Some(last) = facts.zones.iter().map(|zone| zone.round).max() else { return };
-        let is_alike = |zone: &ZoneFacts, other: &ZoneFacts| {
-            (&zone.particles, zone.half_plane) == (&other.particles, other.half_plane)
-        };
-        let first = facts.zones.iter().map(|zone| zone.round).min().unwrap_or(last);
-        for zone in facts.zones.iter().filter(|zone| zone.round == first) {
-            let in_round = |round| facts.zones.iter().any(|other| other.round == round && is_alike(zone, other));
-            if !(first..=last).all(in_round) {
+        let Some(first) = FirstRound::of(scene, facts) else { return };
+        for zone in &first.zones {
+            if !first.is_seen(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
                 continue;
             }
-            if self.is_right(facts, zone) {
-                self.right += 1;
-                continue;
+            let fate = if first.is_seen(zone) { first.fate(zone) } else { Fate::NotMerged };
+            *self.fates.entry(fate).or_default() += 1;
+            match fate {
+                Fate::KeptVelocities => self.kept(&first, zone),
+                Fate::Bent if zone.stops(scene) => self.bent_stops += 1,
+                Fate::Bent | Fate::Rigid => {
+                    let is_one = first.contacts_of(zone).len() < 2;
+                    if fate == Fate::Bent {
+                        *(if is_one { &mut self.bent_of_one } else { &mut self.bent_of_many }) += 1;
+                    }
+                    self.measured.motion(scene, &first, zone);
+                }
+                _ => {}
             }
-            let is_stopped = zone.half_plane || zone.particles.iter().any(|&one| scene.particles[one].fixed);
-            self.zones += 1;
-            if is_stopped { self.stopped_zone(facts, zone) } else { self.free_zone(scene, facts, zone) }
         }
     }
 
-    fn is_right(&self, facts: &Facts, zone: &ZoneFacts) -> bool {
-        let (expected, actual) = (&facts.expected.end.state, &facts.actual.end.state);
-        zone.particles.iter().all(|&one| {
-            near(at(&expected.positions, one), at(&actual.positions, one))
-                && near(at(&expected.velocities, one), at(&actual.velocities, one))
-        })
-    }
-
-    fn stopped_zone(&mut self, facts: &Facts, zone: &ZoneFacts) {
-        let Some((_, middle)) = facts.middles() else { return };
-        let end = &facts.actual.end.state;
-        let goes_back =
-            zone.particles.iter().all(|&one| near(at(&end.positions, one), at(&facts.before.positions, one)));
-        self.kept_positions += usize::from(!goes_back);
+    fn kept(&mut self, first: &FirstRound<'_>, zone: &Group) {
         for &one in &zone.particles {
-            let (was, is) = (at(&middle.state.velocities, one), at(&end.velocities, one));
+            let (was, is) = (at(&first.middle.velocities, one), at(&first.end.velocities, one));
             if length(was) > SMALL {
                 let ratio = is.dot(&was) / was.dot(&was);
                 self.has_stopped_otherwise |= !near(is, ratio * was);
@@ -132,47 +178,92 @@ impl Moved {
         }
     }
 
-    fn free_zone(&mut self, scene: &Scene, facts: &Facts, zone: &ZoneFacts) {
-        let Some((_, middle)) = facts.middles() else { return };
-        let (start, end, expected) = (&facts.before, &facts.actual.end.state, &facts.expected.end.state);
-        let stays = |one: &usize| {
-            near(at(&end.positions, *one), at(&middle.state.positions, *one))
-                && near(at(&end.velocities, *one), at(&middle.state.velocities, *one))
+    fn count(&self, fate: Fate) -> usize {
+        self.fates.get(&fate).copied().unwrap_or(0)
+    }
+
+    fn explain(&self) -> Option<Explanation> {
+        let all: usize = self.fates.values().sum();
+        let wrong = all - self.count(Fate::Right);
+        let told = |fault: WrongZones, count: usize| {
+            Some(observation(StageFault::Zones(fault), vec![StageDetail::OfZones { count, of: all }], wrong))
         };
-        match zone.particles.iter().filter(|one| stays(one)).count() {
-            all if all == zone.particles.len() => {
-                self.unmoved += 1;
-                return;
-            }
-            0 => {}
-            _ => {
-                self.partly += 1;
-                return;
+        // What proves the failsafe right comes first.
+        for (fate, fault) in [
+            (Fate::NotMerged, WrongZones::NotMerged),
+            (Fate::Joined, WrongZones::Joined),
+            (Fate::Others, WrongZones::Others),
+            (Fate::Partly, WrongZones::Partly),
+            (Fate::Unmoved, WrongZones::Unmoved),
+            (Fate::Stopped, WrongZones::Stop),
+            (Fate::PartlyStopped, WrongZones::PartlyStopped),
+            (Fate::MovedOn, WrongZones::MoveOn),
+            (Fate::KeptPositions, WrongZones::KeepPositions),
+        ] {
+            if self.count(fate) > 0 {
+                return told(fault, self.count(fate));
             }
         }
-        let goes_back = zone.particles.iter().all(|&one| near(at(&end.positions, one), at(&start.positions, one)));
-        if goes_back && zone.particles.iter().all(|&one| length(at(&end.velocities, one)) <= SMALL) {
-            self.stops += 1;
-            return;
+        if self.count(Fate::KeptVelocities) > 0 {
+            let stopped = (!self.has_stopped_otherwise && !self.stopped.is_empty())
+                .then(|| StageDetail::Stopped(ratios(&self.stopped)));
+            let fault = StageFault::Zones(WrongZones::KeepVelocities);
+            return Some(observation(fault, stopped.into_iter().collect(), wrong));
         }
-        self.bent += usize::from(!keeps_distances(zone, start, end));
-        let centre = |state: &State| {
-            let sum = |weigh: &dyn Fn(usize) -> Vec2| zone.particles.iter().map(|&one| weigh(one)).sum::<Vec2>();
-            let total: f64 = zone.particles.iter().map(|&one| scene.particles[one].mass).sum();
-            over(sum(&|one| scene.particles[one].mass * at(&state.positions, one)), total)
-        };
-        let [from, ours, theirs] = [start, expected, end].map(centre);
+        if wrong == 0 || self.bent_stops > 0 {
+            return (wrong > 0).then(|| observation(StageFault::AfterRounds, Vec::new(), wrong));
+        }
+        let (mut what, details) = self.measured.told();
+        if self.bent_of_one + self.bent_of_many > 0 {
+            what.insert(
+                what.iter().position(|one| *one != WrongMotion::Centre).unwrap_or(what.len()),
+                WrongMotion::Distances,
+            );
+        }
+        let or_zones = self.bent_of_many > 0 && self.bent_of_one == 0;
+        Some(observation(StageFault::Motion { wrong: what, or_zones }, details, wrong))
+    }
+}
+
+/// How zones that need not stop were moved, over how they should have been.
+#[derive(Default)]
+struct Measured {
+    shifts: Vec<f64>,
+    has_side_shift: bool,
+    turns: Vec<f64>,
+    is_bent: bool,
+    velocities: Vec<f64>,
+    has_other_velocity: bool,
+}
+
+impl Measured {
+    fn motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &Group) {
+        let (start, expected, end) = (first.start(), first.expected(zone), first.end);
+        let [from, ours, theirs] = [start, &expected, end].map(|state| centre(scene, zone, state));
         let (should, does) = (ours - from, theirs - from);
         if length(should) > SMALL {
             let ratio = does.dot(&should) / should.dot(&should);
             self.has_side_shift |= !near(does, ratio * should);
             self.shifts.push(ratio);
+        } else {
+            self.has_side_shift |= length(does) > SMALL;
         }
-        let [right, angle] =
-            [(expected, ours), (end, theirs)].map(|(state, centre)| turn(zone, start, from, state, centre));
-        if right.abs() > SMALL {
-            self.turns.push(angle / right);
+        if first.fate(zone) == Fate::Rigid {
+            let [right, angle] =
+                [(&expected, ours), (end, theirs)].map(|(state, centre)| turn(zone, start, from, state, centre));
+            if right.abs() > LITTLE_TURN {
+                self.turns.push(angle / right);
+            } else if angle.abs() > LITTLE_TURN {
+                self.turns.push(f64::NAN);
+            }
+        } else {
+            self.is_bent = true;
         }
+        self.velocities(scene, start, end, zone);
+    }
+
+    /// Velocities over the motion from the start to the end of the step.
+    fn velocities(&mut self, scene: &Scene, start: &State, end: &State, zone: &Group) {
         for &one in &zone.particles {
             let motion = over(at(&end.positions, one) - at(&start.positions, one), scene.time_step);
             let velocity = at(&end.velocities, one);
@@ -184,37 +275,7 @@ impl Moved {
         }
     }
 
-    fn explain(&self) -> Option<Explanation> {
-        if self.zones == 0 {
-            return None;
-        }
-        let told = |fault: StageFault, details: Vec<StageDetail>| Some(observation(fault, details, self.zones));
-        let of_zones = |wrong: WrongZones| told(StageFault::Zones(wrong), Vec::new());
-        if self.partly > 0 {
-            return of_zones(WrongZones::Partly);
-        }
-        if self.unmoved > 0 {
-            return of_zones(WrongZones::Unmoved);
-        }
-        if self.stops > 0 {
-            return of_zones(WrongZones::Stop);
-        }
-        if self.kept_positions > 0 {
-            return of_zones(WrongZones::KeepPositions);
-        }
-        if !self.stopped.is_empty() {
-            let stopped = (!self.has_stopped_otherwise).then(|| StageDetail::Stopped(ratios(&self.stopped)));
-            return told(StageFault::Zones(WrongZones::KeepVelocities), stopped.into_iter().collect());
-        }
-        let (wrong, details) = self.motion();
-        // A zone of other particles moves otherwise in every respect.
-        let is_simple =
-            self.bent > 0 || is_one(&self.turns) || (!self.has_side_shift && common_value(&self.shifts).is_some());
-        told(StageFault::Motion { wrong, or_zones: !is_simple }, details)
-    }
-
-    /// What is wrong with the motion of zones that need not stop.
-    fn motion(&self) -> (Vec<WrongMotion>, Vec<StageDetail>) {
+    fn told(&self) -> (Vec<WrongMotion>, Vec<StageDetail>) {
         let (mut wrong, mut details) = (Vec::new(), Vec::new());
         if self.has_side_shift || !is_one(&self.shifts) {
             wrong.push(WrongMotion::Centre);
@@ -223,11 +284,11 @@ impl Moved {
                 _ => StageDetail::CentreDirection,
             });
         }
-        if self.bent > 0 {
-            wrong.push(WrongMotion::Distances);
-        } else if !is_one(&self.turns) {
-            wrong.push(WrongMotion::Turn);
-            details.push(StageDetail::Turns(ratios(&self.turns)));
+        if !self.is_bent && !is_one(&self.turns) {
+            wrong.push(turned(&self.turns));
+            if self.turns.iter().all(|ratio| ratio.is_finite()) {
+                details.push(StageDetail::Turns(ratios(&self.turns)));
+            }
         }
         if self.has_other_velocity {
             wrong.push(WrongMotion::Velocities);
@@ -239,26 +300,28 @@ impl Moved {
     }
 }
 
+/// How zones turn, of which some do not turn as they should.
+fn turned(ratios: &[f64]) -> WrongMotion {
+    let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= ALIKE));
+    if wrong().all(|ratio| ratio.abs() <= ALIKE) {
+        WrongMotion::NoTurn
+    } else if wrong().all(|&ratio| 0.0 < ratio && ratio < 1.0) {
+        WrongMotion::LessTurn
+    } else if wrong().all(|&ratio| ratio > 1.0) {
+        WrongMotion::MoreTurn
+    } else if wrong().all(|&ratio| ratio < 0.0) && common_value(ratios).is_some() {
+        WrongMotion::TurnBack
+    } else {
+        WrongMotion::Turn
+    }
+}
+
 fn is_one(ratios: &[f64]) -> bool {
     ratios.iter().all(|ratio| (ratio - 1.0).abs() <= ALIKE)
 }
 
-fn near(one: Vec2, two: Vec2) -> bool {
-    length(one - two) <= SMALL * (1.0 + length(one))
-}
-
-fn keeps_distances(zone: &ZoneFacts, start: &State, end: &State) -> bool {
-    let distance =
-        |state: &State, one: usize, two: usize| length(at(&state.positions, one) - at(&state.positions, two));
-    let pairs = || zone.particles.iter().flat_map(|&one| zone.particles.iter().map(move |&two| (one, two)));
-    pairs().all(|(one, two)| {
-        let (was, is) = (distance(start, one, two), distance(end, one, two));
-        (was - is).abs() <= SMALL * (1.0 + was)
-    })
-}
-
 /// The angle by which the particles have turned about their centre, radians.
-fn turn(zone: &ZoneFacts, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
+fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     let (mut across, mut along) = (0.0, 0.0);
     for &one in &zone.particles {
         let (was, is) = (at(&start.positions, one) - from, at(&end.positions, one) - to);

@@ -48,7 +48,9 @@ impl Encounter {
             Object::Particle(other) => Self::Particles(particle, body(other)),
             Object::Edge(index) => {
                 let edge = world.scene.edges[index];
-                Self::Edge([particle, body(edge.first), body(edge.second)], edge.radius)
+                let measured = if world.student.makes(Mistake::ParticleEdgeFirstEdgeRadius) { 0 } else { index };
+                let radius = world.scene.edges[measured].radius;
+                Self::Edge([particle, body(edge.first), body(edge.second)], radius)
             }
             Object::HalfPlane(index) => {
                 let plane = world.scene.half_planes[index];
@@ -191,6 +193,7 @@ pub fn detect(
     }
     match student.mistake_in(&[Area::ContactVector]) {
         Some(Mistake::ContactUnitLength) => n = unit(n),
+        Some(Mistake::ContactSingle) => n = Vec2::new(single(n.x), single(n.y)),
         Some(Mistake::ContactNoise) => n += 1e-7 * Vec2::new(n.y, n.x),
         _ => {}
     }
@@ -220,6 +223,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
         Some(Mistake::DecisionSeconds) => time <= time_step,
         Some(Mistake::DecisionHalfStep) => time <= 0.5,
         Some(Mistake::DecisionTolerance) => time <= 1.0 + 1e-6,
+        Some(Mistake::DecisionTruth) => time != 0.0,
         Some(Mistake::DecisionNever | Mistake::HostileForgedVerdict) => false,
         _ => time <= 1.0,
     }

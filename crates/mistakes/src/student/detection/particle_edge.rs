@@ -46,7 +46,7 @@ pub fn polynomials(student: Student, bodies: &[Body; 3], edge_radius: f64) -> Ve
     };
     vec![
         overlap,
-        alpha_above_zero(student, &dots),
+        alpha_above_zero(student, bodies, &dots),
         alpha_below_one(student, bodies, &dots),
         quintic::approach(student, bodies),
     ]
@@ -54,13 +54,20 @@ pub fn polynomials(student: Student, bodies: &[Body; 3], edge_radius: f64) -> Ve
 
 /// The moving points as this student puts them into the formulas.
 fn seen(student: Student, bodies: &[Body; 3]) -> [Body; 3] {
-    let [one, mut two, mut three] = *bodies;
+    let [mut one, mut two, mut three] = *bodies;
     match student.mistake_in(FORMULAS) {
         Some(Mistake::ParticleEdgeStill) => {
             two.displacement = Vec2::zeros();
             three.displacement = Vec2::zeros();
         }
+        Some(Mistake::ParticleEdgeParticleStill) => one.displacement = Vec2::zeros(),
+        Some(Mistake::ParticleEdgeFirstEndStill) => two.displacement = Vec2::zeros(),
+        Some(Mistake::ParticleEdgeSecondEndStill) => three.displacement = Vec2::zeros(),
         Some(Mistake::ParticleEdgeOneDisplacement) => three.displacement = two.displacement,
+        Some(Mistake::ParticleEdgeOtherDisplacement) => two.displacement = three.displacement,
+        Some(Mistake::ParticleEdgeEndForDisplacement) => {
+            return bodies.map(|body| Body { displacement: body.end(), ..body });
+        }
         Some(Mistake::ParticleEdgeDisplacementsSwapped) => {
             std::mem::swap(&mut two.displacement, &mut three.displacement);
         }
@@ -78,6 +85,9 @@ fn reach_squared(student: Student, particle: f64, edge: f64) -> f64 {
     match student.mistake_in(FORMULAS) {
         Some(Mistake::ParticleEdgeRadiiSquaredApart) => particle * particle + edge * edge,
         Some(Mistake::ParticleEdgeRadiusNotSquared) => reach,
+        Some(Mistake::ParticleEdgeParticleRadiusTwice) => 4.0 * (particle * particle),
+        Some(Mistake::ParticleEdgeEdgeRadiusTwice) => 4.0 * (edge * edge),
+        Some(Mistake::ParticleEdgeDiameters) => 4.0 * (reach * reach),
         Some(Mistake::ParticleEdgeNoEdgeRadius) => particle * particle,
         Some(Mistake::ParticleEdgeNoParticleRadius) => edge * edge,
         _ => reach * reach,
@@ -198,12 +208,17 @@ fn interpolated(bodies: &[Body; 3], s: f64) -> Vec<f64> {
     vec![t4, t3, even1 - t4, odd1 - t3, middle]
 }
 
-fn alpha_above_zero(student: Student, dots: &Dots) -> Vec<f64> {
+fn alpha_above_zero(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f64> {
     let &Dots { a, b, c, .. } = dots;
     match student.mistake_in(FORMULAS) {
         Some(Mistake::AlphaLowSlopeSign) => vec![c, -b, a],
         Some(Mistake::AlphaLowNegated) => vec![-c, -b, -a],
         Some(Mistake::AlphaLowNoQuadratic) => vec![b, a],
+        Some(Mistake::AlphaLowHalfSlope) => {
+            let [one, two, three] = bodies;
+            vec![c, (one.displacement - two.displacement).dot(&(three.start - two.start)), a]
+        }
+        Some(Mistake::AlphaLowIsHigh) => alpha_below_one(student, bodies, dots),
         Some(Mistake::AlphaLowAtStart) => vec![a],
         Some(Mistake::AlphaLowMissing) => vec![1.0],
         _ => vec![c, b, a],
@@ -220,6 +235,8 @@ fn alpha_below_one(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f64
         Some(Mistake::AlphaHighIsLow) => vec![c, b, a],
         Some(Mistake::AlphaHighUnscaled) => vec![-c, -b, 1.0 - a],
         Some(Mistake::AlphaHighNegated) => vec![-d13.dot(&d23), -(d13.dot(&x23) + x13.dot(&d23)), -x13.dot(&x23)],
+        Some(Mistake::AlphaHighSlopeSign) => vec![d13.dot(&d23), -(d13.dot(&x23) + x13.dot(&d23)), x13.dot(&x23)],
+        Some(Mistake::AlphaHighNoQuadratic) => vec![d13.dot(&x23) + x13.dot(&d23), x13.dot(&x23)],
         Some(Mistake::AlphaHighHalfSlope) => vec![d13.dot(&d23), x13.dot(&d23), x13.dot(&x23)],
         Some(Mistake::AlphaHighAtStart) => vec![x13.dot(&x23)],
         Some(Mistake::AlphaHighMissing) => vec![1.0],
@@ -232,7 +249,11 @@ fn alpha_below_one(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f64
 pub fn contact_vector(student: Student, bodies: &[Body; 3], t: f64) -> Vec2 {
     let mistake = student.mistake_in(VECTORS);
     let [one, two, three] = bodies;
-    let t = if mistake == Some(Mistake::ParticleEdgeContactAtStart) { 0.0 } else { t };
+    let t = match mistake {
+        Some(Mistake::ParticleEdgeContactAtStart) => 0.0,
+        Some(Mistake::ParticleEdgeContactAtEnd) => 1.0,
+        _ => t,
+    };
     let along = three.start + t * three.displacement - two.start - t * two.displacement;
     let alpha = match mistake {
         Some(Mistake::ParticleEdgeContactAlphaAtStart) => alpha(bodies, 0.0),
@@ -241,6 +262,7 @@ pub fn contact_vector(student: Student, bodies: &[Body; 3], t: f64) -> Vec2 {
         Some(Mistake::ParticleEdgeContactFromOtherEnd) => 1.0 - alpha(bodies, t),
         Some(Mistake::ParticleEdgeContactClamped) => alpha(bodies, t).clamp(0.0, 1.0),
         Some(Mistake::ParticleEdgeContactFirstEnd) => 0.0,
+        Some(Mistake::ParticleEdgeContactSecondEnd) => 1.0,
         _ => alpha(bodies, t),
     };
     match mistake {

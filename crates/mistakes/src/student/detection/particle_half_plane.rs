@@ -22,7 +22,10 @@ const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 pub fn polynomials(student: Student, one: &Body, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     let q = if mistake == Some(Mistake::HalfPlaneUnitNormal) { unit(normal) } else { normal };
-    let s = one.displacement.dot(&q);
+    let s = match mistake {
+        Some(Mistake::HalfPlaneEndForDisplacement) => one.end().dot(&q),
+        _ => one.displacement.dot(&q),
+    };
     let w = match mistake {
         Some(Mistake::HalfPlaneEmpty) => return Vec::new(),
         Some(Mistake::HalfPlaneZero) => return vec![vec![0.0; 3], vec![0.0; 2]],
@@ -70,6 +73,9 @@ fn overlap(student: Student, radius: f64, s: f64, w: f64, q: Vec2) -> Vec<f64> {
         Some(Mistake::HalfPlaneOffsetNotSquared) => -w + reach,
         _ => -w * w + reach,
     };
+    if mistake == Some(Mistake::HalfPlaneOverlapNegated) {
+        return vec![-t2, -t1, -t0];
+    }
     vec![t2, t1, t0]
 }
 
@@ -85,6 +91,8 @@ fn approach(student: Student, s: f64, w: f64) -> Vec<f64> {
         Some(Mistake::HalfPlaneApproachNoSpeed) => vec![-s, w],
         Some(Mistake::HalfPlaneApproachNegated) => vec![s * s, -w * s],
         Some(Mistake::HalfPlaneApproachSlopeSign) => vec![s * s, w * s],
+        Some(Mistake::HalfPlaneApproachSlopeTwice) => vec![-2.0 * s * s, w * s],
+        Some(Mistake::HalfPlaneApproachAtStart) => vec![w * s],
         Some(Mistake::HalfPlaneApproachSpeedOnly) => vec![s],
         Some(Mistake::HalfPlaneNoApproach) => vec![1.0],
         _ => vec![-s * s, w * s],

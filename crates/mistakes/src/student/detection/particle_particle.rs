@@ -35,11 +35,12 @@ pub fn polynomials(student: Student, one: &Body, two: &Body) -> Vec<Vec<f64>> {
     };
     let d = match mistake {
         Some(Mistake::ParticleParticleFirstStill) => two.displacement,
+        Some(Mistake::ParticleParticleSecondStill) => -one.displacement,
         Some(Mistake::ParticleParticleEndForDisplacement) => two.end() - one.end(),
         _ => two.displacement - one.displacement,
     };
     let e = match mistake {
-        Some(Mistake::RearrangedParticleParticle) => -d,
+        Some(Mistake::RearrangedParticleParticle | Mistake::ParticleParticleSecondStill) => -d,
         _ => one.displacement - two.displacement,
     };
     let overlap = match mistake {
@@ -54,7 +55,10 @@ fn overlap(student: Student, x: Vec2, d: Vec2, r1: f64, r2: f64) -> Vec<f64> {
     let mistake = student.mistake_in(FORMULAS);
     let reach = match mistake {
         Some(Mistake::ParticleParticleFirstRadiusTwice) => r1 + r1,
+        Some(Mistake::ParticleParticleSecondRadiusTwice) => r2 + r2,
+        Some(Mistake::ParticleParticleDiameters) => 2.0 * (r1 + r2),
         Some(Mistake::ParticleParticleOneRadius) => r1,
+        Some(Mistake::ParticleParticleNoFirstRadius) => r2,
         _ => r1 + r2,
     };
     let square = match mistake {
@@ -83,6 +87,9 @@ fn overlap(student: Student, x: Vec2, d: Vec2, r1: f64, r2: f64) -> Vec<f64> {
         Some(Mistake::ParticleParticleTinyError) => (square - distance) * (1.0 + 1e-9),
         _ => square - distance,
     };
+    if mistake == Some(Mistake::ParticleParticleOverlapNegated) {
+        return vec![-t2, -t1, -t0];
+    }
     vec![t2, t1, t0]
 }
 
@@ -98,6 +105,7 @@ fn rearranged_overlap(one: &Body, two: &Body) -> Vec<f64> {
 fn approach(student: Student, x: Vec2, d: Vec2, e: Vec2) -> Vec<f64> {
     match student.mistake_in(FORMULAS) {
         Some(Mistake::ParticleParticleSeparating) => vec![-d.dot(&d), d.dot(&x)],
+        Some(Mistake::ParticleParticleApproachNegated) => vec![e.dot(&e), -e.dot(&x)],
         Some(Mistake::ParticleParticleApproachSlopeSign) => vec![e.dot(&e), e.dot(&x)],
         Some(Mistake::ParticleParticleApproachSlopeTwice) => vec![-2.0 * e.dot(&e), e.dot(&x)],
         Some(Mistake::ParticleParticleApproachAtStart) => vec![e.dot(&x)],
@@ -113,6 +121,7 @@ pub fn contact_vector(student: Student, one: &Body, two: &Body, t: f64) -> Vec2 
         Some(Mistake::ParticleParticleContactAtEnd) => two.end() - one.end(),
         Some(Mistake::ParticleParticleContactReversed) => one.at(t) - two.at(t),
         Some(Mistake::ParticleParticleContactFirstStill) => two.at(t) - one.start,
+        Some(Mistake::ParticleParticleContactSecondStill) => two.start - one.at(t),
         Some(Mistake::ExtendedPrecision) => arithmetic::between_particles::<Wide>(one, two, t),
         Some(Mistake::FusedArithmetic) => arithmetic::between_particles::<Fused>(one, two, t),
         Some(Mistake::ContactOtherFormula) => (two.start - one.start) + t * (two.displacement - one.displacement),

@@ -2,8 +2,8 @@
 use super::capitalised;
 use fosssim_mistakes::{
     diagnose::{
-        Amount, Changed, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongDecisions, WrongMotion, WrongNumber,
-        WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+        Amount, Changed, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongDecisions, WrongGeometric,
+        WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::Area,
 };
@@ -16,11 +16,12 @@ pub(super) fn what(fault: &StageFault) -> String {
 
 /// The parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
 fn place(fault: &StageFault) -> String {
-    if let (Some(kind), StageFault::Responses { .. }) = (fault.kind(), fault) {
-        return format!("{} response", capitalised(kind.name()));
-    }
     let areas: Vec<&str> = fault.areas().iter().map(|area| area_name(*area)).collect();
-    let areas = areas.join(" or ");
+    let areas = match areas.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => areas.concat(),
+    };
+    let areas = if fault.kind().is_some() { areas.replace("collision response", "response") } else { areas };
     match fault.kind() {
         Some(kind) => format!("{} {areas}", capitalised(kind.name())),
         None => capitalised(&areas),
@@ -54,6 +55,8 @@ fn of_fault(fault: &StageFault) -> String {
         StageFault::ContactVectors { wrong, .. } => match wrong {
             WrongVectors::Perpendicular => "it is perpendicular to what it should be",
             WrongVectors::Direction => "it has the wrong direction",
+            WrongVectors::Zero => "it has no length",
+            WrongVectors::Inexact => "it is right but for its last digits",
             WrongVectors::Reversed => "it points the other way round",
             WrongVectors::Length => "it has the right direction, but not the right length",
         },
@@ -62,24 +65,48 @@ fn of_fault(fault: &StageFault) -> String {
         StageFault::Unresolved { all: true } => "contacts that the first round's polynomials show change nothing",
         StageFault::Unresolved { all: false } => "some contacts that the first round's polynomials show change nothing",
         StageFault::Rounds(number) => match number {
-            WrongNumber::Fewer => "it makes fewer rounds than it should",
-            WrongNumber::More => "it makes more rounds than it should",
-            WrongNumber::Other => "it makes another number of rounds than it should",
+            WrongNumber::Fewer => "the loop makes fewer rounds than it should",
+            WrongNumber::More => "the loop makes more rounds than it should",
+            WrongNumber::Other => "the loop makes another number of rounds than it should",
         },
-        StageFault::HandedOver { quantity, when } => {
+        StageFault::HandedOver { quantity, when, .. } => {
             let what = quantity.map_or("positions and velocities", plural);
             let when = match when {
                 Some(LoopEnd::RanOut) => " when its rounds run out",
                 Some(LoopEnd::Settled) => " when nothing collides any more",
                 None => "",
             };
-            return format!("its rounds are right, but not the {what} that it hands over{when}");
+            return format!("the polynomials of its rounds are right, but not the {what} that it hands over{when}");
         }
-        StageFault::FirstRound => "the first round detects what it should, but what its contacts change is not right",
+        StageFault::FirstRound => "the polynomials of the first round are right, but not where it leads",
         StageFault::LaterRounds => {
-            "its first round detects what it should, and isolated contacts are resolved as they should be, but not all \
-             contacts of a round"
+            "isolated contacts of the first round are resolved as they should be, but the round as a whole does not lead \
+             where it should"
         }
+        StageFault::RoundsOfPrediction => {
+            "rounds behind the first one detect on the predicted positions again, not on those that the round before left"
+        }
+        StageFault::BehindFirstRound => {
+            "the first round is right, as the polynomials of the second one show, but not what follows"
+        }
+        StageFault::Geometric(WrongGeometric::Left { always: true }) => {
+            "when the rounds run out, no geometric pass follows"
+        }
+        StageFault::Geometric(WrongGeometric::Left { always: false }) => {
+            "when its rounds run out, a geometric pass follows in some steps only"
+        }
+        StageFault::Geometric(WrongGeometric::Superfluous) => {
+            "the geometric part runs though a round has found nothing"
+        }
+        StageFault::ZonePositions(positions) => match positions {
+            WrongPositions::Prediction => {
+                "the first zones are looked for on the predicted positions, not on those that the impulse rounds leave"
+            }
+            WrongPositions::First => {
+                "the first zones are looked for on other positions than those that the impulse rounds leave"
+            }
+            WrongPositions::BeforeFailsafe => "the detection behind the failsafe looks at the positions before it",
+        },
         StageFault::AfterRounds => "the impulse rounds are right, what follows them is not",
         StageFault::ZoneRounds(rounds) => match rounds {
             WrongZoneRounds::Growth => "zones are right in the first round, but not as they grow",
@@ -91,7 +118,12 @@ fn of_fault(fault: &StageFault) -> String {
         },
         StageFault::Zones(wrong) => match wrong {
             WrongZones::Partly => "some of a zone's particles are not moved with it",
+            WrongZones::PartlyStopped => "in zones that have to stop, some particles do not",
             WrongZones::Unmoved => "zones are not moved that should be",
+            WrongZones::NotMerged => "zones that share particles are moved one after the other, not as one",
+            WrongZones::Joined => "zones that share no particle are moved as one",
+            WrongZones::Others => "particles are moved with a zone that do not belong to it",
+            WrongZones::MoveOn => "zones that have to stop move on as rigid bodies",
             WrongZones::Stop => "zones stop in which nothing is fixed",
             WrongZones::KeepPositions => "zones that have to stop do not go back to their start",
             WrongZones::KeepVelocities => "zones that have to stop do not lose their velocity",
@@ -109,7 +141,11 @@ const fn of_motion(wrong: WrongMotion) -> &'static str {
     match wrong {
         WrongMotion::Centre => "their centre of mass does not move as it should",
         WrongMotion::Distances => "the particles of a zone do not keep their distances",
-        WrongMotion::Turn => "they do not turn as far as they should",
+        WrongMotion::NoTurn => "they do not turn",
+        WrongMotion::LessTurn => "they do not turn as far as they should",
+        WrongMotion::MoreTurn => "they turn further than they should",
+        WrongMotion::TurnBack => "they turn the other way round",
+        WrongMotion::Turn => "they do not turn by the angle that they should",
         WrongMotion::Velocities => "their velocities are not those of the motion from start to end",
         WrongMotion::Speeds => "their velocities are not those of the motion from start to end, though along it",
     }
@@ -182,6 +218,7 @@ pub(super) fn detail(detail: &StageDetail) -> String {
             format!("of those that are right ({count}): {low:.4} to {high:.4}")
         }
         StageDetail::Vectors(ratios) => format!("{} as long along the right one", times(*ratios)),
+        StageDetail::VectorsOff(part) => format!("off by at most {part:.1e} of its length"),
         StageDetail::Times(ratios) => format!("{} what they should be", times(*ratios)),
         StageDetail::TimesOff(offset) => format!("off by {offset:.6}"),
         StageDetail::TimesUsed => {
@@ -200,6 +237,7 @@ pub(super) fn detail(detail: &StageDetail) -> String {
             let (place, quantity, body) = (capitalised(changed.kind.name()), quantity(changed), body(changed));
             format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }
+        StageDetail::OfZones { count, of } => format!("so it is with {count} of {of} zones of first rounds"),
         StageDetail::Stopped(ratios) => format!("{} their velocity before", times(*ratios)),
         StageDetail::CentreMoves(ratios) => format!("it moves {} as far", times(*ratios)),
         StageDetail::CentreDirection => "its direction is wrong, too".to_owned(),
@@ -211,7 +249,8 @@ pub(super) fn detail(detail: &StageDetail) -> String {
 /// Ratios in words: "1.5 times" where they agree, else their range.
 fn times(ratios: Ratios) -> String {
     let short = |value: f64| {
-        let text = format!("{value:.4}");
+        let digits = if (value - 1.0).abs() < 5e-5 { 10 } else { 4 };
+        let text = format!("{value:.digits$}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     };
     match ratios {

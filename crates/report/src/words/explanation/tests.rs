@@ -5,7 +5,8 @@ use fosssim_mistakes::{
     diagnose::{
         Amount, Changed, CoefficientGuess, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials,
         PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, Stand, Weight, WrongDecisions,
-        WrongMotion, WrongNumber, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones, explain,
+        WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
+        WrongZones, explain,
         outside::{Rated, Rating, rated},
         probe_scenes,
     },
@@ -92,12 +93,26 @@ fn faults() -> Vec<StageFault> {
         StageFault::FirstRound,
         StageFault::LaterRounds,
         StageFault::AfterRounds,
+        StageFault::RoundsOfPrediction,
+        StageFault::BehindFirstRound,
+        StageFault::Geometric(WrongGeometric::Left { always: true }),
+        StageFault::Geometric(WrongGeometric::Left { always: false }),
+        StageFault::Geometric(WrongGeometric::Superfluous),
+        StageFault::ZonePositions(WrongPositions::Prediction),
+        StageFault::ZonePositions(WrongPositions::First),
+        StageFault::ZonePositions(WrongPositions::BeforeFailsafe),
     ];
     for kind in [None, EDGE] {
         let decisions = [WrongDecisions::Missed, WrongDecisions::Superfluous, WrongDecisions::Both];
         faults.extend(decisions.map(|wrong| StageFault::Decisions { kind, wrong }));
-        let vectors =
-            [WrongVectors::Perpendicular, WrongVectors::Direction, WrongVectors::Reversed, WrongVectors::Length];
+        let vectors = [
+            WrongVectors::Perpendicular,
+            WrongVectors::Direction,
+            WrongVectors::Reversed,
+            WrongVectors::Zero,
+            WrongVectors::Inexact,
+            WrongVectors::Length,
+        ];
         faults.extend(vectors.map(|wrong| StageFault::ContactVectors { kind, wrong }));
         let responses = [
             WrongResponses::Nothing,
@@ -107,17 +122,26 @@ fn faults() -> Vec<StageFault> {
             WrongResponses::Amount(velocities.clone()),
             WrongResponses::Amount(all.clone()),
         ];
-        faults.extend(responses.map(|wrong| StageFault::Responses { kind, wrong }));
+        for in_rounds in [false, true] {
+            let all = responses.clone().into_iter();
+            faults.extend(all.map(|wrong| StageFault::Responses { kind, wrong, in_rounds }));
+        }
     }
     faults.extend([WrongNumber::Fewer, WrongNumber::More, WrongNumber::Other].map(StageFault::Rounds));
     for when in [None, Some(LoopEnd::RanOut), Some(LoopEnd::Settled)] {
         let quantities = [None, Some(Quantity::Position), Some(Quantity::Velocity)];
-        faults.extend(quantities.map(|quantity| StageFault::HandedOver { quantity, when }));
+        faults.extend(quantities.map(|quantity| StageFault::HandedOver { quantity, when, or_response: false }));
+        faults.push(StageFault::HandedOver { quantity: None, when, or_response: true });
     }
     let rounds = [WrongZoneRounds::Growth, WrongZoneRounds::Fewer, WrongZoneRounds::More, WrongZoneRounds::Later];
     faults.extend(rounds.map(StageFault::ZoneRounds));
     let zones = [
         WrongZones::Partly,
+        WrongZones::PartlyStopped,
+        WrongZones::NotMerged,
+        WrongZones::Joined,
+        WrongZones::Others,
+        WrongZones::MoveOn,
         WrongZones::Unmoved,
         WrongZones::Stop,
         WrongZones::KeepPositions,
@@ -127,7 +151,11 @@ fn faults() -> Vec<StageFault> {
     let motions = [
         vec![],
         vec![WrongMotion::Centre, WrongMotion::Distances, WrongMotion::Velocities],
-        vec![WrongMotion::Turn, WrongMotion::Speeds],
+        vec![WrongMotion::NoTurn, WrongMotion::Speeds],
+        vec![WrongMotion::LessTurn],
+        vec![WrongMotion::MoreTurn],
+        vec![WrongMotion::TurnBack],
+        vec![WrongMotion::Turn],
     ];
     faults.extend(motions.map(|wrong| StageFault::Motion { or_zones: wrong.len() > 2, wrong }));
     faults
@@ -211,6 +239,9 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         StageDetail::Impacts { right: false, count: 3, low: 0.25, high: 0.75 },
         StageDetail::Impacts { right: true, count: 5, low: 0.125, high: 1.0 },
         StageDetail::Vectors(Ratios::Between(-1.0, 0.33333)),
+        StageDetail::VectorsOff(3.4e-8),
+        StageDetail::OfZones { count: 1, of: 3 },
+        StageDetail::Vectors(Ratios::All(1.0 + 1e-6)),
         StageDetail::Times(TWO),
         StageDetail::TimesOff(0.1),
         StageDetail::TimesUsed,
@@ -308,7 +339,12 @@ fn the_first_wrong_stage_is_told_with_what_its_results_have_in_common() {
             "Collision response: Velocities change also across",
             "across the contact",
         ),
-        ("loop-at-most-two", "rounds-enough", "Impulse loop: It makes fewer rounds", "2 detection passes where"),
+        (
+            "loop-at-most-two",
+            "rounds-enough",
+            "Impulse loop or detection: The loop makes fewer rounds",
+            "2 detection passes where",
+        ),
         ("rigid-half-turn", "zones-turn-little-and-far", "Rigid failsafe: They do not turn as far", "they turn 0."),
         ("rigid-shrinks", "zones-turn-little-and-far", "Rigid failsafe: ", ""),
         (

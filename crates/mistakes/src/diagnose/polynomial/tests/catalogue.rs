@@ -131,8 +131,12 @@ fn correct_variants_are_not_accused() {
     }
 }
 
+/// What stands in a formula is another object's there: who has the pair alone does not see that.
+const OF_OTHERS: [&str; 1] = ["pe-first-edge-radius"];
+
 fn mistakes() -> impl Iterator<Item = &'static Row> {
-    CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && concerns_polynomials(row))
+    let is_asked = |row: &&Row| concerns_polynomials(row) && !OF_OTHERS.contains(&row.id);
+    CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong).filter(is_asked)
 }
 
 /// Where nothing is like anything else, every mistake is told once and reproduced completely.
@@ -152,7 +156,14 @@ fn mistakes_of_the_catalogue_are_explained() {
 /// Where scenes are plain, some mistakes do not show; those that do are explained no less.
 #[test]
 fn mistakes_of_the_catalogue_are_explained_in_plain_scenes() {
-    let hidden = ["pp-first-radius-twice", "ph-no-normal-square", "ph-normal-length"];
+    let hidden = [
+        "pp-first-radius-twice",
+        "pp-second-radius-twice",
+        "pe-particle-radius-twice",
+        "pe-edge-radius-twice",
+        "ph-no-normal-square",
+        "ph-normal-length",
+    ];
     for row in mistakes() {
         let found = explain(&first_passes(row, Style::Plain));
         assert_eq!(found.is_empty(), hidden.contains(&row.id), "{}: {found:#?}", row.id);

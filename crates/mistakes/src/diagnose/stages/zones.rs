@@ -1,0 +1,356 @@
+//! What became of one impact zone in the first round of the geometric part: which particles were moved as one body shows which
+//! zones there were.
+use super::events::Facts;
+use fosssim_model::{
+    scene::Scene,
+    sim::{PairKind, Stage, State},
+};
+use fosssim_num::{
+    elementary,
+    vector::{Vec2, at, length, over, put},
+};
+
+/// Differences below this are round-off (relative to the size of the numbers, and 1).
+pub(super) const SMALL: f64 = 1e-9;
+/// Of a zone of more particles, or of more contacts, not every part is tried.
+const MOST_PARTICLES: usize = 8;
+const MOST_CONTACTS: usize = 5;
+
+/// A set of particles that are moved as one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Group {
+    /// In ascending order.
+    pub(super) particles: Vec<usize>,
+    /// Whether a half-plane is in it.
+    pub(super) half_plane: bool,
+}
+
+impl Group {
+    fn of(mut particles: Vec<usize>, half_plane: bool) -> Self {
+        particles.sort_unstable();
+        particles.dedup();
+        Self { particles, half_plane }
+    }
+
+    fn union(groups: &[&Self]) -> Self {
+        let particles = groups.iter().flat_map(|group| group.particles.iter().copied()).collect();
+        Self::of(particles, groups.iter().any(|group| group.half_plane))
+    }
+
+    /// Whether it goes back to its start.
+    pub(super) fn stops(&self, scene: &Scene) -> bool {
+        self.half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
+    }
+
+    fn holds(&self, other: &Self) -> bool {
+        other.particles.iter().all(|one| self.particles.contains(one))
+    }
+}
+
+/// What became of a zone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Fate {
+    /// What should.
+    Right,
+    /// Its contacts were moved one after the other, or not all together.
+    NotMerged,
+    /// It was moved together with other zones.
+    Joined,
+    /// It was moved together with particles of no zone.
+    Others,
+    /// Some of its particles were moved alone.
+    Partly,
+    /// Nothing.
+    Unmoved,
+    /// It went back to its start though it should move.
+    Stopped,
+    /// It moved on as a rigid body though it should stop.
+    MovedOn,
+    /// Some of its particles went back to their start, others did not.
+    PartlyStopped,
+    /// It lost its velocity, but did not go back to its start.
+    KeptPositions,
+    /// It went back to its start, but kept velocity.
+    KeptVelocities,
+    /// It moved as one rigid body, otherwise than it should.
+    Rigid,
+    /// Its particles did not keep their distances, or did not stop.
+    Bent,
+}
+
+/// The first round of the geometric part of a step whose middle, and whose first geometric pass, are right.
+pub(super) struct FirstRound<'a> {
+    scene: &'a Scene,
+    facts: &'a Facts,
+    pub(super) middle: &'a State,
+    /// The end of the step: what the first round leaves of the zones that are looked at.
+    pub(super) end: &'a State,
+    pub(super) zones: Vec<Group>,
+    /// What each contact makes a zone of.
+    contacts: Vec<Group>,
+    /// The second geometric pass among those that were logged.
+    second: usize,
+    /// How often zones were moved.
+    rounds: usize,
+}
+
+impl<'a> FirstRound<'a> {
+    /// None where the step has no first round, or where something before it is wrong.
+    pub(super) fn of(scene: &'a Scene, facts: &'a Facts) -> Option<Self> {
+        let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_middle())?;
+        let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();
+        let (_, middle) = facts.middles()?;
+        let first = facts.passes.iter().position(|pass| pass.stage == Stage::Geometric { round: 0 })?;
+        let round = facts.zones.iter().map(|zone| zone.round).min()?;
+        if passes == 0 || !is_right {
+            return None;
+        }
+        let zones = facts.zones.iter().filter(|zone| zone.round == round);
+        let zones = zones.map(|zone| Group::of(zone.particles.clone(), zone.half_plane)).collect();
+        let contacts = facts.hits.iter().filter(|hit| hit.pass == first).map(|hit| {
+            let is_half_plane = hit.pair.kind == PairKind::ParticleHalfPlane;
+            Group::of(super::responses::bodies_of(scene, hit.pair), is_half_plane)
+        });
+        let (contacts, end) = (contacts.collect(), &facts.actual.end.state);
+        let (middle, second, rounds) = (&middle.state, loop_passes + 1, passes.max(2) - 1);
+        Some(Self { scene, facts, middle, end, zones, contacts, second, rounds })
+    }
+
+    /// Whether the end of the step shows where the first round left these particles.
+    pub(super) fn is_seen(&self, group: &Group) -> bool {
+        let is_own =
+            |pair| super::responses::bodies_of(self.scene, pair).iter().all(|one| group.particles.contains(one));
+        self.rounds == 1 || self.facts.detects(self.scene, self.second, &self.end.positions, is_own)
+    }
+
+    /// Whether a zone's particles end where they should, so that nothing can be told of it.
+    pub(super) fn is_at_rest(&self, zone: &Group) -> bool {
+        self.are_at(&self.expected(zone), &zone.particles)
+    }
+
+    /// The contacts of a zone, one of those that are alike.
+    pub(super) fn contacts_of(&self, zone: &Group) -> Vec<&Group> {
+        let mut own: Vec<&Group> = Vec::new();
+        for contact in self.contacts.iter().filter(|contact| zone.holds(contact)) {
+            if !own.contains(&contact) {
+                own.push(contact);
+            }
+        }
+        own
+    }
+
+    /// The state that these groups leave, moved one after the other.
+    fn moved(&self, groups: &[&Group]) -> State {
+        let mut state = self.middle.clone();
+        self.move_again(groups, &mut state);
+        state
+    }
+
+    fn move_again(&self, groups: &[&Group], state: &mut State) {
+        for group in groups {
+            perform(self.scene, group, group.stops(self.scene), &self.facts.before, state);
+        }
+    }
+
+    /// Whether the contacts of a zone, moved one after the other in every round, or not all together, lead where its particles
+    /// are.
+    pub(super) fn is_split(&self, zone: &Group) -> bool {
+        self.partitions(zone).into_iter().any(|groups| {
+            let groups: Vec<&Group> = groups.iter().collect();
+            let mut state = self.middle.clone();
+            (0..self.rounds).for_each(|_| self.move_again(&groups, &mut state));
+            self.are_at(&state, &zone.particles)
+        })
+    }
+
+    fn is_at(&self, state: &State, particle: usize) -> bool {
+        near(at(&self.end.positions, particle), at(&state.positions, particle))
+            && near(at(&self.end.velocities, particle), at(&state.velocities, particle))
+    }
+
+    fn are_at(&self, state: &State, particles: &[usize]) -> bool {
+        particles.iter().all(|&one| self.is_at(state, one))
+    }
+
+    /// What should become of a zone.
+    pub(super) fn expected(&self, zone: &Group) -> State {
+        self.moved(&[zone])
+    }
+
+    /// What became of a zone that is seen.
+    pub(super) fn fate(&self, zone: &Group) -> Fate {
+        let all = &zone.particles;
+        let expected = self.expected(zone);
+        if self.are_at(&expected, all) {
+            return Fate::Right;
+        }
+        if self.are_at(self.middle, all) {
+            return Fate::Unmoved;
+        }
+        let mut stopped = self.middle.clone();
+        perform(self.scene, zone, true, &self.facts.before, &mut stopped);
+        let stops = zone.stops(self.scene);
+        if !stops && self.are_at(&stopped, all) {
+            return Fate::Stopped;
+        }
+        if let Some(fate) = self.other_zones(zone) {
+            return fate;
+        }
+        if stops { self.stop(zone, &stopped) } else { self.motion(zone) }
+    }
+
+    /// Whether other zones than this one, each moved as it should be, lead where its particles are.
+    fn other_zones(&self, zone: &Group) -> Option<Fate> {
+        if self.is_split(zone) {
+            return Some(Fate::NotMerged);
+        }
+        let others: Vec<&Group> = self.zones.iter().filter(|other| *other != zone).collect();
+        let is_joined = |groups: &[&Group]| {
+            let all = Group::union(groups);
+            self.is_seen(&all) && self.are_at(&self.moved(&[&all]), &all.particles)
+        };
+        let mut with_all = others.clone();
+        with_all.insert(0, zone);
+        if others.iter().any(|other| is_joined(&[zone, other])) || (others.len() > 1 && is_joined(&with_all)) {
+            return Some(Fate::Joined);
+        }
+        let foreign = self.foreign();
+        if zone.particles.len() > MOST_PARTICLES {
+            return None;
+        }
+        // A part of the zone, alone or with particles of no zone.
+        let parts = (1..1_u32 << zone.particles.len()).map(|bits| {
+            let is_in = |(bit, _): &(usize, &usize)| bits >> bit & 1 == 1;
+            zone.particles.iter().enumerate().filter(is_in).map(|(_, one)| *one).collect::<Vec<usize>>()
+        });
+        for part in parts {
+            let left: Vec<usize> = zone.particles.iter().copied().filter(|one| !part.contains(one)).collect();
+            let leads_there = |group: &Group| {
+                let is_body = group.particles.len() > 1 || group.stops(self.scene);
+                let moved = self.moved(&[group]);
+                is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &left)
+            };
+            // What stays where it should be anyway was not left out.
+            let is_left = || left.iter().any(|&one| !self.is_at(&self.expected(zone), one));
+            if is_left() && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::of(part.clone(), *flag))) {
+                return Some(if zone.stops(self.scene) { Fate::PartlyStopped } else { Fate::Partly });
+            }
+            if !foreign.is_empty() {
+                let with = Group::of([part.clone(), foreign.clone()].concat(), zone.half_plane);
+                if leads_there(&with) {
+                    return Some(Fate::Others);
+                }
+            }
+        }
+        None
+    }
+
+    /// Particles of no zone that moved all the same.
+    fn foreign(&self) -> Vec<usize> {
+        if self.rounds > 1 {
+            return Vec::new();
+        }
+        let is_in_zone = |one: &usize| self.zones.iter().any(|zone| zone.particles.contains(one));
+        let all = 0..self.scene.particles.len();
+        all.filter(|one| !is_in_zone(one) && !self.is_at(self.middle, *one)).collect()
+    }
+
+    /// The ways to make several zones of a zone's contacts, in the order of the first contact of each.
+    fn partitions(&self, zone: &Group) -> Vec<Vec<Group>> {
+        let contacts = self.contacts_of(zone);
+        if contacts.len() < 2 || contacts.len() > MOST_CONTACTS {
+            return Vec::new();
+        }
+        let mut all: Vec<Vec<Vec<&Group>>> = vec![Vec::new()];
+        for contact in contacts {
+            let grown = all.into_iter().flat_map(|parts| {
+                (0..=parts.len()).map(move |into| {
+                    let mut parts = parts.clone();
+                    if into == parts.len() {
+                        parts.push(Vec::new());
+                    }
+                    parts[into].push(contact);
+                    parts
+                })
+            });
+            all = grown.collect();
+        }
+        let several = all.into_iter().filter(|parts| parts.len() > 1);
+        several.map(|parts| parts.iter().map(|part| Group::union(part)).collect()).collect()
+    }
+
+    /// What became of a zone that has to stop, all of whose particles belong together.
+    fn stop(&self, zone: &Group, stopped: &State) -> Fate {
+        let mut free = self.middle.clone();
+        perform(self.scene, zone, false, &self.facts.before, &mut free);
+        if self.are_at(&free, &zone.particles) {
+            return Fate::MovedOn;
+        }
+        let is_back = |one: &usize| near(at(&self.end.positions, *one), at(&stopped.positions, *one));
+        let rests = |one: &usize| length(at(&self.end.velocities, *one)) <= SMALL;
+        let all = || zone.particles.iter();
+        if all().all(is_back) {
+            Fate::KeptVelocities
+        } else if all().all(rests) {
+            Fate::KeptPositions
+        } else if all().any(|one| is_back(one) && rests(one) && !self.is_at(self.middle, *one)) {
+            Fate::PartlyStopped
+        } else {
+            Fate::Bent
+        }
+    }
+
+    fn motion(&self, zone: &Group) -> Fate {
+        let distance =
+            |state: &State, one: usize, two: usize| length(at(&state.positions, one) - at(&state.positions, two));
+        let pairs = zone.particles.iter().flat_map(|&one| zone.particles.iter().map(move |&two| (one, two)));
+        let is_rigid = pairs.into_iter().all(|(one, two)| {
+            let (was, is) = (distance(&self.facts.before, one, two), distance(self.end, one, two));
+            (was - is).abs() <= SMALL * (1.0 + was)
+        });
+        if is_rigid { Fate::Rigid } else { Fate::Bent }
+    }
+
+    pub(super) const fn start(&self) -> &State {
+        &self.facts.before
+    }
+}
+
+/// Moves a group as one rigid body from its start, or back to its start (collisions.md 5).
+fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut State) {
+    let all = || group.particles.iter().copied();
+    if stops {
+        for one in all() {
+            put(&mut state.positions, one, at(&start.positions, one));
+            put(&mut state.velocities, one, Vec2::zeros());
+        }
+        return;
+    }
+    let (centre, to) = (centre(scene, group, start), centre(scene, group, state));
+    let (mut momentum, mut inertia) = (0.0, 0.0);
+    for one in all() {
+        let arm = at(&start.positions, one) - centre;
+        let moved = at(&state.positions, one) - at(&start.positions, one) - (to - centre);
+        momentum += scene.particles[one].mass * (arm.x * moved.y - arm.y * moved.x);
+        inertia += scene.particles[one].mass * arm.dot(&arm);
+    }
+    let angle = momentum / inertia;
+    for one in all() {
+        let arm = at(&start.positions, one) - centre;
+        let across = Vec2::new(-arm.y, arm.x);
+        let x = to + elementary::cos(angle) * arm + elementary::sin(angle) * across;
+        put(&mut state.positions, one, x);
+        put(&mut state.velocities, one, over(x - at(&start.positions, one), scene.time_step));
+    }
+}
+
+/// The centre of mass of a group.
+pub(super) fn centre(scene: &Scene, group: &Group, state: &State) -> Vec2 {
+    let mass = |one: usize| scene.particles[one].mass;
+    let sum = group.particles.iter().map(|&one| mass(one) * at(&state.positions, one)).sum::<Vec2>();
+    over(sum, group.particles.iter().map(|&one| mass(one)).sum())
+}
+
+pub(super) fn near(one: Vec2, two: Vec2) -> bool {
+    length(one - two) <= SMALL * (1.0 + length(one))
+}

@@ -1,0 +1,67 @@
+//! Holds what is said of stages to the facts: an independent reader of traces, which asks of each sentence whether some step is as it
+//! says. For tests and the lab.
+mod says;
+mod step;
+
+use super::{About, Explanation, LoopEnd, StageFault, WrongGeometric, known, source::Source, stages};
+use crate::student::{self, Student};
+use fosssim_model::scene::Scene;
+
+/// What is said of the stages of a trace, whether or not a known mistake explains it.
+#[must_use]
+pub fn said(scene: &Scene, trace: &[u8]) -> Option<Explanation> {
+    let scan = known::kept_steps(scene, Source::whole(trace));
+    stages::explain(scene, scan.wrong.iter().chain(&scan.right))
+}
+
+/// Whether what is said of stages is true of the trace; true of what says nothing of them.
+#[must_use]
+pub fn is_true(scene: &Scene, trace: &[u8], told: &Explanation) -> bool {
+    let About::Stage(fault) = &told.about else { return true };
+    let steps = step::steps(scene, trace);
+    let is_denied = |step: &step::Step| {
+        // What is said of all steps.
+        let is_always = matches!(fault, StageFault::Geometric(WrongGeometric::Left { always: true }));
+        is_always && step.has_right_middle() && step.right_passes().1 > 0 && step.passes().1 > 0
+    };
+    steps.iter().any(|step| says::is_so(scene, step, fault)) && !steps.iter().any(is_denied)
+}
+
+/// Two mistakes together may make a program that goes on for ever: so many polynomials are enough of a step.
+pub const MOST: usize = 20_000;
+
+/// What is false in what is said of this program's trace of a scene, and of what sort what is said is.
+#[must_use]
+pub fn checked(scene: &Scene, student: Student) -> Option<(String, Option<Explanation>)> {
+    let trace = student::trace_within(scene, student, MOST).unwrap_or_else(|(bytes, _)| bytes);
+    let told = said(scene, &trace)?;
+    let About::Stage(fault) = &told.about else { return None };
+    let sort = sort(fault);
+    Some((sort, (!is_true(scene, &trace, &told)).then_some(told)))
+}
+
+/// The sort of a sentence: two of one sort differ in the names that they fill in.
+#[must_use]
+pub fn sort(fault: &StageFault) -> String {
+    let variant = |value: &dyn std::fmt::Debug| {
+        let text = format!("{value:?}");
+        text.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or("").to_owned()
+    };
+    match fault {
+        StageFault::Decisions { wrong, .. } => format!("Decisions {wrong:?}"),
+        StageFault::ContactVectors { wrong, .. } => format!("ContactVectors {wrong:?}"),
+        StageFault::Responses { wrong, in_rounds, .. } => {
+            format!("Responses {} {}", variant(wrong), if *in_rounds { "in rounds" } else { "alone" })
+        }
+        StageFault::HandedOver { when, .. } => {
+            format!("HandedOver {}", when.map_or_else(String::new, |when: LoopEnd| format!("{when:?}")))
+        }
+        StageFault::Motion { wrong, .. } => {
+            format!("Motion {}", wrong.iter().map(|one| format!("{one:?}")).collect::<Vec<_>>().join("+"))
+        }
+        other => format!("{other:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests;
