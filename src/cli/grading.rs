@@ -141,9 +141,9 @@ impl FromStr for Shard {
 /// Whom a page is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Audience {
-    /// Staff: everything.
+    /// Staff: every group. How much is told of each scene is the suite's choice of hints, or `--hints`.
     Staff,
-    /// The student: what the suite shows students at once.
+    /// The student: the groups that the suite shows students at once.
     Student,
 }
 

@@ -128,7 +128,8 @@ fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
 /// What the trace alone says.
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
-    let is_empty = judged.stop.is_none() && run.nothing == Some(trace_bytes);
+    // States that nothing keeps apart may lead nowhere: the trace is complete all the same.
+    let is_empty = !matches!(judged.stop, Some(Stop::Trace { .. })) && run.nothing == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
         return (Verdict::Unwritten, Reason::Wrong(Wrong::Nothing));
     }

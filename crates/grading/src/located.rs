@@ -4,7 +4,7 @@
 //! properties. A value is told where every scene that fails contains it, where it is as good as any other by Ochiai's measure, and
 //! where chance would not bring that about: Fisher's exact test, for as many values as are looked at. Values that the scenes can't tell
 //! apart are told together.
-use super::{coverage::Coverage, grade::Grade, result::Reason, verdict::Verdict};
+use super::coverage::Coverage;
 use fosssim_sandbox::Ended;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -162,34 +162,6 @@ fn chance(failed: usize, with: usize, all: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let share = |one: usize| (with - one) as f64 / (all - one) as f64;
     (0..failed).map(share).product()
-}
-
-impl Grade {
-    /// What the scenes have in common in which the program fails. `contents` are those of all scenes in their order, asked for
-    /// only where some fail and some do not.
-    #[must_use]
-    pub(super) fn locate<'a>(&self, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
-        let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
-        let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
-        let run = || self.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
-        let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
-        if failed == 0 || failed == run().count() {
-            return None;
-        }
-        let tried: Vec<Tried<'_>> = self
-            .scenes()
-            .zip(contents())
-            .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
-            .map(|(scene, contents)| {
-                let steps = match scene.reason {
-                    Reason::Program(reached) => reached.steps,
-                    _ => 0,
-                };
-                Tried { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
-            })
-            .collect();
-        locate(&tried)
-    }
 }
 
 #[cfg(test)]

@@ -3,12 +3,14 @@ use super::{
     config::{Credit, Marking, Visibility},
     grade::{Grade, GroupGrade, SceneGrade},
     grader::{Grading, lock},
+    located::{Contents, Failing, Located, Tried, locate},
     patience,
-    result::SceneResult,
+    result::{Reason, SceneResult},
     verdict::Verdict,
 };
 use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
+use fosssim_sandbox::Ended;
 
 /// Shares a group's points evenly among its scenes and adds up what was reached. The results come with the word whether
 /// they were taken from an earlier run.
@@ -130,10 +132,36 @@ impl Grading<'_> {
     }
 }
 
+impl Grade {
+    /// What the scenes have in common in which the program fails. `contents` are those of all scenes in their order, asked for
+    /// only where some fail and some do not.
+    fn locate<'a>(&self, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
+        let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
+        let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
+        let run = || self.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
+        let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
+        if failed == 0 || failed == run().count() {
+            return None;
+        }
+        let tried: Vec<Tried<'_>> = self
+            .scenes()
+            .zip(contents())
+            .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
+            .map(|(scene, contents)| {
+                let steps = match scene.reason {
+                    Reason::Program(reached) => reached.steps,
+                    _ => 0,
+                };
+                Tried { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
+            })
+            .collect();
+        locate(&tried)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::Reason;
 
     fn scene(verdict: Verdict, right_steps: u32) -> (SceneResult, bool) {
         (SceneResult { right_steps, ..SceneResult::without_run("a/b", 10, verdict, Reason::Right) }, false)

@@ -1,5 +1,15 @@
-//! What the commands that grade have in common at their end: exit code and file names.
-use crate::{cli::exit, suite::Grade};
+//! What the commands that grade have in common at their end: exit code, file names, and how much is shown.
+use crate::{
+    cli::{exit, grading::Grade as Arguments},
+    report::{
+        grade::{self, TextDetail},
+        style::Style,
+    },
+    suite::Grade,
+};
+
+/// So many scenes and mistakes of a class are shown; class.txt has all.
+const HARDEST: usize = 5;
 
 /// How a grading ends that nobody stopped.
 pub(super) fn exit_code(grades: &[Grade]) -> u8 {
@@ -21,4 +31,22 @@ pub(super) fn file_name(name: &str) -> String {
         return plain.to_owned();
     }
     format!("{plain}-{}", &blake3::hash(name.as_bytes()).to_hex()[..8])
+}
+
+/// How much is shown of each submission.
+pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
+    match (arguments.quiet, arguments.verbose) {
+        (true, _) => TextDetail::Line,
+        (_, true) => TextDetail::All,
+        _ if is_class => TextDetail::Table,
+        _ => TextDetail::Wrong,
+    }
+}
+
+/// The report on several submissions ends with what the class comes to.
+pub(super) fn with_class(text: String, grades: &[Grade], shown: TextDetail, style: Style) -> String {
+    match grades.len() > 1 && shown > TextDetail::Line {
+        true => text + "\n" + &grade::class(grades, HARDEST, style),
+        false => text,
+    }
 }

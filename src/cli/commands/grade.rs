@@ -2,7 +2,7 @@
 use super::{
     closer::Closer,
     display::Display,
-    ending::{exit_code, file_name},
+    ending::{exit_code, file_name, shown, with_class},
     last_run::LastRun,
     pages::{self, Pages},
     results::{Report, Results, reports},
@@ -15,7 +15,7 @@ use crate::{
     judge::Rules,
     report::{
         explain,
-        grade::{self, Format, Text, TextDetail},
+        grade::{self, Format, Text},
         number::counted,
         style::Style,
         words,
@@ -40,9 +40,6 @@ use std::{
 
 /// Where results go when several submissions are graded and no folder is named.
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
-
-/// So many scenes and mistakes of a class are shown; class.txt has all.
-const HARDEST: usize = 5;
 
 /// Where traces on which the grader itself failed go when there is no folder for results.
 const FAULTS: &str = "fosssim-faults";
@@ -339,24 +336,6 @@ impl Session<'_> {
                 last = now;
             }
         }
-    }
-}
-
-/// How much is shown of each submission.
-pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
-    match (arguments.quiet, arguments.verbose) {
-        (true, _) => TextDetail::Line,
-        (_, true) => TextDetail::All,
-        _ if is_class => TextDetail::Table,
-        _ => TextDetail::Wrong,
-    }
-}
-
-/// The report on several submissions ends with what the class comes to.
-pub(super) fn with_class(text: String, grades: &[Grade], shown: TextDetail, style: Style) -> String {
-    match grades.len() > 1 && shown > TextDetail::Line {
-        true => text + "\n" + &grade::class(grades, HARDEST, style),
-        false => text,
     }
 }
 

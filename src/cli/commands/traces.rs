@@ -1,8 +1,7 @@
 //! `grade --traces`: judges traces that are there already, a folder of them for each submission. Nothing is run, so that no
 //! sandbox is needed; how long a program took, and that it ended well, nobody knows.
 use super::{
-    ending::exit_code,
-    grade,
+    ending::{exit_code, shown, with_class},
     pages::{self, Pages},
     results::{Report, Results},
 };
@@ -64,10 +63,10 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     let (folder, reader) = (arguments.output.as_deref(), arguments.reader.into());
     let results = Results { folder, pages: pages.as_ref(), reader, is_part, grades: &grades };
     results.write(reports, || {
-        let shown = grade::shown(arguments, grades.len() > 1);
+        let shown = shown(arguments, grades.len() > 1);
         let (style, width) = (console::style(), console::width());
         let text = Text { style, shown, width, again: None, closer: None }.render(&grades);
-        grade::with_class(text, &grades, shown, style)
+        with_class(text, &grades, shown, style)
     })?;
     Ok(exit_code(&grades))
 }

@@ -13,6 +13,7 @@ use super::{
     follows, steps,
 };
 use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, share};
+use fosssim_mistakes::diagnose::Explanation;
 
 /// So many explanations are shown without `--tables`.
 const EXPLANATIONS: usize = 2;
@@ -66,7 +67,11 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
 fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     let most = if check.tables { usize::MAX } else { EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
-    let mut lines: String = explain::lines(shown).iter().map(|line| format!("  {line}\n")).collect();
+    // The first divergence follows, which is an example, too.
+    let has_example = check.tables || first(check).is_none();
+    let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
+    let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
+    let mut lines: String = explain::lines(&shown).iter().map(|line| format!("  {line}\n")).collect();
     if !more.is_empty() {
         lines += &format!("  and {} of less weight (--tables)\n", counted(more.len() as u64, "more explanation"));
     }

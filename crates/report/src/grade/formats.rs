@@ -5,6 +5,7 @@ use fosssim_grading::{
     config::Visibility,
     located::{Content, Failing, Located},
 };
+use fosssim_mistakes::diagnose::{About, Explanation};
 use fosssim_testing::{Need, skip};
 use std::path::Path;
 
@@ -116,6 +117,37 @@ fn an_untouched_template_is_told_in_ten_lines() {
     }
     assert_valid("grade.schema.json", &Format::Json.render(&grades));
     assert!(csv_of_submissions(&grades).contains("template,nothing written,0,20,"), "{}", csv_of_submissions(&grades));
+}
+
+/// One scene alone takes a loop that is one round short for an empty one: no format says what all scenes together deny.
+#[test]
+fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
+    let mut grade = samples::good();
+    let named = |key: &str, same_as: &[&str]| Explanation {
+        key: key.to_owned(),
+        same_as: same_as.iter().map(|&key| key.to_owned()).collect(),
+        about: About::Mistake,
+        reproduced: 4,
+        samples: 4,
+        ..crate::explain::tests::explanations().swap_remove(1)
+    };
+    let short = named("loop-one-fewer", &[]);
+    let alone = named("loop-empty", &["loop-one-fewer"]);
+    let explanations = [alone, short.clone(), short];
+    let scenes = grade.groups.iter_mut().flat_map(|group| &mut group.scenes);
+    for (scene, explanation) in scenes.zip(explanations) {
+        scene.result.verdict = Verdict::WrongAnswer;
+        scene.result.explanations = vec![explanation];
+    }
+    grade.groups.iter_mut().for_each(|group| group.visibility = Visibility::Visible);
+    grade.verdict = Verdict::WrongAnswer;
+    grade.settle();
+    for format in Format::ALL {
+        let document = format.render(std::slice::from_ref(&grade));
+        let said = if *format == Format::Csv { "loop-one-fewer" } else { "one round fewer" };
+        assert!(document.matches(said).count() >= 3, "{format:?}: {document}");
+        assert!(!document.contains("left empty") && !document.contains("loop-empty"), "{format:?}: {document}");
+    }
 }
 
 /// Where a program crashes stands in every format at the top.

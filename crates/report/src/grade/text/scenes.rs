@@ -34,7 +34,7 @@ type Words = (Verdict, String, Vec<String>);
 
 /// A wrong trace differs from scene to scene; a program that does not run ends in the same words each time.
 fn told(scene: &SceneGrade) -> Option<Words> {
-    let fails = !(scene.verdict.is_accepted() || scene.verdict.is_wrong_trace());
+    let fails = !matches!(scene.verdict, Verdict::Accepted | Verdict::WrongAnswer | Verdict::BadTrace);
     // Where nothing is logged, it does not matter where that shows first.
     let details = || if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
     fails.then(|| (scene.verdict, words::ending(scene), details()))
