@@ -146,17 +146,18 @@ impl StepJudgement {
             })
     }
 
-    /// Whether it has findings that another decision could explain.
+    /// Whether it has findings that another decision could explain: it would have led pairs elsewhere.
     pub(super) fn hangs_on_decisions(&self) -> bool {
-        self.findings.iter().any(|finding| {
-            matches!(
-                finding.kind(),
-                FindingKind::PolynomialCount
-                    | FindingKind::PassPositions
-                    | FindingKind::Position
-                    | FindingKind::Velocity
-                    | FindingKind::TrimmedDecision
-            )
-        })
+        self.hangs
+            || self.findings.iter().any(|finding| {
+                matches!(
+                    finding.kind(),
+                    FindingKind::PolynomialCount
+                        | FindingKind::PassPositions
+                        | FindingKind::Position
+                        | FindingKind::Velocity
+                        | FindingKind::TrimmedDecision
+                )
+            })
     }
 }
