@@ -97,12 +97,16 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     }
     let wrong = |scene: &&SceneGrade| scene.verdict.is_wrong_trace();
     let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
-    let line = |(number, (mistake, explained)): (usize, (Explanation, usize))| {
-        let rank = if number == 0 { "most likely mistake" } else { "also likely" };
-        format!("{rank}: {} (explains {explained} of {wrong})", words::explanation::what(&mistake))
+    let mut rank = "most likely mistake";
+    let line = |(mistake, explained): (Explanation, usize)| {
+        let what = words::explanation::what(&mistake);
+        if mistake.is_not_finite() {
+            return format!("{what} (in {explained} of {wrong})");
+        }
+        format!("{}: {what} (explains {explained} of {wrong})", std::mem::replace(&mut rank, "also likely"))
     };
     let located = grade.located.as_ref().map(words::located);
-    located.into_iter().chain(likely_mistakes(grade).into_iter().enumerate().map(line)).collect()
+    located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
 /// What is said of a scene whose reason is that of the whole submission.

@@ -33,7 +33,8 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
             let heading = if mistakes.len() == 1 { "Likely mistake" } else { "Likely mistakes" };
             let _ = writeln!(text, "{}", style.paint(Look::Strong, heading));
         }
-        let share = format!("(explains {explained} of {})", counted(wrong, "wrong scene"));
+        let verb = if mistake.is_not_finite() { "in" } else { "explains" };
+        let share = format!("({verb} {explained} of {})", counted(wrong, "wrong scene"));
         let _ = writeln!(text, "  - {} {share}", plain(&words::explanation::what(mistake)));
     }
     if grade.unfit().is_some() {
