@@ -4,7 +4,7 @@
 //! holds goes to another worker without having cost a try.
 use super::Grader;
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -66,7 +66,7 @@ impl<G: Grader> Health<G> {
         if self.is_proven() {
             return true;
         }
-        let proof = match super::slots::job_folder(&self.folder) {
+        let proof = match job_folder(&self.folder) {
             Err(error) => Err(format!("no folder to work in: {error}")),
             Ok(folder) => self.grader.prove(folder.path(), stop.child_token()).await,
         };
@@ -77,4 +77,10 @@ impl<G: Grader> Health<G> {
         }
         self.is_proven()
     }
+}
+
+/// A new folder within a worker's, for a job or a proof.
+pub(super) fn job_folder(folder: &Path) -> std::io::Result<tempfile::TempDir> {
+    std::fs::create_dir_all(folder)?;
+    tempfile::Builder::new().prefix("job-").tempdir_in(folder)
 }

@@ -1,5 +1,8 @@
 //! A worker's slots: each does one job after another.
-use super::{Answer, Desk, DeskError, Grader, GraderFault, Job, health::Health};
+use super::{
+    Answer, Desk, DeskError, Grader, GraderFault, Job,
+    health::{Health, job_folder},
+};
 use crate::{
     queue::Lease,
     task::{Outcome, OutputFile, Suite},
@@ -167,11 +170,6 @@ async fn run<D: Desk, G: Grader>(
     };
     settle(&desk, &job.lease, ending, &stop).await;
     keeping.abort();
-}
-
-pub(super) fn job_folder(folder: &Path) -> std::io::Result<tempfile::TempDir> {
-    std::fs::create_dir_all(folder)?;
-    tempfile::Builder::new().prefix("job-").tempdir_in(folder)
 }
 
 /// Renews a lease until it is lost.
