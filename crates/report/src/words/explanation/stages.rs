@@ -76,7 +76,7 @@ fn of_fault(fault: &StageFault) -> String {
                 Some(LoopEnd::Settled) => " when nothing collides any more",
                 None => "",
             };
-            return format!("the polynomials of its rounds are right, but not the {what} that it hands over{when}");
+            return format!("the polynomials of the rounds are right, but not the {what} that they hand over{when}");
         }
         StageFault::FirstRound => "the polynomials of the first round are right, but not where it leads",
         StageFault::LaterRounds => {
