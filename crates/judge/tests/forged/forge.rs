@@ -79,13 +79,15 @@ impl Observer for Note<'_> {
 }
 
 /// Multiplies polynomials; the course's library drops what becomes small, and the step goes on with the rest.
-struct Multiply<F>(F);
+struct Multiply<'a, F>(&'a Scene, F);
 
-impl<F: FnMut(Pair, usize, &[f64]) -> f64> Observer for Multiply<F> {
-    fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+impl<F: FnMut(Pair, usize, &[f64]) -> f64> Observer for Multiply<'_, F> {
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+        let whole = BoundedPairMotion::of(self.0, pair, q_start, q_end).polynomials();
         for (number, polynomial) in polynomials.iter_mut().enumerate() {
-            let factor = (self.0)(pair, number, polynomial.coefficients());
-            *polynomial = scaled(polynomial.coefficients(), factor);
+            let factor = (self.1)(pair, number, polynomial.coefficients());
+            let own: Vec<f64> = whole.polynomial(number).iter().map(|c| c.value).collect();
+            *polynomial = scaled(&own, if factor.is_finite() { factor } else { 1.0 });
         }
     }
 }
@@ -415,7 +417,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
         _ => Factors::Leading,
     };
     let mut each = Random::new(random.bits());
-    let mut steer = Multiply(|pair: Pair, number: usize, own: &[f64]| match (factors, pair.kind) {
+    let mut steer = Multiply(&stage.scene, |pair: Pair, number: usize, own: &[f64]| match (factors, pair.kind) {
         (Factors::All(factor), _) => factor,
         (Factors::Kind(of, factor), kind) if of == kind => factor,
         (Factors::Number(of, by, factor), kind) if (of, by) == (kind, number) => factor,
