@@ -2,6 +2,7 @@
 //!
 //! They lie in a folder per assignment. A scene's name is `Group/name`, and no two assignments have one in common; written in
 //! full, `t2m2/Group/name`, it is understood as well. Recordings are zstd files; `steps` are the digests of a recording's steps.
+use super::assignments::version;
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
 use include_dir::{Dir, File, include_dir};
@@ -46,12 +47,15 @@ pub fn assignment(name: &str) -> Option<Assignment> {
 }
 
 /// Whether a pattern takes a scene of this name. A pattern that begins with an assignment's folder, such as `t2m2/*`, takes
-/// scenes that lie there.
+/// scenes that lie there; with a version, such as `t2m2@1/*`, those of that version.
 #[must_use]
 pub fn takes(pattern: &Pattern, name: &str) -> bool {
-    let folder = pattern.as_str().split_once('/').and_then(|(first, _)| Assignment::named(first));
-    match folder {
-        Some(folder) => assignment(name) == Some(folder) && pattern.matches(&format!("{}/{name}", folder.key())),
+    let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };
+    match version(folder) {
+        Some((of, version)) => {
+            let matches = Pattern::new(rest).is_ok_and(|rest| rest.matches(name));
+            assignment(name) == Some(of) && version.has(name) && matches
+        }
         None => pattern.matches(name),
     }
 }
@@ -136,6 +140,10 @@ mod tests {
         assert_eq!(taken("earlier/*"), of("earlier"));
         assert_eq!(taken("*").len(), of("t2m2").len() + of("earlier").len());
         assert_eq!(taken("t2m2/GeometricTests/*"), taken("GeometricTests/*"));
+        assert_eq!(taken("t2m2@2/*"), of("t2m2"));
+        assert_eq!(taken("t2m2@1/*").len(), 85, "what was published");
+        assert!(taken("t2m2@1/*").iter().all(|name| of("t2m2").contains(name)));
+        assert!(taken("t2m2@9/*").is_empty());
         assert!(taken("t2m2/SimpleTests/*").is_empty() && !taken("SimpleTests/*").is_empty());
         assert!(taken("t*").is_empty(), "a pattern without a folder is compared with names alone");
     }

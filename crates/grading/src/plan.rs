@@ -6,7 +6,7 @@ use super::{
     task::SceneTask,
 };
 use fosssim_judge::Rules;
-use fosssim_model::{assignments::Assignment, scene};
+use fosssim_model::scene;
 use std::{collections::BTreeMap, fs, io, path::Path};
 
 /// A suite ready to run.
@@ -77,15 +77,21 @@ impl Plan {
     }
 }
 
-/// The text of a built-in suite.
+/// The text of a built-in suite: of `t2m2@1`, for example, or of the newest version of `t2m2`.
 #[must_use]
 pub fn built_in(name: &str) -> Option<&'static str> {
-    Assignment::named(name).map(assignments::suite)
+    assignments::version(name).map(|(_, version)| version.suite)
 }
 
-/// The names of the built-in suites, which are those of the assignments.
-pub fn built_in_names() -> impl Iterator<Item = &'static str> {
-    Assignment::ALL.into_iter().map(Assignment::key)
+/// The names of the built-in suites, each with its version, the newest one of the default assignment first.
+pub fn built_in_names() -> impl Iterator<Item = String> {
+    assignments::names()
+}
+
+/// The name of the suite that is meant where none is named.
+#[must_use]
+pub fn default_name() -> String {
+    assignments::default_name()
 }
 
 /// Why there is no plan.
@@ -251,15 +257,15 @@ mod tests {
 
     #[test]
     fn every_built_in_suite_finds_its_scenes() {
-        for name in built_in_names() {
+        for name in &built_in_names().collect::<Vec<_>>() {
             let plan = load(built_in(name).expect("its text"), Path::new("nowhere")).expect(name);
+            let (assignment, version) = assignments::version(name).expect("a suite is an assignment's");
             assert!(plan.scenes().count() > 10, "{name}");
             assert!(plan.max_points() > 0.0);
             assert_eq!(plan.rules, Rules::Fair, "{name}");
-            let assignment = Assignment::named(name).expect("a suite is an assignment's");
-            assert_eq!(plan.name, assignment.definition().title);
-            let own: BTreeSet<&str> =
-                library::names().filter(|name| library::assignment(name) == Some(assignment)).collect();
+            assert_eq!(plan.name, format!("{} ({name})", assignment.definition().title));
+            let is_own = |name: &&str| library::assignment(name) == Some(assignment) && version.has(name);
+            let own: BTreeSet<&str> = library::names().filter(is_own).collect();
             let planned: BTreeSet<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
             assert_eq!(planned, own, "{name} grades what lies in its folder");
             let all = format!("schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:{name}/*\"]\n");

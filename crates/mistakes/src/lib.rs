@@ -4,6 +4,7 @@ pub mod plain;
 
 pub mod assignments;
 
+pub mod sight;
 pub mod student;
 
 pub mod diagnose;

@@ -7,10 +7,10 @@ use super::{
 use fosssim_grading::{
     config::Credit,
     coverage::{Coverage, FAMILIES},
-    plan::{Plan, PlannedGroup},
+    plan::{Plan, PlannedGroup, default_name},
 };
 use fosssim_judge::{PairWords, PassWords, Rules, fair::Borderline};
-use fosssim_model::{assignments::Assignment, sim::StepError};
+use fosssim_model::sim::StepError;
 use serde_json::json;
 use std::fmt::Write;
 
@@ -49,15 +49,15 @@ pub fn text(plan: &Plan, contents: &Contents, undecided: &[Undecided], style: St
 }
 
 /// The version of the JSON list; it changes when a field's meaning does.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 /// The suites that come with the program, a line on each.
 #[must_use]
-pub fn list(suites: &[(&str, Plan)], style: Style) -> String {
+pub fn list(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let line = |(name, plan): &(&str, Plan)| {
+    let line = |(name, plan): &(String, Plan)| {
         let size = style.paint(Look::Faint, &format!("({})", size(plan)));
-        let default = if *name == Assignment::DEFAULT.key() { ", the default" } else { "" };
+        let default = if *name == default_name() { ", the default" } else { "" };
         format!("{name:width$}  {}{default} {size}\n", plan.name)
     };
     suites.iter().map(line).collect()
@@ -65,14 +65,17 @@ pub fn list(suites: &[(&str, Plan)], style: Style) -> String {
 
 /// The same as one JSON object: `name` is what `--suite` takes, `default` says which one is meant where none is named.
 #[must_use]
-pub fn list_json(suites: &[(&str, Plan)]) -> String {
-    let entry = |(name, plan): &(&str, Plan)| {
+pub fn list_json(suites: &[(String, Plan)]) -> String {
+    let entry = |(name, plan): &(String, Plan)| {
+        let (suite, version) = name.split_once('@').unwrap_or((name, "1"));
         json!({
             "name": name,
+            "suite": suite,
+            "version": version.parse::<u32>().unwrap_or(1),
             "title": plan.name,
             "scenes": plan.scenes().count(),
             "points": plan.max_points(),
-            "default": *name == Assignment::DEFAULT.key(),
+            "default": *name == default_name(),
         })
     };
     let list = json!({ "schema": SCHEMA, "suites": suites.iter().map(entry).collect::<Vec<_>>() });

@@ -53,8 +53,8 @@ fn named(name: &str) -> Result<&'static str> {
 }
 
 /// The suites that come with the program, and what each is called by.
-fn built_in() -> Result<Vec<(&'static str, plan::Plan)>> {
-    plan::built_in_names().map(|name| Ok((name, plan::find(name)?))).collect()
+fn built_in() -> Result<Vec<(String, plan::Plan)>> {
+    plan::built_in_names().map(|name| plan::find(&name).map(|plan| (name, plan)).map_err(Into::into)).collect()
 }
 
 /// Runs the reference on every scene, on all cores, and keeps those with something to say.

@@ -1,14 +1,89 @@
-//! What is bound to an assignment of the course: its suite, and the template of suites. One folder each.
+//! What is bound to an assignment of the course: the versions of its suite, and the template of suites. One folder each.
 use fosssim_model::assignments::Assignment;
 
 /// The commented suite to start from.
 pub const TEMPLATE: &str = include_str!("t2m2/template.toml");
 
-/// The text of an assignment's suite.
+/// A version of an assignment's suite. More scenes change the points of all, so they make a new one; what is published stays.
+#[derive(Debug, Clone, Copy)]
+pub struct Version {
+    /// The suite, as a text.
+    pub suite: &'static str,
+    /// The names of its scenes, a line each; none for the newest version, which has all that lie in the assignment's folder.
+    scenes: Option<&'static str>,
+}
+
+impl Version {
+    /// Whether a scene of the assignment belongs to it.
+    #[must_use]
+    pub fn has(&self, scene: &str) -> bool {
+        self.scenes.is_none_or(|scenes| scenes.lines().any(|line| line == scene))
+    }
+}
+
+/// The versions of an assignment's suite: 1 comes first, the newest last.
 #[must_use]
-pub const fn suite(assignment: Assignment) -> &'static str {
+pub const fn versions(assignment: Assignment) -> &'static [Version] {
     match assignment {
-        Assignment::Earlier => include_str!("earlier/suite.toml"),
-        Assignment::T2M2 => include_str!("t2m2/suite.toml"),
+        Assignment::Earlier => &[Version { suite: include_str!("earlier/suite.toml"), scenes: None }],
+        Assignment::T2M2 => &[
+            Version { suite: include_str!("t2m2/suite-1.toml"), scenes: Some(include_str!("t2m2/version-1.txt")) },
+            Version { suite: include_str!("t2m2/suite.toml"), scenes: None },
+        ],
+    }
+}
+
+/// The assignment and the version that a name such as `t2m2@1` means; `t2m2` is the newest one.
+#[must_use]
+pub fn version(name: &str) -> Option<(Assignment, Version)> {
+    let (key, number) = name.split_once('@').map_or((name, None), |(key, number)| (key, Some(number)));
+    let assignment = Assignment::named(key)?;
+    let all = versions(assignment);
+    let number = match number {
+        Some(number) => all.iter().enumerate().position(|(index, _)| number == (index + 1).to_string())?,
+        None => all.len().checked_sub(1)?,
+    };
+    Some((assignment, all[number]))
+}
+
+/// The names of all versions of all suites, `t2m2@2` for example: the newest one of the default assignment first.
+pub fn names() -> impl Iterator<Item = String> {
+    Assignment::ALL.into_iter().flat_map(|assignment| {
+        (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
+    })
+}
+
+/// The name of the version that is meant where no suite is named.
+#[must_use]
+pub fn default_name() -> String {
+    format!("{}@{}", Assignment::DEFAULT.key(), versions(Assignment::DEFAULT).len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::library;
+
+    #[test]
+    fn versions_are_named_and_the_newest_is_meant_without_a_number() {
+        let all: Vec<String> = names().collect();
+        assert_eq!(all, ["t2m2@2", "t2m2@1", "earlier@1"]);
+        assert_eq!(default_name(), all[0]);
+        let suite = |name: &str| version(name).map(|(_, version)| version.suite);
+        assert_eq!(suite("t2m2"), suite("t2m2@2"));
+        assert_ne!(suite("t2m2@1"), suite("t2m2@2"));
+        for unknown in ["t2m2@0", "t2m2@3", "t2m2@", "t2m2@01", "t9m9@1", "@1", ""] {
+            assert!(suite(unknown).is_none(), "{unknown}");
+        }
+    }
+
+    #[test]
+    fn published_versions_have_their_scenes_still() {
+        let (assignment, first) = version("t2m2@1").expect("a version");
+        let scenes: Vec<&str> = first.scenes.expect("a list").lines().collect();
+        assert_eq!(scenes.len(), 85);
+        for scene in scenes {
+            assert_eq!(library::assignment(scene), Some(assignment), "{scene}");
+        }
     }
 }

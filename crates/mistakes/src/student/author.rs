@@ -2,6 +2,7 @@
 use super::{
     catalogue::{Area, Mistake},
     mutants::{Change, Mutant},
+    operators::Mutation,
 };
 
 /// The program's author: makes one mistake, none, or several of different parts of the assignment.
@@ -10,6 +11,7 @@ pub struct Student {
     mistakes: [Option<Mistake>; Student::MOST],
     right_approach: bool,
     mutant: Option<&'static Mutant>,
+    pub(super) mutation: Option<Mutation>,
 }
 
 impl Student {
@@ -57,6 +59,12 @@ impl Student {
     #[must_use]
     pub fn with_mutant(self, mutant: &'static Mutant) -> Self {
         Self { mutant: Some(mutant), ..self }
+    }
+
+    /// The same student, in whose program an operator has changed a place, too.
+    #[must_use]
+    pub fn with_mutation(self, mutation: Mutation) -> Self {
+        Self { mutation: Some(mutation), ..self }
     }
 
     /// What the student changes that the catalogue does not have.

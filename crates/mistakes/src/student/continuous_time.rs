@@ -3,6 +3,7 @@ use super::{
     catalogue::Mistake,
     detection,
     objects::State,
+    operators::Place,
     response::respond,
     step_failure::StepFailure,
     world::{StepLog, World},
@@ -18,7 +19,9 @@ pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepL
     for _ in 0..passes {
         let predicted = state.x.clone();
         for pair in world.pairs() {
-            let q_end = if student.makes(Mistake::ContinuousOldPrediction) { &predicted } else { &state.x };
+            let is_old =
+                student.makes(Mistake::ContinuousOldPrediction) || student.is_stale(Place::ContinuousPrediction);
+            let q_end = if is_old { &predicted } else { &state.x };
             let Some(contact) = detection::detect(world, pair, q_start, q_end, log)? else { continue };
             if student.makes(Mistake::ContinuousFirstOnly) && !log.impulses.is_empty() {
                 continue;

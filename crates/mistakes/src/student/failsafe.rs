@@ -9,6 +9,7 @@ use super::{
     mutants::{Change, Turn},
     objects::State,
     objects::Zone,
+    operators::Place,
     rounding::single,
     world::World,
 };
@@ -23,10 +24,13 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
         return;
     }
     if stops(world, zone) {
-        stop(world, zone, q_start, state);
+        if !world.student.leaves(Place::HeldZone, || 0.0) {
+            stop(world, zone, q_start, state);
+        }
     } else {
         let rigid = Rigid::new(world, zone, q_start, state);
-        if mistake != Some(Mistake::FailsafeUnturnedUnmoved) || rigid.angle != 0.0 {
+        let leaves = world.student.leaves(Place::FreeZone, || rigid.momentum);
+        if !leaves && (mistake != Some(Mistake::FailsafeUnturnedUnmoved) || rigid.angle != 0.0) {
             rigid.carry_out(zone, state);
         }
     }
@@ -35,8 +39,11 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 /// Whether something in the zone cannot move.
 fn stops(world: &World, zone: &Zone) -> bool {
     let mistake = world.student.mistake_in(HERE);
-    let fixed = zone.particles.iter().any(|&particle| world.fixed(particle));
-    let half_plane = zone.half_plane && mistake != Some(Mistake::FailsafeHalfPlaneForgotten);
+    let student = world.student;
+    let asked = student.items(Place::AskedWhetherFixed, Vec::from_iter(zone.particles.iter().copied()));
+    let fixed = student.holds(Place::FixedHolds, asked.into_iter().any(|particle| world.fixed(particle)));
+    let half_plane = student.holds(Place::HalfPlaneHolds, zone.half_plane);
+    let half_plane = half_plane && mistake != Some(Mistake::FailsafeHalfPlaneForgotten);
     match mistake {
         Some(Mistake::FailsafeFixedForgotten) => half_plane,
         Some(Mistake::FailsafeAllFixedOnly) => {
@@ -47,16 +54,22 @@ fn stops(world: &World, zone: &Zone) -> bool {
     }
 }
 
+/// The particles of a zone in the order in which a loop goes through them.
+fn particles(world: &World, place: Place, zone: &Zone) -> Vec<usize> {
+    world.student.items(place, zone.particles.iter().copied().collect())
+}
+
 fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     let mistake = world.student.mistake_in(HERE);
-    for &particle in &zone.particles {
+    for particle in particles(world, Place::StoppedParticles, zone) {
         if mistake == Some(Mistake::FailsafeStopsFixedOnly) && !world.fixed(particle) {
             continue;
         }
-        if mistake != Some(Mistake::FailsafeStopKeepsPosition) {
+        let keeps = |place, row| world.student.is_stale(place) || mistake == Some(row);
+        if !keeps(Place::StoppedPosition, Mistake::FailsafeStopKeepsPosition) {
             put(&mut state.x, particle, at(q_start, particle));
         }
-        if mistake != Some(Mistake::FailsafeStopKeepsVelocity) {
+        if !keeps(Place::StoppedVelocity, Mistake::FailsafeStopKeepsVelocity) {
             let stopped = at(&state.v, particle) * 0.0;
             let stopped = match world.student.change() {
                 Some(Change::Stopped(change)) => change(at(&state.v, particle)),
@@ -75,6 +88,8 @@ struct Rigid<'a> {
     centre: Vec2,
     /// How far it moves within the step.
     shift: Vec2,
+    /// Its angular momentum about the centre, times the step.
+    momentum: f64,
     /// How far the body turns within the step, radians.
     angle: f64,
     /// Its moment of inertia.
@@ -83,7 +98,8 @@ struct Rigid<'a> {
 
 impl<'a> Rigid<'a> {
     fn new(world: &'a World, zone: &Zone, q_start: &'a [f64], state: &State) -> Self {
-        let mut rigid = Self { world, q_start, centre: Vec2::zeros(), shift: Vec2::zeros(), angle: 0.0, inertia: 0.0 };
+        let (centre, shift) = (Vec2::zeros(), Vec2::zeros());
+        let mut rigid = Self { world, q_start, centre, shift, momentum: 0.0, angle: 0.0, inertia: 0.0 };
         rigid.translation(zone, state);
         rigid.rotation(zone, state);
         if let Some(Change::Rigid(change)) = world.student.change() {
@@ -119,6 +135,8 @@ impl<'a> Rigid<'a> {
         if self.mistake() == Some(Mistake::FailsafeUnweighted) {
             return 1.0;
         }
+        let student = self.world.student;
+        let particle = student.index(Place::SumMass, particle, 0, self.world.scene.particles.len());
         let index = match self.mistake() {
             Some(Mistake::FailsafeMassIndex) => particle,
             Some(Mistake::FailsafeMassCounter) => 2 * number,
@@ -132,7 +150,8 @@ impl<'a> Rigid<'a> {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));
         let is_unweighted = |alone| both || student.makes(alone);
-        for (number, &particle) in zone.particles.iter().enumerate() {
+        let h = self.world.scene.time_step;
+        for (number, particle) in particles(self.world, Place::SummedParticles, zone).into_iter().enumerate() {
             let mass = self.mass(number, particle);
             let start = at(self.q_start, particle);
             let moved = at(&state.x, particle) - start;
@@ -140,7 +159,7 @@ impl<'a> Rigid<'a> {
             let weight = |forgotten| if is_unweighted(forgotten) { 1.0 } else { mass };
             let motion = match student.mistake_in(HERE) {
                 Some(Mistake::FailsafeMomentumVelocity) => at(&state.v, particle),
-                _ => moved,
+                _ => student.fresh(Place::SumMotion, moved, h * at(&state.v, particle)),
             };
             self.centre = student.add_scaled(self.centre, weight(Mistake::FailsafeCentreUnweighted), position);
             self.shift = student.add_scaled(self.shift, weight(Mistake::FailsafeMomentumUnweighted), motion);
@@ -166,12 +185,14 @@ impl<'a> Rigid<'a> {
     fn rotation(&mut self, zone: &Zone, state: &State) {
         let mut momentum = 0.0;
         let mut inertia = 0.0;
-        for (number, &particle) in zone.particles.iter().enumerate() {
+        let (h, student) = (self.world.scene.time_step, self.world.student);
+        for (number, particle) in particles(self.world, Place::TurningParticles, zone).into_iter().enumerate() {
             let start = at(self.q_start, particle);
             let moved = at(&state.x, particle) - start;
+            let moved = student.fresh(Place::TurnMotion, moved, h * at(&state.v, particle));
             let arm = match self.mistake() {
                 Some(Mistake::FailsafeAboutOrigin) => start,
-                _ => start - self.centre,
+                _ => student.fresh(Place::TurnArm, start, at(&state.x, particle)) - self.centre,
             };
             let relative = match self.mistake() {
                 Some(Mistake::FailsafeWholeDisplacement) => moved,
@@ -179,7 +200,6 @@ impl<'a> Rigid<'a> {
                 Some(Mistake::FailsafeMomentumFromEnd) => at(&state.x, particle) - self.centre,
                 _ => moved - self.shift,
             };
-            let student = self.world.student;
             let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { self.mass(number, particle) };
             let turn = match self.mistake() {
                 Some(Mistake::FailsafeCrossSum) => arm.x * relative.y + arm.y * relative.x,
@@ -212,14 +232,16 @@ impl<'a> Rigid<'a> {
                 _ => {}
             }
         }
-        self.inertia = inertia;
+        let momentum = student.number(Place::AngularMomentum, momentum);
+        let inertia = student.number(Place::Inertia, inertia);
+        (self.momentum, self.inertia) = (momentum, inertia);
         self.angle = match self.mistake() {
             Some(Mistake::FailsafeRotationSign) => -(momentum / inertia),
             Some(Mistake::FailsafeNoRotation) => 0.0,
             Some(Mistake::FailsafeTinyTurnIgnored) if (momentum / inertia).abs() < 1e-3 => 0.0,
             Some(Mistake::FailsafeAnglePerStep) => momentum / inertia * self.world.scene.time_step,
             Some(Mistake::FailsafeNoInertia) => momentum,
-            _ => momentum / inertia,
+            _ => student.number(Place::Angle, momentum / inertia),
         };
     }
 
@@ -240,11 +262,13 @@ impl<'a> Rigid<'a> {
             }
             _ => (elementary::cos(self.angle), elementary::sin(self.angle)),
         };
-        for &particle in &zone.particles {
+        let student = self.world.student;
+        let (cosine, sine) = (student.number(Place::Cosine, cosine), student.number(Place::Sine, sine));
+        for particle in particles(self.world, Place::CarriedParticles, zone) {
             let start = at(self.q_start, particle);
             let arm = match self.mistake() {
                 Some(Mistake::FailsafeTurnsEnd) => at(&state.x, particle) - self.centre - self.shift,
-                _ => start - self.centre,
+                _ => student.fresh(Place::CarriedArm, start, at(&state.x, particle)) - self.centre,
             };
             let across = match self.mistake() {
                 Some(Mistake::FailsafePerpendicular) => Vec2::new(arm.y, arm.x),
@@ -257,8 +281,9 @@ impl<'a> Rigid<'a> {
                     self.centre + (self.shift + turned)
                 }
                 _ => {
-                    let student = self.world.student;
-                    student.add_scaled(student.add_scaled(self.centre + self.shift, cosine, arm), sine, across)
+                    let centre = student.vector(Place::CarriedCentre, self.centre);
+                    let to = centre + student.vector(Place::CarriedShift, self.shift);
+                    student.add_scaled(student.add_scaled(to, cosine, arm), sine, across)
                 }
             };
             let h = self.world.scene.time_step;
@@ -273,7 +298,7 @@ impl<'a> Rigid<'a> {
                     put(&mut state.v, particle, over(x - at(&state.x, particle), h));
                 }
                 Some(Mistake::FailsafeVelocityOfCentre) => put(&mut state.v, particle, over(self.shift, h)),
-                _ => put(&mut state.v, particle, over(x - start, h)),
+                _ => put(&mut state.v, particle, student.vector(Place::CarriedVelocity, over(x - start, h))),
             }
             put(&mut state.x, particle, x);
             if let Some(Change::Moved(change)) = self.world.student.change() {

@@ -5,6 +5,7 @@ use super::{
     mutants::Change,
     objects::State,
     objects::Zone,
+    operators::Place,
     step_failure::StepFailure,
     world::{StepLog, World},
     zones,
@@ -12,6 +13,9 @@ use super::{
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::ImpactZones];
+
+/// So many rounds no right program needs in any scene: some mistakes let the list of zones change for ever.
+const MOST_ROUNDS: u32 = 1000;
 
 /// A watched step is left when it has more zones than this, and than particles.
 const MOST_ZONES: usize = 1000;
@@ -32,7 +36,7 @@ pub fn handle(
     if !resolved && world.student.makes(Mistake::GeometricMovesPrediction) {
         *state = prediction;
     }
-    if !resolved && !world.student.makes(Mistake::GeometricEmpty) {
+    if world.student.holds(Place::NeedsZones, !resolved) && !world.student.makes(Mistake::GeometricEmpty) {
         geometric(world, q_start, state, log)?;
     }
     Ok(())
@@ -42,7 +46,7 @@ pub fn handle(
 fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let student = world.student;
     let prediction = state.clone();
-    let contacts = detection::pass(world, q_start, &state.x, log)?;
+    let contacts = student.items(Place::FirstZoneContacts, detection::pass(world, q_start, &state.x, log)?);
     let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
     let most_rounds = if let Some(Change::GeometricRounds(most)) = student.change() { *most } else { u32::MAX };
     let mut round = 0;
@@ -50,6 +54,7 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
         return Ok(());
     }
     let mut moved: Vec<Zone> = Vec::new();
+    let mut kept = contacts;
     loop {
         if student.makes(Mistake::GeometricRestarts) {
             state.clone_from(&prediction);
@@ -64,25 +69,35 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
             move_zones(world, q_start, &new, state);
             moved.clone_from(&zones);
         } else {
-            move_zones(world, q_start, &zones, state);
+            let later = usize::from(round > 0);
+            move_zones(world, q_start, &student.items(Place::ZonesMoved { later }, zones.clone()), state);
         }
         round += 1;
         if student.makes(Mistake::GeometricOneRound) || round >= most_rounds {
             return Ok(());
         }
-        let q_end = if student.makes(Mistake::GeometricDetectsPrediction) { &prediction.x } else { &state.x };
-        let contacts = detection::pass(world, q_start, q_end, log)?;
+        let is_old = student.makes(Mistake::GeometricDetectsPrediction) || student.is_stale(Place::ZonePrediction);
+        let q_end = if is_old { &prediction.x } else { &state.x };
+        let mut contacts = student.items(Place::LaterZoneContacts, detection::pass(world, q_start, q_end, log)?);
+        if student.is_stale(Place::ZoneContactsKept) {
+            kept.append(&mut contacts);
+            contacts.clone_from(&kept);
+        }
         let found = contacts.iter().map(|contact| zones::zone_of(world, contact));
         let stops_when_clear = contacts.is_empty() && student.makes(Mistake::GeometricStopsWhenClear);
         if stops_when_clear || student.makes(Mistake::GeometricFindsInVain) {
             return Ok(());
         }
-        let mut next: Vec<Zone> =
-            if student.makes(Mistake::GeometricForgetsZones) { Vec::new() } else { zones.clone() };
+        let mut next: Vec<Zone> = if student.makes(Mistake::GeometricForgetsZones) {
+            Vec::new()
+        } else {
+            student.items(Place::ZonesBefore, zones.clone())
+        };
         next.extend(found);
         let next = zones::merge(student, next);
         // Without the old zones the list may change for ever, so that program gives up when nothing collides.
-        let done = zones::equal(student, &zones, &next) || next.is_empty();
+        let same = student.holds(Place::ZonesAreTheSame, zones::equal(student, &zones, &next));
+        let done = same || next.is_empty() || round > MOST_ROUNDS;
         if done {
             if student.makes(Mistake::GeometricExtraPass) {
                 detection::pass(world, q_start, &state.x, log)?;

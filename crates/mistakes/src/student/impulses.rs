@@ -6,6 +6,7 @@ use super::{
     detection,
     mutants::Change,
     objects::{Contact, State},
+    operators::Place,
     response::respond,
     step_failure::StepFailure,
     world::{StepLog, World},
@@ -44,22 +45,22 @@ pub fn apply(
     let limit = limit(world, max_iterations);
     let mut list: Vec<Contact> = Vec::new();
     while rounds < limit {
-        let q_end = if student.makes(Mistake::ImpulsesDetectPrediction) { &prediction.x } else { &state.x };
-        let found = detection::pass(world, &start, q_end, log)?;
-        if !student.makes(Mistake::ImpulsesListKept) {
+        let is_old = student.makes(Mistake::ImpulsesDetectPrediction) || student.is_stale(Place::RoundPrediction);
+        let q_end = if is_old { &prediction.x } else { &state.x };
+        let found = student.items(Place::RoundContacts, detection::pass(world, &start, q_end, log)?);
+        if !student.makes(Mistake::ImpulsesListKept) && !student.is_stale(Place::RoundContactsKept) {
             list.clear();
         }
         list.extend(found);
         let contacts = &list;
         let enough = if let Some(Change::Enough(most)) = student.change() { *most } else { 0 };
-        if contacts.len() <= enough {
+        if student.holds(Place::RoundIsEmpty, contacts.len() <= enough) {
             if student.makes(Mistake::ImpulsesVelocityRestored) {
                 state.v.clone_from(&prediction.v);
             }
-            return Ok(!matches!(
-                student.mistake_in(&[Area::ImpulseLoop]),
-                Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted)
-            ));
+            let fails = student.mistake_in(&[Area::ImpulseLoop]);
+            let succeeds = !matches!(fails, Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted));
+            return Ok(student.holds(Place::LoopSucceeds, succeeds));
         }
         resolve(world, &start, contacts, &prediction, state, log);
         if student.makes(Mistake::ImpulsesStartAdvances) {
@@ -88,7 +89,7 @@ fn limit(world: &World, max_iterations: i32) -> i32 {
         Some(Mistake::ImpulsesOnlyOne) => max_iterations.min(1),
         Some(Mistake::ImpulsesAlwaysTen) => 10,
         Some(Mistake::ImpulsesDouble) => max_iterations.saturating_mul(2),
-        _ => max_iterations,
+        _ => world.student.count(Place::RoundLimit, max_iterations),
     }
 }
 

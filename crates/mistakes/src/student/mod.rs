@@ -23,6 +23,7 @@ mod impulses;
 mod integrators;
 pub mod mutants;
 mod objects;
+pub mod operators;
 mod penalty;
 mod record;
 mod refused;

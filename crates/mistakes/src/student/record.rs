@@ -4,6 +4,7 @@ use super::{
     author::Student,
     catalogue::{Area, Mistake},
     objects::{Contact, Object, State},
+    operators::Place,
     rounding::single,
     step::step,
     step_failure::StepFailure,
@@ -126,7 +127,7 @@ fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
         Some(Mistake::LogNoImpulses) => Vec::new(),
         Some(Mistake::LogDuplicateImpulses) => impulses.iter().flat_map(|impulse| [*impulse, *impulse]).collect(),
         Some(Mistake::LogImpulsesReversed) => impulses.iter().rev().copied().collect(),
-        _ => impulses.to_vec(),
+        _ => student.items(Place::LoggedImpulses, impulses.to_vec()),
     };
     if student.makes(Mistake::LogNanContacts) {
         listed.iter_mut().for_each(|impulse| impulse.n = Vec2::new(f64::NAN, f64::NAN));

@@ -39,7 +39,7 @@ fn particle_particle(world: &World, state: &mut State, bounce: f64, one: usize, 
     }
     let u = unit(n);
     let impulse = bounce * (v2 - v1).dot(&u);
-    let (m1, m2) = (world.collision_mass(one), world.collision_mass(two));
+    let (m1, m2) = (world.collision_mass(0, 0, one), world.collision_mass(0, 1, two));
     push(world, state, one, impulse / (1.0 + m1 / m2) * u);
     push(world, state, two, -(impulse / (m2 / m1 + 1.0) * u));
     Some(n)
@@ -59,7 +59,7 @@ fn particle_edge(world: &World, state: &mut State, bounce: f64, one: usize, inde
     let u = unit(n);
     let impulse = bounce * (v2 + alpha * (v3 - v2) - v1).dot(&u);
     let beta = 1.0 - alpha;
-    let [m1, m2, m3] = [one, two, three].map(|particle| world.collision_mass(particle));
+    let [m1, m2, m3] = [(0, one), (1, two), (2, three)].map(|(role, one)| world.collision_mass(1, role, one));
     push(world, state, one, impulse / (1.0 + beta * beta * m1 / m2 + alpha * alpha * m1 / m3) * u);
     push(world, state, two, -(beta * impulse / (m2 / m1 + beta * beta + alpha * alpha * m2 / m3) * u));
     push(world, state, three, -(alpha * impulse / (m3 / m1 + beta * beta * m3 / m2 + alpha * alpha) * u));

@@ -3,6 +3,7 @@ use super::{
     catalogue::{Area, Mistake},
     continuous_time, hybrid, integrators,
     objects::State,
+    operators::Place,
     simple,
     step_failure::StepFailure,
     world::{StepLog, World},
@@ -28,6 +29,7 @@ pub fn step(
     let student = world.student;
     let q_start = state.x.clone();
     integrators::advance(world, state)?;
+    let q_start = if student.is_stale(Place::StepStart) { state.x.clone() } else { q_start };
     if !student.makes(Mistake::LogImpulsesKept) {
         log.impulses.clear();
     }

@@ -12,6 +12,7 @@ use super::{
     catalogue::Mistake,
     mutants::Change,
     objects::{Contact, Object, Pair, State},
+    operators::Place,
 };
 
 /// Everything that stays as it is during a run. Programs of many students share a scene, and none holds a list of its pairs,
@@ -67,6 +68,8 @@ impl World {
         let mut changed = None;
         if let Some(Change::Pairs(change)) = student.change() {
             change(changed.insert(pairs(&self.scene, student).collect()));
+        } else if student.changes(Place::PairsOfPass) {
+            changed = Some(student.items(Place::PairsOfPass, pairs(&self.scene, student).collect()));
         }
         Self { scene: Arc::clone(&self.scene), student, masses: Arc::clone(&self.masses), changed }
     }
@@ -87,13 +90,12 @@ impl World {
     }
 
     /// The particle's mass as collisions see it: nothing moves a fixed particle, so its mass is infinite.
-    pub fn collision_mass(&self, particle: usize) -> f64 {
+    ///
+    /// It is asked for a body of a pair of this kind, in this role.
+    pub fn collision_mass(&self, kind: usize, role: usize, particle: usize) -> f64 {
         let particle = &self.scene.particles[particle];
-        if particle.fixed && !self.student.makes(Mistake::ResponseFixedMassFinite) {
-            f64::INFINITY
-        } else {
-            particle.mass
-        }
+        let is_infinite = self.student.holds(Place::InfiniteMass { kind, role }, particle.fixed);
+        if is_infinite && !self.student.makes(Mistake::ResponseFixedMassFinite) { f64::INFINITY } else { particle.mass }
     }
 
     /// Whether the particle is fixed.
@@ -116,6 +118,7 @@ fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
     let planes_first = student.makes(Mistake::PairsHalfPlanesFirst);
     let of = OfParticle {
         scene,
+        student,
         both_orders: student.makes(Mistake::PairsBothOrders),
         neighbours_only: student.makes(Mistake::PairsNeighboursOnly),
         fixed_skipped: student.makes(Mistake::PairsFixedSkipped),
@@ -135,6 +138,7 @@ fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
 #[derive(Clone, Copy)]
 struct OfParticle<'a> {
     scene: &'a Scene,
+    student: Student,
     both_orders: bool,
     neighbours_only: bool,
     fixed_skipped: bool,
@@ -160,7 +164,8 @@ impl<'a> OfParticle<'a> {
     fn edges(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
         let is_fixed = move |one: usize| self.scene.particles[one].fixed;
         self.scene.edges.iter().enumerate().filter_map(move |(index, edge)| {
-            let is_endpoint = edge.first == particle || edge.second == particle;
+            let is_endpoint = self.student.holds(Place::OwnFirstEnd, edge.first == particle)
+                || self.student.holds(Place::OwnSecondEnd, edge.second == particle);
             let is_still = [particle, edge.first, edge.second].into_iter().all(is_fixed);
             let is_left_out = (is_endpoint && !self.endpoints_too) || (is_still && self.fixed_skipped);
             (!is_left_out).then_some(Pair { particle, object: Object::Edge(index) })

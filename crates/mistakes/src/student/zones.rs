@@ -6,6 +6,7 @@ use super::{
     catalogue::{Area, Mistake},
     mutants::Change,
     objects::{Contact, Object, Zone},
+    operators::Place,
     world::World,
 };
 
@@ -14,15 +15,21 @@ const HERE: &[Area] = &[Area::ImpactZones];
 
 /// The zone of one contact.
 pub fn zone_of(world: &World, contact: &Contact) -> Zone {
-    let student = world.student;
-    let mut particles = BTreeSet::from([contact.pair.particle]);
+    let (student, all) = (world.student, world.scene.particles.len());
+    let one = contact.pair.particle;
+    let mut particles = BTreeSet::from([one]);
     let mut half_plane = false;
+    let kind;
     match contact.pair.object {
         Object::Particle(other) => {
-            particles.insert(other);
+            kind = 0;
+            particles.insert(student.index(Place::ZoneOther, other, one, all));
         }
         Object::Edge(index) => {
+            kind = 1;
             let edge = world.scene.edges[index];
+            let first = student.index(Place::ZoneEnd { role: 1 }, edge.first, edge.second, all);
+            let second = student.index(Place::ZoneEnd { role: 2 }, edge.second, edge.first, all);
             match student.mistake_in(HERE) {
                 Some(Mistake::ZonesOneEndpoint) => particles.extend([edge.first]),
                 Some(Mistake::ZonesOtherEndpoint) => particles.extend([edge.second]),
@@ -31,12 +38,16 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
                 }
                 Some(Mistake::ZonesEdgeIndex) => particles.extend([index.min(world.scene.particles.len() - 1)]),
                 Some(Mistake::ZonesEdgeWithoutParticle) => particles = BTreeSet::from([edge.first, edge.second]),
-                _ => particles.extend([edge.first, edge.second]),
+                _ => particles.extend([first, second]),
             }
             half_plane = student.makes(Mistake::ZonesFlagOfEdges);
         }
-        Object::HalfPlane(_) => half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag),
+        Object::HalfPlane(_) => {
+            kind = 2;
+            half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag);
+        }
     }
+    let half_plane = student.holds(Place::ZoneFlag { kind }, half_plane);
     let mut zone = Zone { particles, half_plane };
     if let Some(Change::Zone(change)) = student.change() {
         change(contact, &mut zone);
@@ -64,20 +75,26 @@ fn merged(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
     loop {
         let before = zones.len();
         let mut merged: Vec<Zone> = Vec::new();
-        for zone in zones {
-            // Whoever asks for two shared particles still finds a zone of one in another.
-            let shares = |other: &Zone| {
-                let most = other.particles.len().min(zone.particles.len());
-                let least = if student.makes(Mistake::ZonesJoinTwoShared) { most.min(2) } else { 1 };
-                other.particles.intersection(&zone.particles).count() >= least
+        // Whoever asks for two shared particles still finds a zone of one in another.
+        let meet = |one: &Zone, other: &Zone| {
+            let most = if student.makes(Mistake::ZonesJoinTwoShared) {
+                one.particles.len().min(other.particles.len()).min(2)
+            } else if student.changes(Place::ZonesShare) {
+                2
+            } else {
+                return !one.particles.is_disjoint(&other.particles);
             };
-            match merged.iter_mut().find(|other| shares(other)) {
+            one.particles.intersection(&other.particles).count() >= most
+        };
+        for zone in student.items(Place::ZonesToMerge, zones) {
+            match merged.iter_mut().find(|other| student.holds(Place::ZonesMeet, meet(other, &zone))) {
                 Some(other) => join(student, other, zone),
                 None => merged.push(zone),
             }
         }
         zones = merged;
-        if zones.len() == before || student.makes(Mistake::ZonesMergedOnce) {
+        let again = student.holds(Place::MergedAgain, zones.len() != before);
+        if !again || student.makes(Mistake::ZonesMergedOnce) {
             return zones;
         }
     }
@@ -88,12 +105,12 @@ fn join(student: Student, zone: &mut Zone, other: Zone) {
         Some(Mistake::ZonesFlagLost) => zone.half_plane,
         Some(Mistake::ZonesFlagOverwritten) => other.half_plane,
         Some(Mistake::ZonesFlagBoth) => zone.half_plane && other.half_plane,
-        _ => zone.half_plane || other.half_plane,
+        _ => student.holds(Place::FlagOfOld, zone.half_plane) || student.holds(Place::FlagOfNew, other.half_plane),
     };
     if student.makes(Mistake::ZonesJoinOneParticle) {
         zone.particles.extend(other.particles.last());
     } else {
-        zone.particles.extend(other.particles);
+        zone.particles.extend(student.items(Place::JoinedParticles, Vec::from_iter(other.particles)));
     }
 }
 
@@ -148,6 +165,12 @@ pub fn equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
             old.len() == new.len()
                 && new.iter().all(|zone| old.iter().any(|other| other.particles.len() == zone.particles.len()))
         }
-        _ => old.len() == new.len() && new.iter().all(|zone| old.contains(zone)),
+        _ => {
+            let same = |one: &Zone, other: &Zone| {
+                student.holds(Place::SameParticles, one.particles == other.particles)
+                    && student.holds(Place::SameFlag, one.half_plane == other.half_plane)
+            };
+            old.len() == new.len() && new.iter().all(|zone| old.iter().any(|other| same(zone, other)))
+        }
     }
 }

@@ -9,6 +9,8 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Suites {
     names: Vec<String>,
+    /// Names without a version, each with the newest version's name.
+    newest: Vec<(String, String)>,
     default: String,
 }
 
@@ -20,6 +22,9 @@ struct List {
 #[derive(Deserialize)]
 struct Entry {
     name: String,
+    /// The name without its version.
+    #[serde(default)]
+    suite: String,
     default: bool,
 }
 
@@ -31,20 +36,34 @@ impl Suites {
     pub fn read(json: &[u8]) -> Result<Self, serde_json::Error> {
         let list: List = serde_json::from_slice(json)?;
         let default = list.suites.iter().find(|suite| suite.default).map(|suite| suite.name.clone());
+        let mut newest: Vec<(String, String)> = Vec::new();
+        for entry in list.suites.iter().filter(|entry| !entry.suite.is_empty()) {
+            // The newest version comes first.
+            if newest.iter().all(|(suite, _)| *suite != entry.suite) {
+                newest.push((entry.suite.clone(), entry.name.clone()));
+            }
+        }
         let names = list.suites.into_iter().map(|suite| suite.name).collect();
-        Ok(Self { names, default: default.unwrap_or_default() })
+        Ok(Self { names, newest, default: default.unwrap_or_default() })
     }
 
-    /// The name for settings that have none: that of the grader's default. Empty where the grader can't be asked here, which leaves
-    /// the choice to it.
+    /// The name for settings: that of the grader's default where there is none, and with the newest version where there is no
+    /// version, so that later versions of the grader change nothing. As it is where the grader can't be asked here, which leaves the
+    /// choice to it.
     pub(super) fn or_default(&self, name: &str) -> String {
-        if name.is_empty() { self.default.clone() } else { name.to_owned() }
+        let newest = self.newest.iter().find(|(suite, _)| suite == name);
+        match newest {
+            Some((_, newest)) => newest.clone(),
+            None if name.is_empty() => self.default.clone(),
+            None => name.to_owned(),
+        }
     }
 
     /// Whether there is such a suite.
     pub(super) fn check(&self, name: &str) -> Result<(), Problem> {
         let is_known = if self.names.is_empty() {
-            name.is_empty() || is_file_name(name)
+            // The version stands behind an `@`.
+            name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name)
         } else {
             self.names.iter().any(|known| known == name)
         };
@@ -72,6 +91,10 @@ mod tests {
         let suites = Suites::read(json).expect("a list");
         assert_eq!(suites.words(), "new or old");
         assert_eq!((suites.or_default("").as_str(), suites.or_default("new").as_str()), ("old", "new"));
+        let json = br#"{"schema": 2, "suites": [{"name": "m@2", "suite": "m", "default": true}, {"name": "m@1", "suite": "m", "default": false}]}"#;
+        let versions = Suites::read(json).expect("a list");
+        let filled = ["", "m", "m@1", "m@2"].map(|name| versions.or_default(name));
+        assert_eq!(filled, ["m@2", "m@2", "m@1", "m@2"], "what is kept names its version");
         assert!(suites.check("new").is_ok() && suites.check("old").is_ok());
         assert_eq!(suites.check("other").expect_err("unknown").detail, "suite is new or old");
         assert!(Suites::read(b"usage: ...").is_err());
@@ -80,7 +103,8 @@ mod tests {
     #[test]
     fn without_a_grader_any_plain_name_will_do() {
         let suites = Suites::default();
-        assert!(suites.check("").is_ok() && suites.check("t9m9").is_ok());
+        assert!(suites.check("").is_ok() && suites.check("t9m9").is_ok() && suites.check("t9m9@2").is_ok());
+        assert!(suites.check("t9m9@").is_err() && suites.check("t9m9@1@2").is_err());
         assert!(suites.check("../../etc/passwd").is_err() && suites.check("--output").is_err());
     }
 }

@@ -6,13 +6,14 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// Every change, oldest first. The number of a change is its place in this list, from 1.
-const MIGRATIONS: [(&str, &str); 6] = [
+const MIGRATIONS: [(&str, &str); 7] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
     ("answers", include_str!("migrations/0003_answers.sql")),
     ("platforms", include_str!("migrations/0004_platforms.sql")),
     ("columns", include_str!("migrations/0005_columns.sql")),
     ("workers", include_str!("migrations/0006_workers.sql")),
+    ("suite versions", include_str!("migrations/0007_suite_versions.sql")),
 ];
 
 /// The version that this program works with.

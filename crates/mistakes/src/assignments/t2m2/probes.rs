@@ -14,7 +14,7 @@
 use fosssim_model::scene::{self, Scene};
 
 /// Names and texts: polynomials first, then contacts and responses, the impulse rounds, zones.
-const PROBES: [(&str, &str); 22] = [
+const PROBES: [(&str, &str); 25] = [
     ("drift-of-particles", include_str!("probes/drift-of-particles.xml")),
     ("drift-of-edges", include_str!("probes/drift-of-edges.xml")),
     ("slanted-half-planes", include_str!("probes/slanted-half-planes.xml")),
@@ -30,6 +30,8 @@ const PROBES: [(&str, &str); 22] = [
     ("rounds-run-out", include_str!("probes/rounds-run-out.xml")),
     ("rounds-run-out-on-one", include_str!("probes/rounds-run-out-on-one.xml")),
     ("one-round-only", include_str!("probes/one-round-only.xml")),
+    ("rounds-under-a-constant-force", include_str!("probes/rounds-under-a-constant-force.xml")),
+    ("tiny-edges", include_str!("probes/tiny-edges.xml")),
     ("zones-of-all-kinds", include_str!("probes/zones-of-all-kinds.xml")),
     ("zones-that-grow", include_str!("probes/zones-that-grow.xml")),
     ("zones-reach-a-half-plane", include_str!("probes/zones-reach-a-half-plane.xml")),
@@ -37,6 +39,7 @@ const PROBES: [(&str, &str); 22] = [
     ("zones-collect-rows", include_str!("probes/zones-collect-rows.xml")),
     ("zones-of-long-edges", include_str!("probes/zones-of-long-edges.xml")),
     ("zones-turn-little-and-far", include_str!("probes/zones-turn-little-and-far.xml")),
+    ("zones-under-drag", include_str!("probes/zones-under-drag.xml")),
 ];
 
 /// The scenes. Each is sound for [`scene::read`] and for the original's reader, and reads back unchanged.

@@ -14,6 +14,7 @@ use crate::student::{
     encounter::{Body, Encounter, alpha},
     mutants::Change,
     objects::{Contact, Object, Pair},
+    operators::Place,
     rounding::single,
     step_failure::StepFailure,
     world::{StepLog, World},
@@ -38,21 +39,36 @@ fosssim_model::drops_leading!();
 impl Encounter {
     fn new(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let frame = axes_of(world.student, pair);
-        let body = |index| {
+        let (student, all) = (world.student, world.scene.particles.len());
+        let (kind, other) = match pair.object {
+            Object::Particle(other) => (0, other),
+            Object::Edge(_) => (1, pair.particle),
+            Object::HalfPlane(_) => (2, pair.particle),
+        };
+        let body = |role: usize, index: usize| {
             let start = frame.point(at(q_start, index), at(q_start, pair.particle));
             let end = frame.point(at(q_end, index), at(q_end, pair.particle));
-            Body::new(start, end, world.scene.particles[index].radius)
+            let partner = if role == 0 { other } else { pair.particle };
+            let radius = student.index(Place::SeenRadius { kind, role }, index, partner, all);
+            let mut body = Body::new(start, end, world.scene.particles[radius].radius);
+            body.displacement = student.vector(Place::SeenMotion { kind, role }, body.displacement);
+            body
         };
-        let particle = body(pair.particle);
+        let particle = body(0, pair.particle);
         match pair.object {
-            Object::Particle(other) => Self::Particles(particle, body(other)),
+            Object::Particle(other) => {
+                Self::Particles(particle, body(1, student.index(Place::SeenOther, other, pair.particle, all)))
+            }
             Object::Edge(index) => {
                 let edge = world.scene.edges[index];
-                let measured = if world.student.makes(Mistake::ParticleEdgeFirstEdgeRadius) { 0 } else { index };
-                let radius = world.scene.edges[measured].radius;
-                Self::Edge([particle, body(edge.first), body(edge.second)], radius)
+                let first = student.index(Place::SeenEnd { role: 1 }, edge.first, edge.second, all);
+                let second = student.index(Place::SeenEnd { role: 2 }, edge.second, edge.first, all);
+                let measured = if student.makes(Mistake::ParticleEdgeFirstEdgeRadius) { 0 } else { index };
+                let measured = student.index(Place::SeenRadius { kind, role: 1 }, measured, 0, world.scene.edges.len());
+                Self::Edge([particle, body(1, first), body(2, second)], world.scene.edges[measured].radius)
             }
             Object::HalfPlane(index) => {
+                let index = student.index(Place::SeenHalfPlane, index, 0, world.scene.half_planes.len());
                 let plane = world.scene.half_planes[index];
                 let point = frame.point(plane.point, at(q_start, pair.particle));
                 Self::HalfPlane(particle, point, frame.direction(plane.normal))
@@ -149,6 +165,16 @@ pub fn detect(
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }
+    let kind = match pair.object {
+        Object::Particle(_) => 0,
+        Object::Edge(_) => 1,
+        Object::HalfPlane(_) => 2,
+    };
+    for (polynomial, list) in lists.iter_mut().enumerate() {
+        for (index, coefficient) in list.iter_mut().enumerate() {
+            *coefficient = student.number(Place::Coefficient { kind, polynomial, index }, *coefficient);
+        }
+    }
     if let Some(Change::Polynomials(change)) = student.change() {
         change(&encounter, &mut lists);
     }
@@ -181,7 +207,8 @@ pub fn detect(
     if !counts {
         return Ok(None);
     }
-    let mut n = axes_of(student, pair).back(encounter.contact_vector(student, time));
+    let n = axes_of(student, pair).back(encounter.contact_vector(student, time));
+    let mut n = student.vector(Place::ContactVector { kind }, n);
     if let Some(Change::Vector(change)) = student.change() {
         n = change(&encounter, time, n);
     }
@@ -198,6 +225,7 @@ pub fn detect(
         _ => {}
     }
     let time = if student.makes(Mistake::ContactTimeZero) { 0.0 } else { time };
+    let time = student.number(Place::ContactTime { kind }, time);
     Ok(Some(Contact { pair, n, time }))
 }
 
@@ -225,7 +253,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
         Some(Mistake::DecisionTolerance) => time <= 1.0 + 1e-6,
         Some(Mistake::DecisionTruth) => time != 0.0,
         Some(Mistake::DecisionNever | Mistake::HostileForgedVerdict) => false,
-        _ => time <= 1.0,
+        _ => time <= student.number(Place::LastTime, 1.0),
     }
 }
 

@@ -10,6 +10,7 @@ use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
     encounter::{Body, alpha},
+    operators::Place,
 };
 
 /// The parts of the assignment whose mistakes are made in the polynomials.
@@ -265,6 +266,7 @@ pub fn contact_vector(student: Student, bodies: &[Body; 3], t: f64) -> Vec2 {
         Some(Mistake::ParticleEdgeContactSecondEnd) => 1.0,
         _ => alpha(bodies, t),
     };
+    let alpha = student.number(Place::ContactAlpha, alpha);
     match mistake {
         Some(Mistake::ParticleEdgeContactReversed) => -(two.at(t) + alpha * along - one.start - t * one.displacement),
         Some(Mistake::ParticleEdgeContactParticleStill) => two.at(t) + alpha * along - one.start,
