@@ -81,7 +81,8 @@ impl Diagnosis {
     }
 
     fn is_common(&self, explanation: &Explanation) -> bool {
-        self.common.iter().any(|common| common.is_named_in(std::slice::from_ref(explanation)))
+        let is_said = |common: &&Explanation| !common.is_unexplained();
+        self.common.iter().filter(is_said).any(|common| common.is_named_in(std::slice::from_ref(explanation)))
     }
 
     /// For programs.

@@ -126,6 +126,6 @@ fn explain_letters(explanation: &mut Explanation) {
 }
 
 /// Whether mistakes of this part of the assignment are mistakes of polynomials.
-const fn is_formula(area: Area) -> bool {
+pub(super) const fn is_formula(area: Area) -> bool {
     matches!(area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane | Area::Handover)
 }

@@ -71,6 +71,21 @@ impl Explanation {
         }
     }
 
+    /// These polynomials are wrong, and no exact form of what is found holds in most traces.
+    pub(super) fn of_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
+        Self {
+            key: Self::UNEXPLAINED.to_owned(),
+            about: About::Polynomials { subjects, found },
+            details: Vec::new(),
+            reproduced: 0,
+            samples: 0,
+            example: None,
+            same_as: Vec::new(),
+            denies: Vec::new(),
+            claims: Vec::new(),
+        }
+    }
+
     /// Whether this is the question whether the trace is of its scene.
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
@@ -89,10 +104,10 @@ impl Explanation {
         self.about == About::Unfinished
     }
 
-    /// Whether it says of polynomials that nothing explains them.
+    /// Whether it says of polynomials that they are wrong, and has no exact form for it.
     #[must_use]
-    pub(super) fn is_unexplained(&self) -> bool {
-        matches!(self.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
+    pub fn is_unexplained(&self) -> bool {
+        self.key == Self::UNEXPLAINED
     }
 
     /// Whether it says that polynomials are not handed over.
@@ -147,6 +162,16 @@ impl Explanation {
         if self.is_unfinished() {
             let is_stage = |key: &String| self.same_as.contains(key);
             return explanations.iter().any(|one| is_stage(&one.key) || one.same_as.iter().any(is_stage));
+        }
+        if let (true, About::Polynomials { subjects, found }) = (self.is_unexplained(), &self.about) {
+            let says_so = |one: &Self| match (found, &one.about) {
+                (OfPolynomials::Guess(guess), About::Polynomials { found: OfPolynomials::Guess(theirs), .. }) => {
+                    guess == theirs
+                }
+                (found, _) => *found == OfPolynomials::Nothing,
+            };
+            let is_about = |one: &Self| one.subjects().iter().any(|subject| subjects.contains(subject));
+            return explanations.iter().any(|one| is_about(one) && says_so(one));
         }
         let said = self.said();
         explanations.iter().any(|one| one.bears_out(&said, Some(self)))

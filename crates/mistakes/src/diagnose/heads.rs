@@ -6,12 +6,16 @@
 use super::{
     Explanation,
     about::{About, OfPolynomials},
+    explain::is_formula,
     fault::StepStage,
     known::{is_empty_stage, shows},
 };
-use crate::student::{Area, CATALOGUE, Row, find};
+use crate::{
+    assignments::t2m2::Subject,
+    student::{Area, CATALOGUE, Row, find},
+};
 use fosssim_model::scene::Scene;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// So many mistakes of a program are told.
 const MOST: usize = 3;
@@ -143,10 +147,15 @@ impl Explanation {
         self.is_made_by(said, told) || (self.is_settled() && self.bears_out(said, told))
     }
 
-    /// Whether a trace's explanation, which does not bear it out, speaks against a guess about polynomials: the same ones are wrong.
+    /// Whether a trace's explanation, which does not bear it out, speaks against what is told of polynomials: the same ones are wrong.
     fn speaks_against(&self, told: &Self) -> bool {
-        let About::Polynomials { subjects, found: OfPolynomials::Guess(_) } = &told.about else { return false };
-        self.subjects().iter().any(|subject| subjects.contains(subject))
+        let is_of_formula = match &told.about {
+            About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
+            About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula(row.area)),
+            _ => false,
+        };
+        let subjects = told.subjects();
+        is_of_formula && self.subjects().iter().any(|subject| subjects.contains(subject))
     }
 }
 
@@ -182,6 +191,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(settle).collect()
     };
     let mut open: Vec<Vec<Explanation>> = traces.into_iter().map(kept).filter(|list| !list.is_empty()).collect();
+    let wrong = open.clone();
     keep_earliest_stage(&mut open);
     let mut covered = vec![false; open.len()];
     let mut found: Vec<Explanation> = unfinished(&open).into_iter().collect();
@@ -201,6 +211,11 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         } else {
             open.iter_mut().for_each(|list| list.retain(|one| one.said() != said));
         }
+    }
+    if let Some(head) = wrong_polynomials(&wrong, found.first()) {
+        // What a wrong formula leads to is wrong behind it.
+        found.retain(|one| !one.is_of_stage());
+        found.insert(0, head);
     }
     for one in &mut found {
         if one.is_unfinished() && one.same_as.len() == 1 {
@@ -225,19 +240,57 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     Some(likeliest)
 }
 
+/// The polynomials that are wrong in most traces, where no exact form holds in most and what comes first says nothing of them: their
+/// place, and what most traces say of them without an exact form.
+fn wrong_polynomials(traces: &[Vec<Explanation>], first: Option<&Explanation>) -> Option<Explanation> {
+    let mut wrong: BTreeMap<Subject, usize> = BTreeMap::new();
+    for list in traces {
+        let of_polynomials = list.iter().filter(|one| matches!(one.about, About::Polynomials { .. }));
+        let subjects: BTreeSet<Subject> = of_polynomials.flat_map(Explanation::subjects).collect();
+        subjects.into_iter().for_each(|subject| *wrong.entry(subject).or_default() += 1);
+    }
+    let most = wrong.values().copied().max()?;
+    let named_in = |one: &Explanation| traces.iter().filter(|list| one.is_named_in(list)).count();
+    let is_told = |first: &Explanation| !first.subjects().is_empty() || named_in(first) >= most;
+    // What few traces show may follow from something else.
+    if first.is_some_and(is_told) || most * 2 <= traces.len() {
+        return None;
+    }
+    let subjects: Vec<Subject> = wrong.into_iter().filter(|(_, count)| *count == most).map(|(one, _)| one).collect();
+    let guesses = traces.iter().flatten().filter_map(|one| match &one.about {
+        About::Polynomials { subjects: theirs, found: OfPolynomials::Guess(guess) } if *theirs == subjects => {
+            Some(guess)
+        }
+        _ => None,
+    });
+    let heads = guesses.map(|guess| Explanation::of_wrong(subjects.clone(), OfPolynomials::Guess(guess.clone())));
+    let likeliest = heads.map(|head| (named_in(&head), head)).max_by_key(|(named, _)| *named);
+    match likeliest {
+        Some((named, head)) if named * 2 > most => Some(head),
+        _ => Some(Explanation::of_wrong(subjects, OfPolynomials::Nothing)),
+    }
+}
+
 /// Whether a further mistake is one that was told, in other words: a program has one formula for a polynomial, and what is seen of a
 /// stage may follow from what is told of that one or of one before it.
 fn is_said_already(found: &[Explanation], next: &Explanation, open: &[Vec<Explanation>], covered: &[bool]) -> bool {
     let said = next.said();
     let mut beside = open.iter().zip(covered).filter(|(_, covered)| **covered);
-    // Where both reproduce a trace together, both are needed.
-    if beside.any(|(list, _)| list.iter().any(|one| one.is_complete() && one.key == said)) {
-        return false;
-    }
+    // Where two known mistakes reproduce a trace together, both are needed.
+    let are_needed = beside.any(|(list, _)| list.iter().any(|one| one.is_complete() && one.key == said));
     let subjects = next.subjects();
     let is_said = |one: &Explanation| {
+        if are_needed && matches!(one.about, About::Mistake) {
+            return false;
+        }
         let theirs = one.subjects();
-        let in_one_formula = !subjects.is_empty() && subjects.iter().all(|subject| theirs.contains(subject));
+        // Where a trace shows no polynomial of a known mistake, that may be one of which a guess is told.
+        let is_guess = matches!(one.about, About::Polynomials { .. });
+        let kind = find(&next.key).filter(|row| is_formula(row.area)).and_then(Row::kind_of_pair);
+        let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
+            Some(kind) => theirs.iter().any(|subject| subject.kind() == kind),
+            None => !subjects.is_empty() && subjects.iter().all(|subject| theirs.contains(subject)),
+        };
         let in_one_stage = match (&one.about, &next.about) {
             (About::Stage(one), About::Stage(next)) => {
                 let are_of_two_kinds = one.kind().zip(next.kind()).is_some_and(|(one, next)| one != next);
@@ -313,15 +366,18 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
 const MANY: usize = 8;
 
 /// Whether enough of what is left names this further mistake: a trace that nothing explains yet, or two others, where there
-/// are several. What is seen of a stage counts only where nothing explains the trace. That polynomials are missing follows from
-/// what was found before.
+/// are several. What is seen of a stage counts only where nothing explains the trace, and in one trace alone it may follow from what was
+/// found before. That polynomials are missing does.
 fn is_supported(open: &[Vec<Explanation>], covered: &[bool], next: &Explanation) -> bool {
     let said = next.said();
     let naming = |wanted: bool| {
         let of_sort = open.iter().zip(covered).filter(|(_, covered)| **covered == wanted);
         of_sort.filter(|(list, _)| list.iter().any(|one| one.bears_out_wholly(&said, Some(next)))).count()
     };
-    !next.is_of_missing() && (naming(false) > 0 || (!next.is_of_stage() && naming(true) >= open.len().min(2)))
+    if next.is_of_stage() {
+        return naming(false) > 1 && !next.is_vague();
+    }
+    !next.is_of_missing() && (naming(false) > 0 || naming(true) >= open.len().min(2))
 }
 
 /// Whether a trace's explanations name a mistake, told or as not to be told apart, that reproduces everything.

@@ -28,6 +28,10 @@ pub fn settled(own: &[Explanation], likely: &[Explanation]) -> Settled {
 
 /// This explanation as the trace shows it; nothing where the trace's own ones do not name it.
 fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
+    if likely.is_unexplained() {
+        // Each trace may say more of them.
+        return Vec::new();
+    }
     if likely.is_unfinished() {
         // Each stage for itself: not every trace shows all of them.
         return own.iter().filter(|one| likely.same_as.contains(&one.key)).cloned().collect();

@@ -117,11 +117,37 @@ fn what_most_traces_speak_against_is_not_told() {
     let guess = letter(Subject::EdgeOverlap, "a");
     let mut traces = vec![vec![unexplained(Subject::EdgeOverlap)]; 6];
     traces.push(vec![guess.clone()]);
-    assert_eq!(heads(&traces), []);
+    assert_eq!(heads(&traces), [("unexplained".to_owned(), 7)], "only which polynomial it is");
     traces.extend(vec![vec![guess.clone()]; 9]);
     assert_eq!(heads(&traces), words(&[(&guess, 10)]));
     let likely = several(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!((likely[0].reproduced, likely[0].samples), (5, 35), "the others are counted");
+}
+
+/// Where traces see the same mistake in forms of their own, the head says what these have in common, and each trace keeps its form.
+#[test]
+fn forms_that_differ_have_their_polynomial_in_common() {
+    let forms = ["a", "b", "c"].map(|form| letter(Subject::HalfPlaneOverlap, form));
+    let behind = stage(StageFault::AfterRounds);
+    let mut traces: Vec<Vec<Explanation>> = forms.iter().map(|one| vec![one.clone()]).collect();
+    traces.push(vec![behind]);
+    let likely = several(traces.iter().map(Vec::as_slice), &[]);
+    assert_eq!(likely.len(), 1, "what is wrong behind a wrong formula follows: {likely:?}");
+    assert!(likely[0].is_unexplained());
+    let About::Polynomials { subjects, found } = &likely[0].about else { panic!("{likely:?}") };
+    assert_eq!(*subjects, [Subject::HalfPlaneOverlap]);
+    assert_eq!(*found, OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other)));
+    assert_eq!(settled(&traces[1], &likely).explanations[0].said(), forms[1].said());
+}
+
+/// One trace in which a stage looks wrong follows from the formula that the others name.
+#[test]
+fn a_stage_of_one_trace_is_no_second_mistake() {
+    let first = letter(Subject::EdgeOverlap, "a");
+    let motion = stage(StageFault::Motion { wrong: vec![WrongMotion::Turn], or_zones: false });
+    let mut traces = vec![vec![first.clone()]; 5];
+    traces.push(vec![motion]);
+    assert_eq!(heads(&traces), words(&[(&first, 5)]));
 }
 
 #[test]
