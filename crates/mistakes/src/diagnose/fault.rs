@@ -305,11 +305,13 @@ impl StageFault {
             }
             Self::Geometric(WrongGeometric::Left { always: true }) => &[Area::ImpulseLoop, Area::ImpactZones],
             Self::ZonePositions(_)
-            | Self::ZoneRounds(_)
+            | Self::ZoneRounds(WrongZoneRounds::Fewer | WrongZoneRounds::More)
             | Self::Zones(WrongZones::Partly | WrongZones::NotMerged | WrongZones::Joined | WrongZones::Others) => {
                 &[Area::ImpactZones]
             }
+            // What a larger zone leads to may be the fault of what moves it.
             Self::AfterRounds
+            | Self::ZoneRounds(WrongZoneRounds::Growth | WrongZoneRounds::Later)
             | Self::Motion { or_zones: true, .. }
             | Self::Zones(WrongZones::Unmoved | WrongZones::Stop | WrongZones::MoveOn | WrongZones::PartlyStopped) => {
                 &[Area::ImpactZones, Area::Failsafe]

@@ -48,7 +48,8 @@ pub(super) fn explain(scene: &Scene, facts: &[Facts]) -> Option<Explanation> {
 fn hangs_on_round_off(scene: &Scene, facts: &Facts) -> bool {
     let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = behind(facts, 0) / facts.pass_size();
-    facts.right_polynomials < behind(facts, 1) && facts.detects(scene, pass, &middle.state.positions, |_| true)
+    let differs = facts.right_polynomials < behind(facts, 1).min(facts.expected.end.polynomials.len());
+    differs && facts.detects(scene, pass, &middle.state.positions, |_| true)
 }
 
 /// The index of the first polynomial behind so many passes of the geometric part.

@@ -72,7 +72,7 @@ fn of_fault(fault: &StageFault) -> String {
         StageFault::HandedOver { quantity, when, .. } => {
             let what = quantity.map_or("positions and velocities", plural);
             let when = match when {
-                Some(LoopEnd::RanOut) => " when its rounds run out",
+                Some(LoopEnd::RanOut) => " when they run out",
                 Some(LoopEnd::Settled) => " when nothing collides any more",
                 None => "",
             };
@@ -93,7 +93,7 @@ fn of_fault(fault: &StageFault) -> String {
             "when the rounds run out, no geometric pass follows"
         }
         StageFault::Geometric(WrongGeometric::Left { always: false }) => {
-            "when its rounds run out, a geometric pass follows in some steps only"
+            "when the rounds run out, a geometric pass follows in some steps only"
         }
         StageFault::Geometric(WrongGeometric::Superfluous) => {
             "the geometric part runs though a round has found nothing"
@@ -139,15 +139,15 @@ fn of_fault(fault: &StageFault) -> String {
 
 const fn of_motion(wrong: WrongMotion) -> &'static str {
     match wrong {
-        WrongMotion::Centre => "their centre of mass does not move as it should",
+        WrongMotion::Centre => "the centre of mass of a zone does not move as it should",
         WrongMotion::Distances => "the particles of a zone do not keep their distances",
-        WrongMotion::NoTurn => "they do not turn",
-        WrongMotion::LessTurn => "they do not turn as far as they should",
-        WrongMotion::MoreTurn => "they turn further than they should",
-        WrongMotion::TurnBack => "they turn the other way round",
-        WrongMotion::Turn => "they do not turn by the angle that they should",
-        WrongMotion::Velocities => "their velocities are not those of the motion from start to end",
-        WrongMotion::Speeds => "their velocities are not those of the motion from start to end, though along it",
+        WrongMotion::NoTurn => "zones do not turn",
+        WrongMotion::LessTurn => "zones do not turn as far as they should",
+        WrongMotion::MoreTurn => "zones turn further than they should",
+        WrongMotion::TurnBack => "zones turn the other way round",
+        WrongMotion::Turn => "zones do not turn by the angle that they should",
+        WrongMotion::Velocities => "velocities in a zone are not those of its motion from start to end",
+        WrongMotion::Speeds => "velocities in a zone are not those of its motion from start to end, though along it",
     }
 }
 

@@ -345,12 +345,12 @@ fn the_first_wrong_stage_is_told_with_what_its_results_have_in_common() {
             "Impulse loop or detection: The loop makes fewer rounds",
             "2 detection passes where",
         ),
-        ("rigid-half-turn", "zones-turn-little-and-far", "Rigid failsafe: They do not turn as far", "they turn 0."),
+        ("rigid-half-turn", "zones-turn-little-and-far", "Rigid failsafe: Zones do not turn as far", "they turn 0."),
         ("rigid-shrinks", "zones-turn-little-and-far", "Rigid failsafe: ", ""),
         (
             "rigid-velocity-halved",
             "zones-turn-little-and-far",
-            "Rigid failsafe: Their velocities",
+            "Rigid failsafe: Velocities in a zone",
             "0.5 times the motion",
         ),
     ];
