@@ -56,11 +56,11 @@ impl Explanation {
     /// The key of what is right but for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
-    /// The question whether a trace is of its scene; `has_length` says that at least the number of records is right.
-    pub(super) fn of_other_scene(has_length: bool) -> Self {
+    /// What is said of something, without any evidence for it yet.
+    pub(super) fn about(key: impl Into<String>, about: About) -> Self {
         Self {
-            key: Self::OTHER_SCENE.to_owned(),
-            about: About::Scene { has_length },
+            key: key.into(),
+            about,
             details: Vec::new(),
             reproduced: 0,
             samples: 0,
@@ -71,19 +71,14 @@ impl Explanation {
         }
     }
 
+    /// The question whether a trace is of its scene; `has_length` says that at least the number of records is right.
+    pub(super) fn of_other_scene(has_length: bool) -> Self {
+        Self::about(Self::OTHER_SCENE, About::Scene { has_length })
+    }
+
     /// These polynomials are wrong, and no exact form of what is found holds in most traces.
     pub(super) fn of_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
-        Self {
-            key: Self::UNEXPLAINED.to_owned(),
-            about: About::Polynomials { subjects, found },
-            details: Vec::new(),
-            reproduced: 0,
-            samples: 0,
-            example: None,
-            same_as: Vec::new(),
-            denies: Vec::new(),
-            claims: Vec::new(),
-        }
+        Self::about(Self::UNEXPLAINED, About::Polynomials { subjects, found })
     }
 
     /// Whether this is the question whether the trace is of its scene.

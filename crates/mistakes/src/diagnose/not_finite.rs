@@ -66,17 +66,7 @@ pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Option<Explanation
 }
 
 fn explanation(found: NotFinite) -> Explanation {
-    Explanation {
-        key: Explanation::NOT_FINITE.to_owned(),
-        about: About::NotFinite(found),
-        details: Vec::new(),
-        reproduced: 0,
-        samples: 0,
-        example: None,
-        same_as: Vec::new(),
-        denies: Vec::new(),
-        claims: Vec::new(),
-    }
+    Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found))
 }
 
 /// The first value that is no finite number.

@@ -184,15 +184,10 @@ fn plausibility(row: &Row) -> u8 {
 /// The explanation that names a row, without an example.
 fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
-        key: row.id.to_owned(),
-        about: About::Mistake,
         details: vec![Detail::Term(row.id), Detail::Look(row.area)],
         reproduced,
         samples,
-        example: None,
-        same_as: Vec::new(),
-        denies: Vec::new(),
-        claims: Vec::new(),
+        ..Explanation::about(row.id, About::Mistake)
     }
 }
 

@@ -94,15 +94,10 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         subjects.extend(Subject::of(kind).iter().skip(logged));
     }
     (!subjects.is_empty()).then(|| Explanation {
-        key: "missing-polynomials".to_owned(),
-        about: About::Polynomials { subjects, found: OfPolynomials::Missing },
         details: distinct(details.into_iter()),
         reproduced: count,
         samples: count,
-        example: None,
-        same_as: Vec::new(),
-        denies: Vec::new(),
-        claims: Vec::new(),
+        ..Explanation::about("missing-polynomials", About::Polynomials { subjects, found: OfPolynomials::Missing })
     })
 }
 
@@ -242,15 +237,13 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let study = &suspect.study;
     let (error, samples) = (study.error(), study.cases.len() as u64);
     (error < NEARLY && suspect.full().next().is_none()).then(|| Explanation {
-        key: Explanation::NEARLY_RIGHT.to_owned(),
-        about: About::Polynomials { subjects: vec![study.subject], found: OfPolynomials::NearlyRight },
         details: vec![Detail::Polynomial(PolynomialDetail::RightUpTo(error))],
-        reproduced: 0,
         samples,
         example: example::smallest(study).map(|(_, example)| example),
-        same_as: Vec::new(),
-        denies: Vec::new(),
-        claims: Vec::new(),
+        ..Explanation::about(
+            Explanation::NEARLY_RIGHT,
+            About::Polynomials { subjects: vec![study.subject], found: OfPolynomials::NearlyRight },
+        )
     })
 }
 
@@ -262,18 +255,17 @@ fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
         suspect.study.differences(subject).into_iter().map(Detail::Polynomial)
     };
     Some(Explanation {
-        key: Explanation::UNEXPLAINED.to_owned(),
-        about: About::Polynomials {
-            subjects: hopeless.iter().map(|suspect| suspect.study.subject).collect(),
-            found: OfPolynomials::Nothing,
-        },
         details: distinct(hopeless.iter().flat_map(lines)),
-        reproduced: 0,
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
         example: example::smallest(&first.study).map(|(_, example)| example),
-        same_as: Vec::new(),
-        denies: Vec::new(),
         claims: distinct_words(hopeless.iter().flat_map(|suspect| suspect.claims(std::iter::empty())).collect()),
+        ..Explanation::about(
+            Explanation::UNEXPLAINED,
+            About::Polynomials {
+                subjects: hopeless.iter().map(|suspect| suspect.study.subject).collect(),
+                found: OfPolynomials::Nothing,
+            },
+        )
     })
 }
 

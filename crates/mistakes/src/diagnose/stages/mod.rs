@@ -66,15 +66,9 @@ pub(super) fn explain<'a>(scene: &Scene, samples: impl Iterator<Item = &'a Sampl
 /// An observation, which reproduces nothing.
 fn observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> Explanation {
     Explanation {
-        key: fault.key().to_owned(),
-        about: About::Stage(fault),
         details: details.into_iter().map(Detail::Stage).collect(),
-        reproduced: 0,
         samples: samples as u64,
-        example: None,
-        same_as: Vec::new(),
-        denies: Vec::new(),
-        claims: Vec::new(),
+        ..Explanation::about(fault.key(), About::Stage(fault))
     }
 }
 
