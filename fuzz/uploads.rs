@@ -1,5 +1,5 @@
-//! What the fuzz target of the service does with its bytes; the service's tests replay the seeds, and what becomes of them when
-//! bytes change, through the same function.
+//! What the fuzz target of the service does with its bytes; the service's tests replay the seeds, and what becomes of
+//! them when bytes change, through the same function.
 use fosssim_server::{
     archive::{self, Limits},
     web,

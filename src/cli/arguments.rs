@@ -173,7 +173,8 @@ pub(super) struct Check {
     /// Show all wrong steps, not only the first one, with expected and actual values.
     #[arg(long, conflicts_with_all = ["step", "own"])]
     pub(super) all: bool,
-    /// Show the tables, too: residuals and what of each tolerance is used, all kinds of findings with their first examples.
+    /// Show the tables, too: residuals and what of each tolerance is used, all kinds of findings with their first
+    /// examples.
     #[arg(long, conflicts_with = "own")]
     pub(super) tables: bool,
 

@@ -90,7 +90,8 @@ pub(super) fn show(text: &str, format: TextOrJson) -> Result<()> {
     }
 }
 
-/// The room for small pictures in a report on standard output: none where it is no terminal, or colours are not wanted either.
+/// The room for small pictures in a report on standard output: none where it is no terminal, or colours are not wanted
+/// either.
 pub(super) fn pictures() -> Option<usize> {
     width().filter(|_| style() == Style::Colour)
 }
@@ -136,8 +137,8 @@ pub(super) fn wants_bars() -> bool {
     io::stderr().is_terminal() && !is_quiet()
 }
 
-/// A place for bars on standard error. Until [`clear_bars`] everything else is written above them, and an interrupt takes
-/// them away.
+/// A place for bars on standard error. Until [`clear_bars`] everything else is written above them, and an interrupt
+/// takes them away.
 pub(super) fn show_bars() -> MultiProgress {
     interrupt::clean_up_when_interrupted();
     on_screen().get_or_insert_with(MultiProgress::new).clone()

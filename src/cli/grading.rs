@@ -59,8 +59,8 @@ pub(super) struct Grade {
     pub(super) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(|_| true))]
     pub(super) format: Vec<String>,
-    /// Whom HTML pages are for: students' hold no group that the suite hides from them, nor what tells of it. Into the output
-    /// folder both kinds are written, those to hand out below students/.
+    /// Whom HTML pages are for: students' hold no group that the suite hides from them, nor what tells of it. Into the
+    /// output folder both kinds are written, those to hand out below students/.
     #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Audience::Staff)]
     pub(super) reader: Audience,
     /// Runs at one time. One per core by default.
@@ -103,8 +103,8 @@ pub(super) struct Grade {
     /// Grade again whenever the program changes, until interrupted.
     #[arg(long)]
     pub(super) watch: bool,
-    /// Grade the I-th of N parts of the submissions only, as one machine of several; `merge` puts the parts together. Its
-    /// results go to the folder shard-I-of-N in the output folder.
+    /// Grade the I-th of N parts of the submissions only, as one machine of several; `merge` puts the parts together.
+    /// Its results go to the folder shard-I-of-N in the output folder.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
     pub(super) shard: Option<Shard>,
     /// Judge traces that are there already: every path is a folder with Group/name.bin, or name.bin, for each scene.

@@ -12,8 +12,8 @@ pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     PENDING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on SIGINT and SIGTERM remove the temporary files and the bars, and end the program. A command that handles them
-/// itself has said so before, and then this does nothing.
+/// From now on SIGINT and SIGTERM remove the temporary files and the bars, and end the program. A command that handles
+/// them itself has said so before, and then this does nothing.
 pub(super) fn clean_up_when_interrupted() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {

@@ -5,8 +5,8 @@ use clap::{
 };
 use std::{cell::Cell, ops::Deref};
 
-/// The arguments of a command, which the parser of the whole learns of only when that command is called: to make the parsers of all
-/// takes longer than what many commands do.
+/// The arguments of a command, which the parser of the whole learns of only when that command is called: to make the
+/// parsers of all takes longer than what many commands do.
 #[derive(Debug)]
 pub(super) struct Later<T>(T);
 
@@ -61,7 +61,8 @@ fn later(command: Command, add: fn(Command) -> Command) -> Command {
     if AT_ONCE.get() { add(command) } else { command.defer(add) }
 }
 
-/// Adds to a command, and leaves the description that it has: arguments that several commands have in common bring their own.
+/// Adds to a command, and leaves the description that it has: arguments that several commands have in common bring
+/// their own.
 fn described(command: Command, add: fn(Command) -> Command) -> Command {
     let (about, long) = (command.get_about().cloned(), command.get_long_about().cloned());
     let resettable = |text: Option<StyledStr>| text.map_or(Resettable::Reset, Resettable::Value);

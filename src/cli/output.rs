@@ -221,8 +221,8 @@ fn temporary(folder: &Path, mode: Option<u32>) -> Result<NamedTempFile> {
     Ok(temporary)
 }
 
-/// A folder that many files of our own names are written into, each by rename. What has such a name already is replaced,
-/// and links are not followed: whoever prepares a folder can't make us write elsewhere.
+/// A folder that many files of our own names are written into, each by rename. What has such a name already is
+/// replaced, and links are not followed: whoever prepares a folder can't make us write elsewhere.
 #[derive(Debug)]
 pub(super) struct Folder(PathBuf);
 

@@ -1,6 +1,6 @@
-//! No circle of files in any room: where a file uses what another defines, that one never comes to use the first, by whatever
-//! way. What is read are the paths in the sources; a name that a module only passes on counts for the file that defines it, and
-//! a file may use what the module above it defines, of which it is a part.
+//! No circle of files in any room: where a file uses what another defines, that one never comes to use the first, by
+//! whatever way. What is read are the paths in the sources; a name that a module only passes on counts for the file
+//! that defines it, and a file may use what the module above it defines, of which it is a part.
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,

@@ -113,8 +113,8 @@ fn a_wrong_polynomial_of_a_trace_is_shown_beside_the_right_one() {
     assert!(run.out().contains(table), "{}", run.shown());
 }
 
-/// A factor keeps round-off that the course's library drops of the reference's polynomials: those of the trace are right all the same,
-/// and found in their places although they lead to more passes.
+/// A factor keeps round-off that the course's library drops of the reference's polynomials: those of the trace are
+/// right all the same, and found in their places although they lead to more passes.
 #[test]
 fn what_a_factor_keeps_makes_no_polynomial_wrong() {
     let workspace = Workspace::new();
@@ -137,7 +137,8 @@ fn what_a_factor_keeps_makes_no_polynomial_wrong() {
     assert!(kept > 0);
 }
 
-/// From the trace's own mid record; and where the trace leaves pairs out, what it has for the others is found all the same.
+/// From the trace's own mid record; and where the trace leaves pairs out, what it has for the others is found all the
+/// same.
 #[test]
 fn a_pair_of_a_trace_that_logs_too_little_is_found() {
     let workspace = Workspace::new();

@@ -76,8 +76,8 @@ fn nine_of_ten_mistakes_are_named_first() {
     assert!(10 * confused.len() <= rows.len(), "{confused:#?}");
 }
 
-/// What submissions of the corpus do wrong, by the name of their mistake: where the fair rules refuse one of their traces, that is
-/// named first, or told with what this trace can't tell it from.
+/// What submissions of the corpus do wrong, by the name of their mistake: where the fair rules refuse one of their
+/// traces, that is named first, or told with what this trace can't tell it from.
 const SUBMISSIONS: [(&str, &str); 27] = [
     ("b02-", "pp-no-two"),
     ("b03-", "pp-radii-squared-apart"),
@@ -137,8 +137,9 @@ fn what_submissions_of_the_corpus_do_wrong_is_named() {
     corpus::ran("what_submissions_of_the_corpus_do_wrong_is_named", named.len());
 }
 
-/// No correct variant is accused of anything: the fair rules accept it, and nobody asks. Where one is asked about all the
-/// same, nothing is named; save for those that are known to be accused, which are so still. Who mends that shortens the list.
+/// No correct variant is accused of anything: the fair rules accept it, and nobody asks. Where one is asked about all
+/// the same, nothing is named; save for those that are known to be accused, which are so still. Who mends that shortens
+/// the list.
 #[test]
 fn correct_variants_are_not_accused() {
     let scenes = suite();

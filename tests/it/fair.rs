@@ -67,9 +67,9 @@ fn no_mistake_passes_the_fair_rules() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
-/// `scale-1e-6` makes the course's library drop real coefficients; where that changes a decision the program really does
-/// something else, and the report says that this is why. Those that are known to be refused are so still; who mends that
-/// shortens the list.
+/// `scale-1e-6` makes the course's library drop real coefficients; where that changes a decision the program really
+/// does something else, and the report says that this is why. Those that are known to be refused are so still; who
+/// mends that shortens the list.
 #[test]
 fn every_correct_variant_passes_the_fair_rules() {
     let scenes = assets();
@@ -94,9 +94,9 @@ fn every_correct_variant_passes_the_fair_rules() {
     assert!(refused.is_empty(), "{refused:#?}");
 }
 
-/// Two balls fall side by side: their relative motion is round-off, which the course's library drops of the assignment's
-/// polynomials and keeps of those with a factor. What its root finder then makes of them, a collision far from either ball, is
-/// no mistake of the program.
+/// Two balls fall side by side: their relative motion is round-off, which the course's library drops of the
+/// assignment's polynomials and keeps of those with a factor. What its root finder then makes of them, a collision far
+/// from either ball, is no mistake of the program.
 #[test]
 fn a_factor_that_keeps_round_off_is_no_mistake() {
     let text = r#"<scene><duration time="0.4"/><integrator type="symplectic-euler" dt="0.02"/>
@@ -126,7 +126,8 @@ fn the_factor_and_the_form_of_the_polynomials_are_found() {
     assert_eq!(of("scale-3").form, Form::Course);
 }
 
-/// One polynomial in the right form among others that are the course's bit for bit: its t^3, which the right form lacks, is lost.
+/// One polynomial in the right form among others that are the course's bit for bit: its t^3, which the right form
+/// lacks, is lost.
 #[test]
 fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
     let scenes = assets();
@@ -150,8 +151,8 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
     assert_eq!(fair.findings.counts.total(), 1);
 }
 
-/// Polynomials of particles and edges with a small factor, on the course's scenes: what is gone of their approaches says nothing of
-/// the form.
+/// Polynomials of particles and edges with a small factor, on the course's scenes: what is gone of their approaches
+/// says nothing of the form.
 #[test]
 fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
     struct Edges(f64);

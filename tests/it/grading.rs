@@ -28,8 +28,8 @@ pub(crate) fn workspace() -> Option<Workspace> {
     }
 }
 
-/// Puts sample submissions into `submissions/`, and gives their paths; an empty name is the correct one. They are links,
-/// which are graded only by name.
+/// Puts sample submissions into `submissions/`, and gives their paths; an empty name is the correct one. They are
+/// links, which are graded only by name.
 pub(crate) fn submit(workspace: &Workspace, mistakes: &[&str]) -> Vec<String> {
     std::fs::create_dir_all(workspace.path("submissions")).expect("a folder");
     let submit = |mistake: &&str| {

@@ -1,4 +1,5 @@
-//! What may be handed in besides a student's own program: a sample that is always wrong, and traces that are there already.
+//! What may be handed in besides a student's own program: a sample that is always wrong, and traces that are there
+//! already.
 use crate::{
     grading::{SUITE, workspace},
     workspace::Workspace,

@@ -5,8 +5,8 @@ use crate::sandbox::small;
 use fosssim_oracle::sandbox::{Backend, Ended, Job, Limits, Running, Supervisor};
 use std::{fs, io, os::unix::fs::PermissionsExt, path::Path};
 
-/// Fills the trace pipe and waits until somebody reads, so that it can be looked at; then it ends by itself. Every test has
-/// blocks of another size, by which its program is known.
+/// Fills the trace pipe and waits until somebody reads, so that it can be looked at; then it ends by itself. Every test
+/// has blocks of another size, by which its program is known.
 struct Bench {
     words: [String; 5],
     folder: tempfile::TempDir,

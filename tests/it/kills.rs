@@ -1,5 +1,5 @@
-//! Graders that are killed at any moment, and graders that cannot see each other: nothing is lost, done twice, different
-//! or left behind. `scripts/kill-test` does the same many times more.
+//! Graders that are killed at any moment, and graders that cannot see each other: nothing is lost, done twice,
+//! different or left behind. `scripts/kill-test` does the same many times more.
 use crate::workspace::{Run, Workspace, finish};
 use fosssim_testing::{Need, skip};
 use std::{

@@ -1,5 +1,5 @@
-//! The walls of the house (ARCHITECTURE.md). Between crates the compiler keeps them, as far as their manifests ask for no
-//! more than they should; between the rooms that share a crate this reads the imports.
+//! The walls of the house (ARCHITECTURE.md). Between crates the compiler keeps them, as far as their manifests ask for
+//! no more than they should; between the rooms that share a crate this reads the imports.
 use std::path::{Path, PathBuf};
 
 /// The crates of the house and those that each may use, lowest first.

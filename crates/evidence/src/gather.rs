@@ -110,8 +110,8 @@ pub struct Evidence {
     pub inspected: Vec<InspectedStep>,
 }
 
-/// Goes through a trace: `rulings` are the judge's in the order of the steps, `fair` says which book decides, and `focus` is
-/// what findings are about, the most important first.
+/// Goes through a trace: `rulings` are the judge's in the order of the steps, `fair` says which book decides, and
+/// `focus` is what findings are about, the most important first.
 ///
 /// A trace that can't be read to its end gives evidence as far as it goes.
 pub fn gather<R: Read>(
@@ -200,7 +200,8 @@ fn gather_from(
             let done = work.step(&mut own, &mut (&mut watch, &mut count)).is_ok();
             let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
             watch.step.actual_contacts.clone_from(impulses);
-            // Who watches comes first, and has the step go on with the trace's mid record: what it should hold is kept there.
+            // Who watches comes first, and has the step go on with the trace's mid record: what it should hold is kept
+            // there.
             if let (Some(expected), Some(mid)) = (&watch.step.expected_mid, mid_state) {
                 count.apart = apart(expected, mid);
             }
@@ -237,7 +238,8 @@ fn gather_from(
     evidence
 }
 
-/// The steps to look at: those of findings, and those around the first wrong one, the most important ones if they are many.
+/// The steps to look at: those of findings, and those around the first wrong one, the most important ones if they are
+/// many.
 fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
     let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, CLOSE_UPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);

@@ -26,7 +26,8 @@ pub struct InspectedPair {
     pub failed: Option<StepError>,
 }
 
-/// Looks at all detection calls of a pair in a step that starts from `before`; without `records` as the reference goes on.
+/// Looks at all detection calls of a pair in a step that starts from `before`; without `records` as the reference goes
+/// on.
 #[must_use]
 pub fn inspect(scene: &Scene, step: u32, before: &State, records: Option<Records<'_>>, pair: Pair) -> InspectedPair {
     let none = PolynomialLog::default();

@@ -1,9 +1,9 @@
 //! Which of the reference's polynomials a trace's list answers where it has another number of them.
 //!
 //! The shortest edit script between the two lists (R. A. Wagner and M. J. Fischer, "The string-to-string correction
-//! problem", J. ACM 21, 1974): what is left out or put in costs more than half of what a wrong polynomial costs, so that a
-//! wrong one in the right place is no missing one. A mark is no verdict: where wrong and missing ones come together, other
-//! scripts may be as short.
+//! problem", J. ACM 21, 1974): what is left out or put in costs more than half of what a wrong polynomial costs, so
+//! that a wrong one in the right place is no missing one. A mark is no verdict: where wrong and missing ones come
+//! together, other scripts may be as short.
 use fosssim_model::trace::PolynomialLog;
 
 /// So many pairs of polynomials are compared at most.
@@ -13,12 +13,12 @@ const CELLS: usize = 4 << 20;
 const GAP: u32 = 2;
 const WRONG: u32 = 3;
 
-/// Coefficients may be off by this part of their polynomial's largest one before a call is marked as differing. A mark is no
-/// verdict; raised, faint differences get none.
+/// Coefficients may be off by this part of their polynomial's largest one before a call is marked as differing. A mark
+/// is no verdict; raised, faint differences get none.
 const MARKED: f64 = 1e-9;
 
-/// For each expected polynomial the place of the one in the trace's list that stands for it, right or wrong; `None` where the
-/// lists are too long to be compared.
+/// For each expected polynomial the place of the one in the trace's list that stands for it, right or wrong; `None`
+/// where the lists are too long to be compared.
 pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
     let same = |one: usize, other: usize| !differ(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());

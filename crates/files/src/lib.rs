@@ -1,7 +1,7 @@
 //! Opens files and pipes without waiting for an end that never comes.
 //!
-//! A named pipe blocks whoever opens it until somebody opens its other end. Nothing here waits for that: a pipe without a
-//! reader is an error at once, one without a writer after a few seconds.
+//! A named pipe blocks whoever opens it until somebody opens its other end. Nothing here waits for that: a pipe without
+//! a reader is an error at once, one without a writer after a few seconds.
 #![forbid(unsafe_code)]
 
 use std::{

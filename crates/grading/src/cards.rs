@@ -1,5 +1,5 @@
-//! Cards: what a report shows of a wrong trace beyond its result. They are drawn while the trace is at hand and kept under the
-//! digest of what they say, so that the journal's result names them and the trace itself need not be kept.
+//! Cards: what a report shows of a wrong trace beyond its result. They are drawn while the trace is at hand and kept
+//! under the digest of what they say, so that the journal's result names them and the trace itself need not be kept.
 use super::{config::Hints, result::SceneResult, task::SceneTask};
 use fosssim_evidence::StepRuling;
 use fosssim_judge::{Outcome, Rules};

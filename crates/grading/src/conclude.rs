@@ -48,8 +48,9 @@ pub enum Look {
     Mistakes,
 }
 
-/// The result of one scene, cut to what its hints let through. `explain` says what is likely wrong; it is not asked where
-/// nothing of it may be told, where the fair rules find no fault, or where what the program did besides is its worse fault.
+/// The result of one scene, cut to what its hints let through. `explain` says what is likely wrong; it is not asked
+/// where nothing of it may be told, where the fair rules find no fault, or where what the program did besides is its
+/// worse fault.
 #[must_use]
 pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
@@ -87,7 +88,8 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
     }
 }
 
-/// The bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are empty, too.
+/// The bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are empty,
+/// too.
 #[must_use]
 pub fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     let layout = Layout::of(scene);
@@ -97,8 +99,8 @@ pub fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     (layout.polynomials && layout.steps > 0 && has_pairs).then(|| layout.records() * record)
 }
 
-/// What the program's end alone says. Bytes behind the last record mean the same however many they are: a program that is
-/// stopped because of them ended when the judge had what it came for.
+/// What the program's end alone says. Bytes behind the last record mean the same however many they are: a program that
+/// is stopped because of them ended when the judge had what it came for.
 fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {

@@ -34,8 +34,8 @@ const TRACE_FILE: &str = "trace.bin";
 /// A fault of ours or of the machine is tried so often before it is reported.
 const ATTEMPTS: u32 = 2;
 
-/// So much of a trace is kept in memory while it is judged, in bytes, where it differs from the reference's: should it be wrong, it
-/// is explained, and should the grader fail on it, it is put aside. The course's largest trace has 18 MB.
+/// So much of a trace is kept in memory while it is judged, in bytes, where it differs from the reference's: should it
+/// be wrong, it is explained, and should the grader fail on it, it is put aside. The course's largest trace has 18 MB.
 const KEPT_TRACE: usize = 24 << 20;
 
 /// How scenes are run.
@@ -63,8 +63,8 @@ pub struct Runner<'a> {
     pub traces: Option<&'a (dyn Fn(&SceneTask) -> PathBuf + Sync)>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
-    /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of this
-    /// scene, and the trace is still at hand.
+    /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of
+    /// this scene, and the trace is still at hand.
     pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
 }
 

@@ -35,7 +35,8 @@ pub struct Entry {
     pub result: SceneResult,
 }
 
-/// A result in its form, on one line without an end, with the key under which it is found; the submission is for people.
+/// A result in its form, on one line without an end, with the key under which it is found; the submission is for
+/// people.
 #[must_use]
 pub fn write(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     serde_json::to_vec(&Written { form: VERSION, key, submission, result }).unwrap_or_default()

@@ -29,7 +29,8 @@ pub struct Grade {
     pub max_points: f64,
     /// Groups in the suite's order.
     pub groups: Vec<GroupGrade>,
-    /// Whether reports for students show what the program printed: not where groups are hidden, unless the suite says so.
+    /// Whether reports for students show what the program printed: not where groups are hidden, unless the suite says
+    /// so.
     pub shows_output: bool,
     /// How the build ended, when the suite builds.
     pub build: Option<Build>,
@@ -39,7 +40,8 @@ pub struct Grade {
     pub layers: Vec<String>,
     /// Wall time of all runs together, those taken from an earlier grading included.
     pub wall: Duration,
-    /// Keys of mistakes that accepted scenes speak against ([`diagnose::refuted`](fosssim_mistakes::diagnose::refuted)).
+    /// Keys of mistakes that accepted scenes speak against
+    /// ([`diagnose::refuted`](fosssim_mistakes::diagnose::refuted)).
     pub refuted: Vec<String>,
     /// What the scenes have in common in which the program crashes or runs into a limit, where hints let it through.
     pub located: Option<Located>,
@@ -63,8 +65,8 @@ impl Grade {
         self.count(Verdict::NotRun) > 0
     }
 
-    /// What is wrong with the submission itself, and the reason of each of its scenes: no program that can be run is in it,
-    /// its sources do not build, or nothing is written yet.
+    /// What is wrong with the submission itself, and the reason of each of its scenes: no program that can be run is in
+    /// it, its sources do not build, or nothing is written yet.
     #[must_use]
     pub fn unfit(&self) -> Option<Unfit<'_>> {
         let first = self.scenes().next()?;
@@ -96,8 +98,9 @@ impl Grade {
         if explained > 1 { self.likely_mistakes().into_iter().next().map(|(likely, _)| likely) } else { None }
     }
 
-    /// The likely mistakes, at most three, with the number of wrong scenes that each explains: the one that explains most,
-    /// then of what is left the one that explains most of it, provided that it explains it completely ([`several`]).
+    /// The likely mistakes, at most three, with the number of wrong scenes that each explains: the one that explains
+    /// most, then of what is left the one that explains most of it, provided that it explains it completely
+    /// ([`several`]).
     #[must_use]
     pub fn likely_mistakes(&self) -> Vec<(Explanation, usize)> {
         several(self.scenes().map(|scene| scene.explanations.as_slice()), &self.refuted)
@@ -113,8 +116,8 @@ impl Grade {
         self.scenes().filter(|scene| mistake.is_named_in(&scene.explanations)).count()
     }
 
-    /// Settles by all scenes together what is said of each ([`SceneGrade::settled`]). Whoever leaves groups out of a grade asks again,
-    /// so that nothing of them is told.
+    /// Settles by all scenes together what is said of each ([`SceneGrade::settled`]). Whoever leaves groups out of a
+    /// grade asks again, so that nothing of them is told.
     pub fn settle(&mut self) {
         let likely: Vec<Explanation> = match self.likely_mistake() {
             Some(_) => self.likely_mistakes().into_iter().map(|(one, _)| one).collect(),
@@ -179,8 +182,8 @@ pub struct SceneGrade {
     pub max_points: f64,
     /// Whether the result was taken from an earlier run.
     pub cached: bool,
-    /// What is likely wrong here, the likeliest first: what all scenes together say of this one, else what it says alone
-    /// ([`SceneResult::explanations`], of which [`Grade::settle`] makes it). This is what reports tell.
+    /// What is likely wrong here, the likeliest first: what all scenes together say of this one, else what it says
+    /// alone ([`SceneResult::explanations`], of which [`Grade::settle`] makes it). This is what reports tell.
     #[serde(with = "mirror::explanations")]
     pub settled: Vec<Explanation>,
     /// So many of [`settled`](Self::settled), the first ones, are what all scenes together say.

@@ -1,8 +1,8 @@
 //! Grades one submission: the unit of which everything that grades consists.
 //!
 //! A single submission, a class and an autograder all go through a `Grading`, scene by scene: whoever has several jobs
-//! shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what is found is not run
-//! again. A panic in the work on one scene is a judge error of that scene.
+//! shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what is found is not
+//! run again. A panic in the work on one scene is a judge error of that scene.
 use super::{
     cancellation::Cancellation,
     cards::Cards,
@@ -36,7 +36,8 @@ pub struct Submission {
     pub name: String,
     /// The program, or the folder of sources when the plan builds.
     pub path: PathBuf,
-    /// The program's name in the folder `path`, which somebody else filled. Links are not followed, and nothing is built.
+    /// The program's name in the folder `path`, which somebody else filled. Links are not followed, and nothing is
+    /// built.
     pub program: Option<String>,
 }
 
@@ -151,8 +152,8 @@ impl<'a> Shared<'a> {
         (!lacks_trace && !lacks_card).then_some(Done { result, cached: true, key: None })
     }
 
-    /// Keeps a result. When that fails, grading is stopped: what can't be kept would be done in vain. Faults of ours and
-    /// scenes that were not run are tried again instead.
+    /// Keeps a result. When that fails, grading is stopped: what can't be kept would be done in vain. Faults of ours
+    /// and scenes that were not run are tried again instead.
     fn keep(&self, key: Key, submission: &Submission, result: &SceneResult) {
         let Some(results) = self.results else { return };
         if self.full.get().is_some() || matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
@@ -190,8 +191,8 @@ pub(super) enum Progress {
     Step(u32),
 }
 
-/// One submission at work. Any number of jobs may take its scenes: it is staged once, by the first job that has to run it,
-/// and its copy stays until the grade is drawn.
+/// One submission at work. Any number of jobs may take its scenes: it is staged once, by the first job that has to run
+/// it, and its copy stays until the grade is drawn.
 pub(super) struct Grading<'a> {
     pub(super) grader: &'a Grader<'a>,
     pub(super) shared: &'a Shared<'a>,
@@ -224,7 +225,8 @@ impl<'a> Grading<'a> {
         }
     }
 
-    /// Finds or makes the result of a scene, by its number in the plan, and keeps it; with the word whether it was found.
+    /// Finds or makes the result of a scene, by its number in the plan, and keeps it; with the word whether it was
+    /// found.
     pub(super) fn scene(
         &self,
         number: usize,

@@ -1,7 +1,7 @@
 //! Faults of our own: what panics while one scene is judged, explained or reported must not end a class's grading.
 //!
-//! A panic is caught where the work on one scene begins, with its place in the source, and becomes a judge error of that
-//! scene. Nothing is repaired: what the work had in its hands is dropped.
+//! A panic is caught where the work on one scene begins, with its place in the source, and becomes a judge error of
+//! that scene. Nothing is repaired: what the work had in its hands is dropped.
 use std::{
     any::Any,
     cell::{Cell, RefCell},

@@ -19,8 +19,8 @@ use fosssim_num::tolerances::PARITY_COEFFICIENT;
 /// The largest power of two that lengths are multiplied by.
 pub const MOST_DOUBLINGS: u32 = 20;
 
-/// A scene that fails the reference's own trace after so many doublings or fewer can't be graded fairly by the original's rules: a
-/// correct program that rounds otherwise is off by more than the last place.
+/// A scene that fails the reference's own trace after so many doublings or fewer can't be graded fairly by the
+/// original's rules: a correct program that rounds otherwise is off by more than the last place.
 pub const FAIR_DOUBLINGS: u32 = 1;
 
 /// Where the original's rules fail the reference's own trace.

@@ -59,8 +59,8 @@ impl Hints {
         }
     }
 
-    /// Cuts what judging found down to this level: nothing at [`Hints::None`]; below [`Hints::Full`] where findings are, and of
-    /// what kind; there everything.
+    /// Cuts what judging found down to this level: nothing at [`Hints::None`]; below [`Hints::Full`] where findings
+    /// are, and of what kind; there everything.
     #[must_use]
     pub fn tell(self, judged: &Outcome, rules: Rules) -> Option<Told> {
         (self > Self::None).then(|| Told {

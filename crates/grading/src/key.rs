@@ -31,10 +31,11 @@ impl Key {
     }
 }
 
-/// The digest of this very program: two builds of one version may judge differently. Its version where that can't be read.
+/// The digest of this very program: two builds of one version may judge differently. Its version where that can't be
+/// read.
 ///
-/// The linker's own digest of all that it wrote (the GNU build ID) stands for the bytes where there is one: to read a program of
-/// this size takes as long as to judge ten small scenes.
+/// The linker's own digest of all that it wrote (the GNU build ID) stands for the bytes where there is one: to read a
+/// program of this size takes as long as to judge ten small scenes.
 #[must_use]
 pub fn this_build() -> &'static str {
     static BUILD: OnceLock<String> = OnceLock::new();

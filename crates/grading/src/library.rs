@@ -1,7 +1,8 @@
 //! The scenes and recordings that come with the program, embedded so that they are there wherever it runs.
 //!
-//! They lie in a folder per assignment. A scene's name is `Group/name`, and no two assignments have one in common; written in
-//! full, `t2m2/Group/name`, it is understood as well. Recordings are zstd files; `steps` are the digests of a recording's steps.
+//! They lie in a folder per assignment. A scene's name is `Group/name`, and no two assignments have one in common;
+//! written in full, `t2m2/Group/name`, it is understood as well. Recordings are zstd files; `steps` are the digests of
+//! a recording's steps.
 use super::assignments::version;
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
@@ -46,8 +47,8 @@ pub fn assignment(name: &str) -> Option<Assignment> {
     Assignment::named(path.components().next()?.as_os_str().to_str()?)
 }
 
-/// Whether a pattern takes a scene of this name. A pattern that begins with an assignment's folder, such as `t2m2/*`, takes
-/// scenes that lie there; with a version, such as `t2m2@1/*`, those of that version.
+/// Whether a pattern takes a scene of this name. A pattern that begins with an assignment's folder, such as `t2m2/*`,
+/// takes scenes that lie there; with a version, such as `t2m2@1/*`, those of that version.
 #[must_use]
 pub fn takes(pattern: &Pattern, name: &str) -> bool {
     let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };

@@ -1,9 +1,9 @@
 //! What the scenes have in common in which a program crashes or runs into a limit: fault localisation by spectra.
 //!
-//! A scene's spectrum is what the reference's run of it contains ([`coverage`](crate::coverage)): kinds of events, and values of their
-//! properties. A value is told where every scene that fails contains it, where it is as good as any other by Ochiai's measure, and
-//! where chance would not bring that about: Fisher's exact test, for as many values as are looked at. Values that the scenes can't tell
-//! apart are told together.
+//! A scene's spectrum is what the reference's run of it contains ([`coverage`](crate::coverage)): kinds of events, and
+//! values of their properties. A value is told where every scene that fails contains it, where it is as good as any
+//! other by Ochiai's measure, and where chance would not bring that about: Fisher's exact test, for as many values as
+//! are looked at. Values that the scenes can't tell apart are told together.
 use super::coverage::Coverage;
 use fosssim_sandbox::Ended;
 use serde::{Deserialize, Serialize};
@@ -98,8 +98,8 @@ impl Content {
         values.chain(kinds).collect()
     }
 
-    /// What lies later in a step is the narrower place: zones, then contacts, then the step as a whole; what does not happen comes
-    /// last.
+    /// What lies later in a step is the narrower place: zones, then contacts, then the step as a whole; what does not
+    /// happen comes last.
     const fn rank(self) -> (bool, usize) {
         let place = match self.family {
             4 => 0,
@@ -123,7 +123,8 @@ pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
         let scenes = tried.iter().filter(|one| one.contents.contains(&content)).count();
         with.entry(scenes).or_default().push(content);
     }
-    // As all that fail contain it, Ochiai's measure is the root of failed / with: the fewer contain it, the better it is.
+    // As all that fail contain it, Ochiai's measure is the root of failed / with: the fewer contain it, the better it
+    // is.
     let (with, mut contents) = with.into_iter().next()?;
     let looked_at: BTreeSet<Vec<bool>> = tried
         .iter()
@@ -198,7 +199,8 @@ mod tests {
         let contents = scenes(24, 9, 85);
         let found = located(&contents, |number| (number < 24).then_some(Failing::Crash)).expect("a place");
         assert_eq!((found.failed, found.with, found.without, found.step), (24, 24, 61, 7));
-        // The kind of event, and a property of the step that the same scenes have; the zones' own values are no other place.
+        // The kind of event, and a property of the step that the same scenes have; the zones' own values are no other
+        // place.
         assert_eq!(found.contents, [content(4, None), content(6, Some((1, 1)))]);
         let narrower = located(&contents, |number| (number < 9).then_some(Failing::Time)).expect("a place");
         assert_eq!((narrower.contents, narrower.with), (vec![content(4, Some((1, 1)))], 9));

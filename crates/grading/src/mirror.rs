@@ -1,8 +1,8 @@
 //! The serialised form of what results are made of.
 //!
 //! Types of this crate serialise themselves; those of other rooms, which know nothing of serialising, are mirrored here
-//! field by field, and the compiler holds the mirrors to them. Numbers read back bit for bit: those that JSON can't write
-//! are texts. The version in [`form`](super::form) rises when anything here changes its meaning.
+//! field by field, and the compiler holds the mirrors to them. Numbers read back bit for bit: those that JSON can't
+//! write are texts. The version in [`form`](super::form) rises when anything here changes its meaning.
 use fosssim_judge::{
     Book, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Rescaled,
     Residuals, Role, Rules, Ruling, Unreadable, fair::Cause,

@@ -1,7 +1,7 @@
 //! When the rest of a submission is not run any more: a class must not wait for one program that never ends.
 //!
-//! Pure functions of what is known so far, in the suite's order. More knowledge can only move the end forward, so what is
-//! decided while scenes still run holds, and at the end the same scenes are left out whatever the number of jobs.
+//! Pure functions of what is known so far, in the suite's order. More knowledge can only move the end forward, so what
+//! is decided while scenes still run holds, and at the end the same scenes are left out whatever the number of jobs.
 use super::{
     result::{NotRunReason, Reason, SceneResult},
     task::SceneTask,
@@ -66,8 +66,8 @@ pub(super) fn end(
     None
 }
 
-/// Whether a program with this verdict was stopped at a limit. An endless loop runs into whichever comes first: of time, of
-/// memory, of what it may write.
+/// Whether a program with this verdict was stopped at a limit. An endless loop runs into whichever comes first: of
+/// time, of memory, of what it may write.
 const fn is_limit(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)
 }

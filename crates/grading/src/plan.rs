@@ -49,8 +49,8 @@ impl Plan {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// The part of the plan with the scenes that `takes` takes by name. Each keeps its points; groups without any are left
-    /// out, and the name says that this is a part.
+    /// The part of the plan with the scenes that `takes` takes by name. Each keeps its points; groups without any are
+    /// left out, and the name says that this is a part.
     #[must_use]
     pub fn part(mut self, takes: impl Fn(&str) -> bool) -> Self {
         let all = self.scenes().count();

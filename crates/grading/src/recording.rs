@@ -1,8 +1,8 @@
 //! Recordings: the reference traces of scenes, with a manifest and digests per step that diff well.
 //!
 //! Knows no files: it takes scenes and gives bytes, and compares them with what was recorded before. Layout of the
-//! folder `references`: that of the folder of scenes, with `<name>.bin.zst` (the trace) and `<name>.steps` (a digest per step) for
-//! `<name>.xml`, and `manifest.txt` (name, steps, bytes, SHA-256).
+//! folder `references`: that of the folder of scenes, with `<name>.bin.zst` (the trace) and `<name>.steps` (a digest
+//! per step) for `<name>.xml`, and `manifest.txt` (name, steps, bytes, SHA-256).
 use fosssim_model::{
     scene::{self, Problems, Scene},
     sim::{RootSearch, Simulation, StepError},

@@ -8,8 +8,8 @@ use std::{path::PathBuf, time::Duration};
 
 pub use fosssim_sandbox::{Ended, StartProblem};
 
-/// What happened on one scene: everything but its points, which follow from the suite. It holds no more than the suite's
-/// hints let through, so that nothing that is made of it can give away more.
+/// What happened on one scene: everything but its points, which follow from the suite. It holds no more than the
+/// suite's hints let through, so that nothing that is made of it can give away more.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneResult {
     /// The scene's name, `Group/name`.

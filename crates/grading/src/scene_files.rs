@@ -1,4 +1,5 @@
-//! Folders of scenes, and of what is recorded of them: `<assignment>/<Group>/<name>`, or `<Group>/<name>` without assignments.
+//! Folders of scenes, and of what is recorded of them: `<assignment>/<Group>/<name>`, or `<Group>/<name>` without
+//! assignments.
 use std::{
     fs, io,
     path::{Path, PathBuf},
@@ -15,8 +16,8 @@ pub struct SceneFile {
     pub path: PathBuf,
 }
 
-/// The files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. Files that lie elsewhere,
-/// or whose names are not UTF-8, are left out.
+/// The files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. Files that lie
+/// elsewhere, or whose names are not UTF-8, are left out.
 ///
 /// # Errors
 /// When a folder can't be read.

@@ -16,8 +16,8 @@ use fosssim_sandbox::Ended;
 /// they were taken from an earlier run.
 ///
 /// With [`Credit::Steps`] a scene with a complete trace and a wrong answer gets the share of its steps without a
-/// finding, never all; any other verdict but accepted gets nothing. With [`Credit::All`] every scene has to be accepted.
-/// Scenes on which the grader failed, or which it did not come to run, have no points, nor has their group.
+/// finding, never all; any other verdict but accepted gets nothing. With [`Credit::All`] every scene has to be
+/// accepted. Scenes on which the grader failed, or which it did not come to run, have no points, nor has their group.
 #[must_use]
 pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
@@ -133,8 +133,8 @@ impl Grading<'_> {
 }
 
 impl Grade {
-    /// What the scenes have in common in which the program fails. `contents` are those of all scenes in their order, asked for
-    /// only where some fail and some do not.
+    /// What the scenes have in common in which the program fails. `contents` are those of all scenes in their order,
+    /// asked for only where some fail and some do not.
     fn locate<'a>(&self, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
         let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
         let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));

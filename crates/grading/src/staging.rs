@@ -1,9 +1,9 @@
 //! Brings a submission to where it can be run: a copy that nobody else reads or changes, digested while it is copied.
 //!
-//! Whatever is copied is opened once, beneath the submission's folder and without following links or waiting, and judged
-//! by the open file: who may write in that folder can exchange a name, not what was opened. What can't be copied for what
-//! it is, or for who may read it, is the submission's own fault and not the grader's.
-//! Sources are built in a copy of their folder, in the sandbox, so that a build changes nothing of the submission.
+//! Whatever is copied is opened once, beneath the submission's folder and without following links or waiting, and
+//! judged by the open file: who may write in that folder can exchange a name, not what was opened. What can't be copied
+//! for what it is, or for who may read it, is the submission's own fault and not the grader's. Sources are built in a
+//! copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{
     cancellation::Cancellation,
     config::BuildStep,

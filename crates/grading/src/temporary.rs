@@ -31,7 +31,8 @@ impl Temporary {
         let made = closed(&format!("{purpose}-"), &grader.path)?;
         let path = made.keep();
         if purpose == "build" && is_root() {
-            // Build tools ask for files by their whole path, and run as another user. What lies here is closed by itself.
+            // Build tools ask for files by their whole path, and run as another user. What lies here is closed by
+            // itself.
             fs::set_permissions(&path, Permissions::from_mode(0o711))?;
         }
         Ok(Self { path, _grader: grader })
@@ -49,7 +50,8 @@ impl Drop for Temporary {
     }
 }
 
-/// Working folders that no program has touched, for further runs: a new folder costs some file systems as much as a small run.
+/// Working folders that no program has touched, for further runs: a new folder costs some file systems as much as a
+/// small run.
 #[derive(Debug, Default)]
 pub struct Folders(Mutex<Vec<Temporary>>);
 
@@ -157,8 +159,8 @@ fn sweep_in(place: &Path) {
     }
 }
 
-/// Removes a grader's folder, its lock last: what is left over without a lock would count as being made. A supervisor that
-/// has only just noticed the end of its grader may still be at work in it for a moment.
+/// Removes a grader's folder, its lock last: what is left over without a lock would count as being made. A supervisor
+/// that has only just noticed the end of its grader may still be at work in it for a moment.
 fn clear(path: &Path) {
     const TRIES: u32 = 20;
     const PAUSE: Duration = Duration::from_millis(50);

@@ -1,4 +1,5 @@
-//! What may be told of a judged trace: findings as values, cut to what the suite's hints let through ([`Hints`](crate::config::Hints)).
+//! What may be told of a judged trace: findings as values, cut to what the suite's hints let through
+//! ([`Hints`](crate::config::Hints)).
 use super::mirror;
 use fosssim_judge::{Book, Damage, Finding, FindingCounts, FindingKind, PolynomialPlace, Residuals, Ruling};
 use fosssim_model::sim::Pair;

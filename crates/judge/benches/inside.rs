@@ -1,13 +1,14 @@
 //! What recording and judging take inside one process, on one thread: the least time of some rounds.
 //!
-//! `cargo bench -p fosssim-judge --bench inside -- [rounds] [what] SCENE...` prints a line per scene and the sum. `what` is
-//! `all`, or one of `step` (without an observer), `record` (into nothing), `parity` and `fair` (the scene's own trace), `half`
-//! and `third` (the same trace with every coefficient times 0.5 or divided by 3, by both books), `rounded` (with a rounding more in
-//! every third coefficient), `trace` (each scene is followed by the file of a trace, judged by both books).
+//! `cargo bench -p fosssim-judge --bench inside -- [rounds] [what] SCENE...` prints a line per scene and the sum.
+//! `what` is `all`, or one of `step` (without an observer), `record` (into nothing), `parity` and `fair` (the scene's
+//! own trace), `half` and `third` (the same trace with every coefficient times 0.5 or divided by 3, by both books),
+//! `rounded` (with a rounding more in every third coefficient), `trace` (each scene is followed by the file of a trace,
+//! judged by both books).
 //!
-//! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine changes, and
-//! shows them beside those of `instructions.txt`; with `store` behind it they are written there. `... -- growth` shows the cost
-//! of a pair and the memory from 10 to 3,000 particles.
+//! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine
+//! changes, and shows them beside those of `instructions.txt`; with `store` behind it they are written there. `... --
+//! growth` shows the cost of a pair and the memory from 10 to 3,000 particles.
 use fosssim_judge::replay::{self, Options};
 use fosssim_model::{
     scene::{Scene, original},

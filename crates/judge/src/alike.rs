@@ -1,8 +1,8 @@
 //! Steps whose records are the reference's but for polynomials that have a factor, or were computed in another way.
 //!
-//! Nothing of them is decoded: states and impulses are compared as bytes, and of polynomials that are not the same, nearly all
-//! are right at once by both books. Where anything hangs on more than that, the step goes the long way, and what is said here
-//! is what would be said there.
+//! Nothing of them is decoded: states and impulses are compared as bytes, and of polynomials that are not the same,
+//! nearly all are right at once by both books. Where anything hangs on more than that, the step goes the long way, and
+//! what is said here is what would be said there.
 use super::{
     calls::{Both, Call, Numbers, OF_EDGE, OF_TWO},
     fair::{AlikeStep, Context, Likeness, StepJudgement},
@@ -30,8 +30,8 @@ impl Alike {
         Self { pairs: order.count(), order }
     }
 
-    /// Whether these polynomials of the trace's mid record and end record will do in the place of the reference's, and what the fair
-    /// rules say about that, if they are asked.
+    /// Whether these polynomials of the trace's mid record and end record will do in the place of the reference's, and
+    /// what the fair rules say about that, if they are asked.
     pub(super) fn accepts(
         &self,
         watch: &Watch,
@@ -112,8 +112,8 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Goes past a call whose complete polynomials have `lengths` coefficients; `None` where it has to be looked at in another
-    /// way.
+    /// Goes past a call whose complete polynomials have `lengths` coefficients; `None` where it has to be looked at in
+    /// another way.
     #[inline(always)]
     fn call<const COUNT: usize>(
         &mut self,
@@ -229,8 +229,8 @@ fn of<const LENGTH: usize>([own, theirs]: Both<'_>) -> Likeness {
     Likeness::of(own.map(f64::from_le_bytes).into_iter().zip(theirs.map(f64::from_le_bytes)))
 }
 
-/// Whether the original finds nothing for certain. What one division for all coefficients rounds otherwise than the original is
-/// less than a tenth of the bound among numbers of this size.
+/// Whether the original finds nothing for certain. What one division for all coefficients rounds otherwise than the
+/// original is less than a tenth of the bound among numbers of this size.
 #[inline]
 fn passes_at_once(likeness: &Likeness) -> bool {
     (likeness.sum >= PARITY_ZERO_POLYNOMIAL) & (likeness.logged <= 1e3) & (likeness.worst <= 0.9 * PARITY_COEFFICIENT)

@@ -1,17 +1,17 @@
 //! How much work judging one trace may take.
 //!
-//! Steps are judged from the trace's own states, so a trace chooses what the reference has to compute: states from which
-//! every round of impulses finds new collisions cost as many detection passes as the scene allows rounds, thousands of
-//! times what the scene's own run costs, and the fair rules repeat such steps. Work is counted in detection calls
-//! ([`SearchCounts::work`](fosssim_model::sim::SearchCounts::work)), not measured by a clock: the same bytes have the same
-//! verdict on every machine.
+//! Steps are judged from the trace's own states, so a trace chooses what the reference has to compute: states from
+//! which every round of impulses finds new collisions cost as many detection passes as the scene allows rounds,
+//! thousands of times what the scene's own run costs, and the fair rules repeat such steps. Work is counted in
+//! detection calls ([`SearchCounts::work`](fosssim_model::sim::SearchCounts::work)), not measured by a clock: the same
+//! bytes have the same verdict on every machine.
 use fosssim_model::{
     scene::Scene,
     sim::{Observer, RootSearch, Simulation, StepError},
 };
 
-/// What every trace may ask for, however simple its scene is: about a second's work. Nearly all traces stay below it, and
-/// the scene's own run need not be known.
+/// What every trace may ask for, however simple its scene is: about a second's work. Nearly all traces stay below it,
+/// and the scene's own run need not be known.
 pub(crate) const FLOOR: u64 = 10_000_000;
 
 /// Beyond that, so many times the scene's own run by the original's rules ...
@@ -29,8 +29,8 @@ pub struct Budget<'a> {
 }
 
 impl<'a> Budget<'a> {
-    /// For judging a trace of this scene by the original's rules, or also by the fair ones. Who simulates steps besides, to
-    /// explain or to show them, takes as much as the original's rules may.
+    /// For judging a trace of this scene by the original's rules, or also by the fair ones. Who simulates steps
+    /// besides, to explain or to show them, takes as much as the original's rules may.
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         Self { scene, factor: if fair { FAIR } else { PARITY }, rest: FLOOR, is_wide: false }
@@ -105,7 +105,8 @@ mod tests {
         samples::{changed, run, scene, written},
     };
 
-    /// A ball that moves between two posts; where they overlap it, each round of impulses throws it from one to the other.
+    /// A ball that moves between two posts; where they overlap it, each round of impulses throws it from one to the
+    /// other.
     fn posts(start: f64, rounds: u32) -> Scene {
         let post = |x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>"#);
         scene(&format!(

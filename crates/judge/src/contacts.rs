@@ -1,4 +1,5 @@
-//! Which of a record's impulses are about a pair: a trace may log a million, and nobody shall search them all for each pair.
+//! Which of a record's impulses are about a pair: a trace may log a million, and nobody shall search them all for each
+//! pair.
 use fosssim_model::{sim::Pair, trace::LoggedImpulse};
 
 /// Kind and numbers of a pair as they are logged.

@@ -260,8 +260,8 @@ pub enum FindingDetail {
         /// The repetition.
         actual: LoggedImpulse,
     },
-    /// A polynomial of a pair that a response or the failsafe has moved fits neither (fair rules). It may be right: what
-    /// is wrong is where the particles are by then.
+    /// A polynomial of a pair that a response or the failsafe has moved fits neither (fair rules). It may be right:
+    /// what is wrong is where the particles are by then.
     PassPositions {
         /// The first such polynomial.
         place: PolynomialPlace,
@@ -271,19 +271,19 @@ pub enum FindingDetail {
         /// In what.
         part: RecordPart,
     },
-    /// A polynomial with more coefficients than any detection has, or with small leading ones, which the course's library
-    /// drops (fair rules).
+    /// A polynomial with more coefficients than any detection has, or with small leading ones, which the course's
+    /// library drops (fair rules).
     ImpossibleLog,
-    /// The trace's polynomials lack coefficients, as where the course's library drops them because of a factor, and this decision
-    /// hangs on them (fair rules).
+    /// The trace's polynomials lack coefficients, as where the course's library drops them because of a factor, and
+    /// this decision hangs on them (fair rules).
     TrimmedDecision {
         /// The pair's first polynomial.
         place: PolynomialPlace,
         /// Whether the pair collides.
         collides: bool,
     },
-    /// The trace's polynomials lack coefficients, as where the course's library drops them because of a factor, and this time of
-    /// impact is theirs (fair rules).
+    /// The trace's polynomials lack coefficients, as where the course's library drops them because of a factor, and
+    /// this time of impact is theirs (fair rules).
     TrimmedTime {
         /// The pair's first polynomial.
         place: PolynomialPlace,
@@ -309,7 +309,8 @@ pub enum FindingDetail {
     },
 }
 
-/// A coefficient as the original compares it: rescaled by sums of moduli, so that one wrong coefficient moves all others.
+/// A coefficient as the original compares it: rescaled by sums of moduli, so that one wrong coefficient moves all
+/// others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rescaled {
     /// The highest power of t whose coefficient is beyond the original's bound.

@@ -1,8 +1,8 @@
 //! Steps whose records are the reference's byte for byte: most of them, and nothing of them has to be decoded.
 //!
-//! The reference makes the step's records in the trace's own layout, from the trace's own state, and they are compared with
-//! what is read. Where they are equal, every comparison of the two books is known to find nothing; where anything hangs on
-//! more than that, or differs, the step goes the long way.
+//! The reference makes the step's records in the trace's own layout, from the trace's own state, and they are compared
+//! with what is read. Where they are equal, every comparison of the two books is known to find nothing; where anything
+//! hangs on more than that, or differs, the step goes the long way.
 use super::{
     alike::Alike,
     fair::{Context, StepJudgement},
@@ -29,7 +29,8 @@ pub(super) struct Identical {
     theirs: Vec<u8>,
     /// What the original finds about that.
     pending: Pending,
-    /// So many steps in a row have differed. None is not tried after the first of them, and then about twice as many with each.
+    /// So many steps in a row have differed. None is not tried after the first of them, and then about twice as many
+    /// with each.
     misses: u32,
     /// How many steps are still not tried.
     skipped: u32,
@@ -246,8 +247,9 @@ mod tests {
         }
     }
 
-    /// Two balls far apart that move alike: their relative motion is round-off, from which the root finder makes a collision with
-    /// some factors and none with others. None is what the reference has, and no program misses anything then.
+    /// Two balls far apart that move alike: their relative motion is round-off, from which the root finder makes a
+    /// collision with some factors and none with others. None is what the reference has, and no program misses anything
+    /// then.
     #[test]
     fn what_only_the_root_finder_sees_is_no_missed_collision() {
         let scene = scene(

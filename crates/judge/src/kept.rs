@@ -1,8 +1,9 @@
 //! A trace that comes once, kept while it is judged as far as somebody may want to look at it again.
 //!
-//! Steps that are the reference's byte for byte are not kept: the reference makes their records again from the state before
-//! them, as it did when they were compared. So a right trace takes no memory, and of others what differs. Of what lies beyond
-//! [`LONGEST`], or no longer fits, the steps are kept in which a book has found something, each with the record before it.
+//! Steps that are the reference's byte for byte are not kept: the reference makes their records again from the state
+//! before them, as it did when they were compared. So a right trace takes no memory, and of others what differs. Of
+//! what lies beyond [`LONGEST`], or no longer fits, the steps are kept in which a book has found something, each with
+//! the record before it.
 use super::{
     options::Options,
     outcome::Outcome,
@@ -222,7 +223,8 @@ impl Store {
         self.start.saturating_add(behind).min(self.tail.len())
     }
 
-    /// Keeps bytes that have been read. A record that does not fit ends the beginning; while steps are judged, nothing is kept of it.
+    /// Keeps bytes that have been read. A record that does not fit ends the beginning; while steps are judged, nothing
+    /// is kept of it.
     fn keep(&mut self, bytes: &[u8], is_judged: bool) {
         if self.most == 0 {
             return;

@@ -59,8 +59,8 @@ pub struct Outcome {
     pub stop: Option<Stop>,
     /// The first damage that the original's reading passes over in silence, see [`Damage`].
     pub damage: Option<Damage>,
-    /// Judged steps whose records are damaged, or come after one that is. Their findings count for the original, but say
-    /// nothing about the program that wrote the trace: they are no wrong steps, and no example is among them.
+    /// Judged steps whose records are damaged, or come after one that is. Their findings count for the original, but
+    /// say nothing about the program that wrote the trace: they are no wrong steps, and no example is among them.
     pub damaged_steps: u32,
     /// Whether bytes follow the last record; the original never looks at them.
     pub trailing_bytes: bool,

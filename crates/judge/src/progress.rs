@@ -43,8 +43,8 @@ pub struct WrongStep<'a> {
     pub step: u32,
     /// What the original's rules have found.
     pub parity: StepFindings<'a>,
-    /// What the fair rules have found; empty when they were not asked. What only the whole trace tells, such as mixed forms, is
-    /// not among it.
+    /// What the fair rules have found; empty when they were not asked. What only the whole trace tells, such as mixed
+    /// forms, is not among it.
     pub fair: StepFindings<'a>,
 }
 

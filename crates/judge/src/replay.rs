@@ -1,9 +1,9 @@
 //! Reads the trace step by step, has the steps judged in batches, and puts the results together in their order.
 //!
-//! Once a step's frames are in memory the step depends on nothing else: the reference starts from the submission's
-//! own state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. Steps that are
-//! the reference's byte for byte are judged as they are read (`identical`): that takes hardly longer than decoding them. What
-//! is reported, and in which order, does not depend on the number of threads.
+//! Once a step's frames are in memory the step depends on nothing else: the reference starts from the submission's own
+//! state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. Steps that are
+//! the reference's byte for byte are judged as they are read (`identical`): that takes hardly longer than decoding
+//! them. What is reported, and in which order, does not depend on the number of threads.
 mod crew;
 
 pub use super::{
@@ -34,7 +34,8 @@ const BATCH_BYTES: usize = 1 << 18;
 const LARGE_BATCH_BYTES: usize = 1 << 24;
 /// ... or this many steps ...
 const BATCH_STEPS: usize = 256;
-/// ... or this many that are done as they are read: for those nobody has to be called, and fewer slots take less memory.
+/// ... or this many that are done as they are read: for those nobody has to be called, and fewer slots take less
+/// memory.
 const DONE_STEPS: usize = 16;
 
 /// One step as read, and what judging it yields.
@@ -87,14 +88,16 @@ struct Batch {
     bytes: usize,
 }
 
-/// Judges a trace by both books, as the original does in lock step with the reference: each step starts from the trace's own state,
-/// takes over its mid record, and is compared with its end record (oracle-behaviour.md 4 to 6). Memory does not depend
-/// on the trace's length. What follows the last record is not read, save for one byte that tells whether it is there.
+/// Judges a trace by both books, as the original does in lock step with the reference: each step starts from the
+/// trace's own state, takes over its mid record, and is compared with its end record (oracle-behaviour.md 4 to 6).
+/// Memory does not depend on the trace's length. What follows the last record is not read, save for one byte that tells
+/// whether it is there.
 pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
     judge_any(scene, &mut trace, options, progress)
 }
 
-/// Compiled once and here, whatever the trace comes from: what is generic is compiled where it is used, at that crate's level.
+/// Compiled once and here, whatever the trace comes from: what is generic is compiled where it is used, at that crate's
+/// level.
 fn judge_any(scene: &Scene, trace: &mut (dyn Read + Send), options: &Options, progress: &mut dyn Progress) -> Outcome {
     judge_within((record_memory(scene), FLOOR), scene, trace, options, progress)
 }
@@ -322,7 +325,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         Ok(())
     }
 
-    /// Reads a step and judges it, if it is the reference's byte for byte, or but for polynomials that are right at once.
+    /// Reads a step and judges it, if it is the reference's byte for byte, or but for polynomials that are right at
+    /// once.
     fn read_at_once(&mut self, slot: &mut Slot) -> bool {
         let (context, rest) = (self.shape.fair.as_ref(), self.budget.rest());
         let Some(found) = self.identical.find(&mut self.reader, slot.step, &self.state, context, rest) else {

@@ -113,8 +113,9 @@ impl Outcome {
         }
     }
 
-    /// How many steps are right by a book: all of them only where the trace is accepted. What is wrong in no step, such as
-    /// the first record or small errors that add up, counts as one; and what the original reads over in silence is right for it only where it accepts the whole.
+    /// How many steps are right by a book: all of them only where the trace is accepted. What is wrong in no step, such
+    /// as the first record or small errors that add up, counts as one; and what the original reads over in silence is
+    /// right for it only where it accepts the whole.
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);

@@ -1,8 +1,9 @@
 //! One detection call, looked at closely: polynomials, zeros, where each is positive, where all are, and what follows.
 //!
-//! Judges nothing. The numbers are those of the reference, bit for bit: its formulas, its root finder, its sets of times
-//! (collisions.md 2, root-finder.md 15 and 16). Beside the course's approach polynomial of a particle and an edge stands the
-//! mathematically right one (numerics.md 1), and beside the reference's decision whether round-off may flip it.
+//! Judges nothing. The numbers are those of the reference, bit for bit: its formulas, its root finder, its sets of
+//! times (collisions.md 2, root-finder.md 15 and 16). Beside the course's approach polynomial of a particle and an edge
+//! stands the mathematically right one (numerics.md 1), and beside the reference's decision whether round-off may flip
+//! it.
 use crate::{
     fair::{compare::compare, decides, formulas},
     finding::Role,
@@ -193,8 +194,8 @@ fn right_approach(polynomials: &[Polynomial], expected: &formulas::Expected) -> 
     Some(Polynomial::untrimmed(&coefficients))
 }
 
-/// The same motion with bounds. The displacement's value is kept, its bound is that of a difference of positions, of which the one
-/// at the end may be off by a rounding.
+/// The same motion with bounds. The displacement's value is kept, its bound is that of a difference of positions, of
+/// which the one at the end may be off by a rounding.
 impl From<PointMotion> for formulas::BoundedPointMotion {
     fn from(point: PointMotion) -> Self {
         let start = Bounded2::exact(point.start);

@@ -1,8 +1,8 @@
 //! Compares one step of the trace with the reference while the reference computes it.
 //!
-//! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list at the end of
-//! its pass, so nothing of the reference's log is stored but one pass. Only at the end of the step is it known whether the
-//! two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
+//! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list at the
+//! end of its pass, so nothing of the reference's log is stored but one pass. Only at the end of the step is it known
+//! whether the two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
 mod pending;
 
 pub(super) use pending::Pending;
@@ -48,8 +48,8 @@ pub(super) struct StepResult {
 }
 
 impl StepResult {
-    /// Of a step whose states and impulses are the reference's bit for bit, so that no residual is above zero; `identical` says that
-    /// the polynomials are so, too. If they are not, this is what the original finds about them.
+    /// Of a step whose states and impulses are the reference's bit for bit, so that no residual is above zero;
+    /// `identical` says that the polynomials are so, too. If they are not, this is what the original finds about them.
     pub(super) fn set_states_right(&mut self, identical: bool, pending: &mut Pending) {
         self.clear();
         self.identical = identical;
@@ -266,8 +266,8 @@ impl<'a> Tally<'a> {
         debug_assert_eq!(self.result.counts.get(FindingKind::Velocity), velocities);
     }
 
-    /// Compares the next polynomial of the reference, as oracle-behaviour.md 6.2 does; `place` says where it belongs, should that be
-    /// needed.
+    /// Compares the next polynomial of the reference, as oracle-behaviour.md 6.2 does; `place` says where it belongs,
+    /// should that be needed.
     pub(super) fn compare_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
         let index = self.polynomials;
         self.polynomials += 1;
@@ -389,8 +389,8 @@ pub(super) fn rejects_itself(coefficients: &[f64]) -> bool {
     !(sum < SAFE_SUM) && coefficients.iter().any(|&c| rejects(c))
 }
 
-/// Whether the original finds nothing about a polynomial (oracle-behaviour.md 6.2): it is right up to a factor, or zero, or
-/// holds what is no number.
+/// Whether the original finds nothing about a polynomial (oracle-behaviour.md 6.2): it is right up to a factor, or
+/// zero, or holds what is no number.
 pub(super) fn passes(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
     if own.len() != actual.len() {
@@ -414,8 +414,8 @@ enum Likeness {
     Open,
 }
 
-/// How both compare, as far as one division for all coefficients tells: what it rounds otherwise than the original is less than a
-/// hundredth of the bound.
+/// How both compare, as far as one division for all coefficients tells: what it rounds otherwise than the original is
+/// less than a hundredth of the bound.
 #[inline]
 fn likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
     let (Some(actual), Some(own)) = (actual.first_chunk::<LENGTH>(), own.as_chunks::<8>().0.first_chunk::<LENGTH>())

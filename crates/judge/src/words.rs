@@ -19,7 +19,8 @@ impl Display for Finding {
 struct What<'a>(&'a Finding);
 
 impl Finding {
-    /// The finding in words, without its step: what stands in the first record starts, what stands in others ends there.
+    /// The finding in words, without its step: what stands in the first record starts, what stands in others ends
+    /// there.
     #[must_use]
     pub fn what(&self) -> impl Display + '_ {
         What(self)
@@ -47,8 +48,8 @@ impl Display for What<'_> {
     }
 }
 
-/// What makes a decision another one, and where coefficients may have gone. Whether a factor explains it, the trace's other
-/// polynomials tell.
+/// What makes a decision another one, and where coefficients may have gone. Whether a factor explains it, the trace's
+/// other polynomials tell.
 const LACKING: &str = "the trace's polynomials lack coefficients for that";
 const DROPPING: &str = "the course's library drops leading ones below 1e-12";
 

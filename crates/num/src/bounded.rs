@@ -1,10 +1,10 @@
 //! Numbers that carry a bound on their rounding error: running error analysis.
 //!
-//! A [`Bounded`] is a computed value with a count `units`: whatever order a correct program evaluates the same formula in,
-//! its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those of
-//! Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.3), with
-//! the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and the bound also
-//! covers other orders of summation. Nothing of this reaches a trace.
+//! A [`Bounded`] is a computed value with a count `units`: whatever order a correct program evaluates the same formula
+//! in, its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those of
+//! Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.3),
+//! with the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and the
+//! bound also covers other orders of summation. Nothing of this reaches a trace.
 use super::{
     lanes::{Lanes, Modulus, Number, Plane, Simd},
     vector::Vec2,
@@ -14,8 +14,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// The unit roundoff of doubles, `2^-53`.
 pub const UNIT_ROUNDOFF: f64 = 1.110_223_024_625_156_5e-16;
 
-/// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value); of one number, or of one in
-/// each [lane](super::lanes).
+/// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value); of one number, or of one
+/// in each [lane](super::lanes).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bounded<N = f64> {
     /// The computed value.
@@ -116,8 +116,8 @@ impl Mul<Bounded> for f64 {
     }
 }
 
-/// The most that a number's modulus can be: differences count as sums. With it a formula yields how large its results and their
-/// bounds are at most, whatever the signs.
+/// The most that a number's modulus can be: differences count as sums. With it a formula yields how large its results
+/// and their bounds are at most, whatever the signs.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Size(pub f64);
 

@@ -1,16 +1,16 @@
-//! Several numbers that undergo the same operations at once, as processors do: the formulas of several pairs for the time of
-//! one.
+//! Several numbers that undergo the same operations at once, as processors do: the formulas of several pairs for the
+//! time of one.
 //!
-//! Each lane rounds like a single number (IEEE 754, no fused operations), so no bit depends on how numbers are put together.
-//! Only the sign of a NaN may differ, which is the compiler's choice: whoever needs its bits keeps NaN out. How many lanes
-//! there are depends on the machine ([`Instructions`]); on one without wide instructions it is one.
+//! Each lane rounds like a single number (IEEE 754, no fused operations), so no bit depends on how numbers are put
+//! together. Only the sign of a NaN may differ, which is the compiler's choice: whoever needs its bits keeps NaN out.
+//! How many lanes there are depends on the machine ([`Instructions`]); on one without wide instructions it is one.
 use super::vector::Vec2;
 use pulp::Arch;
 pub use pulp::Simd;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// What the formulas of detection compute with: one number, or a lane of each of several pairs. Besides, a `f64` in front
-/// multiplies it.
+/// What the formulas of detection compute with: one number, or a lane of each of several pairs. Besides, a `f64` in
+/// front multiplies it.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {}
 
 impl<N> Number for N where N: Copy + Add<Output = N> + Sub<Output = N> + Mul<Output = N> + Neg<Output = N> {}
@@ -99,8 +99,8 @@ impl Default for Instructions {
 const FEW_PAIRS: usize = 8;
 
 impl Instructions {
-    /// The widest instructions, where so many pairs are looked at together that it pays to look for them: a virtual machine may
-    /// take longer to say what its processor can do than small scenes take to simulate.
+    /// The widest instructions, where so many pairs are looked at together that it pays to look for them: a virtual
+    /// machine may take longer to say what its processor can do than small scenes take to simulate.
     #[must_use]
     pub fn for_pairs(pairs: usize) -> Self {
         if pairs < FEW_PAIRS { Self::plain() } else { Self::default() }
@@ -179,7 +179,8 @@ impl<S: Simd> Lanes<S> {
         S::as_mut_simd_f64s(&mut numbers[..Self::COUNT]).0[0] = self.values;
     }
 
-    /// Writes the numbers of each lane one behind the other, four at a time; those of the next lane begin `stride` later.
+    /// Writes the numbers of each lane one behind the other, four at a time; those of the next lane begin `stride`
+    /// later.
     ///
     /// # Panics
     /// When the slice is too short.
@@ -334,7 +335,8 @@ impl<S: Simd> Mask<S> {
     pub fn or_zero(self, number: f64) -> Lanes<S> {
         let simd = self.simd;
         let mask = if Lanes::<S>::COUNT > 1 {
-            // All bits of a lane or none: that is what a mask of several is. As the choice below it would be tested once more.
+            // All bits of a lane or none: that is what a mask of several is. As the choice below it would be tested
+            // once more.
             pulp::bytemuck::pod_read_unaligned(pulp::bytemuck::bytes_of(&self.lanes))
         } else {
             simd.select_u64s(self.lanes, simd.splat_u64s(u64::MAX), simd.splat_u64s(0))

@@ -2,9 +2,9 @@
 //! that make a root search unnecessary, decisions that hold whatever rounding did, the linear solver of the implicit
 //! integrators, elementary functions, and numbers as C++ prints them.
 //!
-//! Knows nothing of the rest of the crate, never prints, never touches files or processes, and never allocates in
-//! the functions that run per pair (but for the integers of [`decision::exact`], the last resort). The mathematics is
-//! that of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493, ACM TOMS 1, 1975),
+//! Knows nothing of the rest of the crate, never prints, never touches files or processes, and never allocates in the
+//! functions that run per pair (but for the integers of [`decision::exact`], the last resort). The mathematics is that
+//! of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493, ACM TOMS 1, 1975),
 //! evaluated in the order in which the original does.
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]

@@ -29,8 +29,8 @@ pub const NEWTON_UPDATE: f64 = 1e-9;
 /// (simulation.md 4); convergence takes fewer than ten. Lowering it far could refuse a scene that the original records.
 pub const NEWTON_ITERATIONS: u32 = 10_000;
 
-/// Certificate: a line's zero is near when its modulus is at most this (fraction of the step). Larger values let rounding
-/// decide the root finder's sample one step beyond the zero (certificate, closed forms).
+/// Certificate: a line's zero is near when its modulus is at most this (fraction of the step). Larger values let
+/// rounding decide the root finder's sample one step beyond the zero (certificate, closed forms).
 pub const LINE_NEAR: f64 = (1_u64 << 40) as f64;
 
 /// Certificate: a parabola's zeros are near when the coefficient of degree 2 - i is at most the leading one times the
@@ -44,65 +44,67 @@ pub const PARABOLA_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 /// Certificate: a parabola has no real zero when b^2 is below 4ac times this.
 pub const PARABOLA_COMPLEX: f64 = 1.0 - 1.0 / (1_u64 << 20) as f64;
 
-/// Certificate: the least product of complex zeros (fraction of the step, squared) whose imaginary parts are surely above
-/// [`IMAGINARY_PART`]: with [`PARABOLA_COMPLEX`] they exceed 2^-10 times the root of this.
+/// Certificate: the least product of complex zeros (fraction of the step, squared) whose imaginary parts are surely
+/// above [`IMAGINARY_PART`]: with [`PARABOLA_COMPLEX`] they exceed 2^-10 times the root of this.
 pub const PARABOLA_ROOM: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Certificate: as [`PARABOLA_NEAR`], for degrees three to five whose zeros are apart ([`DISCRIMINANT_MARGIN`]). Sixteen
-/// times as much has shown no disagreement either.
+/// Certificate: as [`PARABOLA_NEAR`], for degrees three to five whose zeros are apart ([`DISCRIMINANT_MARGIN`]).
+/// Sixteen times as much has shown no disagreement either.
 pub const BERNSTEIN_NEAR: f64 = (1_u64 << 24) as f64;
 
 /// Certificate: zeros are apart when no relative change of this size of the coefficients makes two of them coincide. It
 /// has to exceed the rounding of a sample's value (some 2^-48 of the terms) clearly.
 pub const DISCRIMINANT_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Certificate: as [`PARABOLA_MARGIN`], for degrees three to five. It has to cover what deflation does to the zeros, which
-/// is measured, not proved.
+/// Certificate: as [`PARABOLA_MARGIN`], for degrees three to five. It has to cover what deflation does to the zeros,
+/// which is measured, not proved.
 pub const BERNSTEIN_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Certificate: searches among coefficients between this and [`SEARCH_LARGEST_COEFFICIENT`] (or zero) are known to end; among
-/// subnormal numbers some do not (root-finder.md 9.5).
+/// Certificate: searches among coefficients between this and [`SEARCH_LARGEST_COEFFICIENT`] (or zero) are known to end;
+/// among subnormal numbers some do not (root-finder.md 9.5).
 pub const SEARCH_SMALLEST_COEFFICIENT: f64 = 1e-150;
 
 /// Certificate: see [`SEARCH_SMALLEST_COEFFICIENT`].
 pub const SEARCH_LARGEST_COEFFICIENT: f64 = 1e150;
 
-/// Detection in lanes: positions, displacements, radii, half-planes' points and normals up to this modulus (scene length unit)
-/// make no NaN and no infinity among coefficients, which are of degree six; beyond it pairs are computed one by one. Much
-/// larger values would let the sign of a NaN depend on how pairs are put together.
+/// Detection in lanes: positions, displacements, radii, half-planes' points and normals up to this modulus (scene
+/// length unit) make no NaN and no infinity among coefficients, which are of degree six; beyond it pairs are computed
+/// one by one. Much larger values would let the sign of a NaN depend on how pairs are put together.
 pub const LANES_LARGEST_INPUT: f64 = 1e48;
 
-/// Fair: a correct program may be off by this many units of the running error bound (numerics.md 2; LAPACK's test ratios
-/// use 30). Smaller values refuse correct programs that evaluate in another way, larger ones hide small mistakes.
+/// Fair: a correct program may be off by this many units of the running error bound (numerics.md 2; LAPACK's test
+/// ratios use 30). Smaller values refuse correct programs that evaluate in another way, larger ones hide small
+/// mistakes.
 pub const FAIR_UNITS: f64 = 64.0;
 
-/// Fair: a coefficient may also be off by this many units of all the polynomial's error bounds together. Programs that find
-/// coefficients by interpolation need it; it is far below what changes a decision on [0, 1].
+/// Fair: a coefficient may also be off by this many units of all the polynomial's error bounds together. Programs that
+/// find coefficients by interpolation need it; it is far below what changes a decision on [0, 1].
 pub const FAIR_NORM_UNITS: f64 = 16.0;
 
-/// Fair: coefficients that are off by this part of [`FAIR_NORM_UNITS`] of their sum of moduli are right at once. Larger values
-/// say less of how much of the tolerances a program uses, smaller ones have more looked at closely.
+/// Fair: coefficients that are off by this part of [`FAIR_NORM_UNITS`] of their sum of moduli are right at once. Larger
+/// values say less of how much of the tolerances a program uses, smaller ones have more looked at closely.
 pub const FAIR_CLEAR: f64 = 0.25;
 
-/// Fair: what a root finder may be off by at the time of impact, in units of the polynomials' error bounds there. Covers
-/// deflation and other solvers than the course's.
+/// Fair: what a root finder may be off by at the time of impact, in units of the polynomials' error bounds there.
+/// Covers deflation and other solvers than the course's.
 pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 
 /// Fair: a time of impact may be off by this fraction of the step, whatever the polynomials: what a careful root finder
 /// that is not the course's may leave.
 pub const FAIR_TIME: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// Fair: two times of impact between which nothing moves by more than this many roundings of its position are one moment. Larger
-/// values bring the responses to them apart by more than round-off.
+/// Fair: two times of impact between which nothing moves by more than this many roundings of its position are one
+/// moment. Larger values bring the responses to them apart by more than round-off.
 pub const FAIR_MOMENT: f64 = 8.0;
 
-/// Fair: leading coefficients below this many times [`LEADING_COEFFICIENT`] may be lost without a word: factors near 1 move
-/// others across that bound than the course's own formulas do. Larger values let factors change times of impact.
+/// Fair: leading coefficients below this many times [`LEADING_COEFFICIENT`] may be lost without a word: factors near 1
+/// move others across that bound than the course's own formulas do. Larger values let factors change times of impact.
 pub const FAIR_LOSS: f64 = 4.0;
 
-/// Fair: factors whose binary exponents lie farther from the mean of their kind than this many times its standard deviation are
-/// outliers, which vouch for no polynomial that is gone: so is what fewer than one polynomial in ten tells beside all others. Larger
-/// values let few polynomials vouch for many, smaller ones accuse programs with several factors.
+/// Fair: factors whose binary exponents lie farther from the mean of their kind than this many times its standard
+/// deviation are outliers, which vouch for no polynomial that is gone: so is what fewer than one polynomial in ten
+/// tells beside all others. Larger values let few polynomials vouch for many, smaller ones accuse programs with several
+/// factors.
 pub const FAIR_OUTLIER: f64 = 3.0;
 
 /// Fair: states may be this many times as large, or as close together, as any in the reference's own run; beyond that
@@ -119,20 +121,22 @@ pub const KNOWN_COEFFICIENT: f64 = 1e-10;
 /// Known mistakes: ... and by this share of its polynomial's largest one, since the terms of a coefficient may cancel.
 pub const KNOWN_COEFFICIENT_FLOOR: f64 = 1e-12;
 
-/// Known mistakes: a coefficient that only one side has dropped is at most this (absolute; see [`LEADING_COEFFICIENT`]).
+/// Known mistakes: a coefficient that only one side has dropped is at most this (absolute; see
+/// [`LEADING_COEFFICIENT`]).
 pub const KNOWN_DROPPED: f64 = 2.0 * LEADING_COEFFICIENT;
 
-/// Known mistakes: a re-simulated coordinate or velocity may differ by this share of the largest one of its kind plus 1.
+/// Known mistakes: a re-simulated coordinate or velocity may differ by this share of the largest one of its kind plus
+/// 1.
 pub const KNOWN_STATE: f64 = 1e-10;
 
 /// Known mistakes: a re-simulated contact vector may differ by this share of its length plus 1.
 pub const KNOWN_NORMAL: f64 = 1e-9;
 
-/// Known mistakes: a re-simulated time of impact may differ by this (fraction of the step). A double zero is known to about
-/// the root of the unit roundoff.
+/// Known mistakes: a re-simulated time of impact may differ by this (fraction of the step). A double zero is known to
+/// about the root of the unit roundoff.
 pub const KNOWN_TIME: f64 = 1e-7;
 
-/// Explanations: a coordinate or velocity of a trace's first record may differ from the scene's by this share of the largest
-/// one of its kind or 1. It covers the rounding to single precision; smaller values take a trace with rounded numbers for
-/// that of another scene.
+/// Explanations: a coordinate or velocity of a trace's first record may differ from the scene's by this share of the
+/// largest one of its kind or 1. It covers the rounding to single precision; smaller values take a trace with rounded
+/// numbers for that of another scene.
 pub const FIRST_RECORD: f64 = 1e-6;

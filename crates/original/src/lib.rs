@@ -4,12 +4,13 @@
 //! and the exit code is 1. Files are written through, as the original does: a course's script may watch them, link
 //! them or read them while they grow.
 //!
-//! What the original says of an assignment's things (its version, how it calls a collision type or the second object of a
-//! pair) stands in `assignments`; the rest is one program's, whichever assignment a scene belongs to, and stands here.
+//! What the original says of an assignment's things (its version, how it calls a collision type or the second object of
+//! a pair) stands in `assignments`; the rest is one program's, whichever assignment a scene belongs to, and stands
+//! here.
 //!
-//! A grader starts this once for every trace, and most scenes are small: then the time goes into the pages of the program that
-//! a run touches. So this is a crate of its own, compiled at the full level, and uses nothing that few runs need: who
-//! calls it brings along what draws pictures and what has words for everything ([`Outside`]).
+//! A grader starts this once for every trace, and most scenes are small: then the time goes into the pages of the
+//! program that a run touches. So this is a crate of its own, compiled at the full level, and uses nothing that few
+//! runs need: who calls it brings along what draws pictures and what has words for everything ([`Outside`]).
 #![forbid(unsafe_code)]
 
 mod arguments;
@@ -36,8 +37,8 @@ use std::{
 /// Names of the program that make it behave as the original, whatever follows in the name.
 const NAME: &[u8] = b"FOSSSimOracle";
 
-/// What the words of a command line say after the program's own name, where the drop-in is meant: by the name `FOSSSimOracle...`,
-/// or by the first word, `original`. First the name that its messages show.
+/// What the words of a command line say after the program's own name, where the drop-in is meant: by the name
+/// `FOSSSimOracle...`, or by the first word, `original`. First the name that its messages show.
 fn meant(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
     let (program, rest) = words.split_first()?;
     let program = program.as_bytes();

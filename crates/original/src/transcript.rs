@@ -95,7 +95,8 @@ impl<'a, W: Write> Transcript<'a, W> {
                 let text = format!("{RED}Error while trying to deserialize time step impulses. Exiting.\n");
                 self.write(text.as_bytes());
             }
-            // Here the original dies or hangs; the reason is for standard error, but the run is closed in an orderly way.
+            // Here the original dies or hangs; the reason is for standard error, but the run is closed in an orderly
+            // way.
             Some(
                 Stop::Trace { cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io, .. } | Stop::Step(_),
             ) => self.write(b"\n"),

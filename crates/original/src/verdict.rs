@@ -39,8 +39,8 @@ pub(crate) fn incomplete(residuals: &Residuals) -> String {
     text
 }
 
-/// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value. `None` when grading did not come to its
-/// end; the file is not written then.
+/// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value. `None` when grading did not come to
+/// its end; the file is not written then.
 #[must_use]
 pub(crate) fn residual_file(outcome: &Outcome) -> Option<String> {
     if outcome.parity.overall == Overall::None {

@@ -125,8 +125,8 @@ impl Painter {
         if self.background.brightness() > 127 { Colour([178, 0, 110]) } else { Colour([255, 140, 220]) }
     }
 
-    /// The picture after `step`, at these positions (2N, trace order), with a second motion's on top. Pictures have to be
-    /// asked for in the order of the steps, because particles leave paths.
+    /// The picture after `step`, at these positions (2N, trace order), with a second motion's on top. Pictures have to
+    /// be asked for in the order of the steps, because particles leave paths.
     ///
     /// # Panics
     /// When there are fewer positions than the scene has particles.

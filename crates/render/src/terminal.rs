@@ -56,8 +56,8 @@ impl Dots {
     }
 }
 
-/// Residuals over the steps on a logarithmic scale: a column of dots up to the largest of the steps that it stands for, and
-/// the tolerance as a dotted line. Nothing where there is nothing to see: no step, or all zero.
+/// Residuals over the steps on a logarithmic scale: a column of dots up to the largest of the steps that it stands for,
+/// and the tolerance as a dotted line. Nothing where there is nothing to see: no step, or all zero.
 #[must_use]
 pub fn residuals(values: &[f64], tolerance: f64, columns: usize) -> Option<String> {
     let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
@@ -104,8 +104,8 @@ pub fn residuals(values: &[f64], tolerance: f64, columns: usize) -> Option<Strin
     Some(dots.lines(&labels, &remarks))
 }
 
-/// Polynomials on the step, each scaled to its largest modulus: the first one solid, a second one dotted, and the line of
-/// zero. The rows reach as far as the curves do, and to zero. `None` where there is nothing to draw.
+/// Polynomials on the step, each scaled to its largest modulus: the first one solid, a second one dotted, and the line
+/// of zero. The rows reach as far as the curves do, and to zero. `None` where there is nothing to draw.
 #[must_use]
 pub fn curves(lists: &[&[f64]], columns: usize) -> Option<String> {
     let columns = columns.clamp(4, WIDEST / 2);

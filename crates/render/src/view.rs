@@ -64,7 +64,8 @@ impl Extent {
         0.5 * (self.high - self.low)
     }
 
-    /// This box, but no farther from `start` than a few times its size: a body that flies away must not make the others dots.
+    /// This box, but no farther from `start` than a few times its size: a body that flies away must not make the others
+    /// dots.
     #[must_use]
     pub fn near(&self, start: &Self) -> Self {
         if start.is_empty() || self.is_empty() {

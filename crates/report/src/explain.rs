@@ -1,7 +1,7 @@
 //! Explanations of mistakes: lines for people, a view for programs.
 //!
-//! They show what they are given: how much that is, [`Hints::cut`](fosssim_grading::config::Hints::cut) decides. Words may
-//! come from a submission only as numbers.
+//! They show what they are given: how much that is, [`Hints::cut`](fosssim_grading::config::Hints::cut) decides. Words
+//! may come from a submission only as numbers.
 use super::{
     number::{counted, exact},
     view::Number,
@@ -19,8 +19,8 @@ pub fn lines(explanations: &[Explanation]) -> Vec<String> {
     explanations.iter().flat_map(of_one).collect()
 }
 
-/// The sentence about the likeliest mistake, or about those that explain everything together, for formats with room for one
-/// line.
+/// The sentence about the likeliest mistake, or about those that explain everything together, for formats with room for
+/// one line.
 #[must_use]
 pub fn sentence(explanations: &[Explanation]) -> Option<String> {
     if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
@@ -57,8 +57,8 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
     lines
 }
 
-/// What can't be told apart from an explanation. Known mistakes are named; what is only found in polynomials has no sentence of its
-/// own, and is counted.
+/// What can't be told apart from an explanation. Known mistakes are named; what is only found in polynomials has no
+/// sentence of its own, and is counted.
 fn others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known(key)).collect();
     let (shown, more) = named.split_at(named.len().min(LISTED));

@@ -1,4 +1,5 @@
-//! What a suite would grade, and what is worth knowing before it does: the text of `suite check`. And which suites there are.
+//! What a suite would grade, and what is worth knowing before it does: the text of `suite check`. And which suites
+//! there are.
 use super::{
     grade::{one_line, points},
     number::counted,

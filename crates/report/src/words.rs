@@ -1,4 +1,5 @@
-//! What happened on scenes, in words. Results travel as values up to here; every report takes its sentences from this place.
+//! What happened on scenes, in words. Results travel as values up to here; every report takes its sentences from this
+//! place.
 pub mod explanation;
 mod located;
 
@@ -169,7 +170,8 @@ fn of_bad_trace(bad: &BadTrace) -> String {
     }
 }
 
-/// How far a program's trace came. What a crash takes along of it nobody knows: records may have been waiting to be written.
+/// How far a program's trace came. What a crash takes along of it nobody knows: records may have been waiting to be
+/// written.
 fn how_far(reached: Reached, steps: u32) -> String {
     match (reached.limit, reached.steps) {
         (_, done) if done == steps => " after its last step".to_owned(),

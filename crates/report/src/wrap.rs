@@ -2,7 +2,8 @@
 //!
 //! Works on finished text, so that no renderer has to know a width: what continues is indented under what it continues.
 //! Colour codes take no room. A word that is too long stays whole, and so does a line that is meant to be copied: those
-//! begin with `$ `. Lines of a program's output keep their mark (`| `) on every line, so that none can be taken for ours.
+//! begin with `$ `. Lines of a program's output keep their mark (`| `) on every line, so that none can be taken for
+//! ours.
 use unicode_width::UnicodeWidthChar;
 
 /// The last column of a line keeps its indentation when at least so many columns are left to it.

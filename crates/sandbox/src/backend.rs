@@ -258,8 +258,8 @@ impl Backend {
         Ok(Self { kind, layers: reports.into() })
     }
 
-    /// The same with bubblewrap in place of the grader's own namespaces, to prove that it holds, too. By itself a backend
-    /// takes bubblewrap only where the grader cannot make namespaces.
+    /// The same with bubblewrap in place of the grader's own namespaces, to prove that it holds, too. By itself a
+    /// backend takes bubblewrap only where the grader cannot make namespaces.
     ///
     /// # Errors
     ///

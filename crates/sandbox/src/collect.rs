@@ -143,7 +143,8 @@ impl OpenFolder {
     ///
     /// # Errors
     ///
-    /// When it is missing, not a regular file, reached through a link, has a second name, or is longer than `max_bytes`.
+    /// When it is missing, not a regular file, reached through a link, has a second name, or is longer than
+    /// `max_bytes`.
     pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), CollectError> {
         let shown = || name.escape_debug().to_string();
         let system = |source: io::Error| CollectError::System { name: shown(), source };
@@ -169,8 +170,8 @@ impl OpenFolder {
     }
 }
 
-/// Removes a folder with all that a program left in it: folders that are closed to their owner, and folders nested deeper
-/// than descriptors suffice. Only called while no process of the program is alive.
+/// Removes a folder with all that a program left in it: folders that are closed to their owner, and folders nested
+/// deeper than descriptors suffice. Only called while no process of the program is alive.
 ///
 /// # Errors
 ///

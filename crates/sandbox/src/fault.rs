@@ -93,8 +93,8 @@ pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
     SandboxError::SetUp { stage: failure.stage, source }
 }
 
-/// What is known about a supervisor that ended without a word. The way to it is closed by now, which ends one that is merely
-/// confused.
+/// What is known about a supervisor that ended without a word. The way to it is closed by now, which ends one that is
+/// merely confused.
 pub(super) fn lost(mut child: Child) -> SandboxError {
     let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
     let mut text = String::new();

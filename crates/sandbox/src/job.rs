@@ -24,8 +24,8 @@ pub struct Limits {
     /// Time on the clock, from the start to the end. While the trace pipe is full the clock stands still, because the
     /// program then waits for its reader; that may last [`Limits::PATIENCE`] times as long as the limit at most.
     pub wall: Duration,
-    /// Resident memory in bytes, of all processes together. Files of the working folder are not part of it, even where the
-    /// folder lies in memory, but while they are mapped. The stack of the main thread ends at 8 MiB in any case.
+    /// Resident memory in bytes, of all processes together. Files of the working folder are not part of it, even where
+    /// the folder lies in memory, but while they are mapped. The stack of the main thread ends at 8 MiB in any case.
     pub memory: u64,
     /// Bytes of standard output, and separately of standard error.
     pub output_bytes: u64,
@@ -144,17 +144,17 @@ impl Job {
         self
     }
 
-    /// Has the program work in a copy of the working folder that lies in memory, where there are namespaces and the machine
-    /// has room: the kernel then limits its bytes and files. The folder itself stays as it is; what the program left is in
-    /// [`Running::wait_with_folder`](crate::Running::wait_with_folder).
+    /// Has the program work in a copy of the working folder that lies in memory, where there are namespaces and the
+    /// machine has room: the kernel then limits its bytes and files. The folder itself stays as it is; what the program
+    /// left is in [`Running::wait_with_folder`](crate::Running::wait_with_folder).
     #[must_use]
     pub fn folder_in_memory(mut self) -> Self {
         self.in_memory = true;
         self
     }
 
-    /// A file of this name and content lies in the working folder when the program starts. Where that folder lies in memory, so does
-    /// the file, and nowhere else.
+    /// A file of this name and content lies in the working folder when the program starts. Where that folder lies in
+    /// memory, so does the file, and nowhere else.
     #[must_use]
     pub fn file(mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
         self.files.push((name.into(), content.into()));
@@ -179,16 +179,17 @@ impl Job {
         self
     }
 
-    /// Whether a program that was built with an address, thread or memory sanitiser may run. Sanitisers reserve terabytes of
-    /// address space, so that for such a program memory is limited only by what is seen in use, a moment later.
+    /// Whether a program that was built with an address, thread or memory sanitiser may run. Sanitisers reserve
+    /// terabytes of address space, so that for such a program memory is limited only by what is seen in use, a moment
+    /// later.
     #[must_use]
     pub fn sanitisers(mut self, allowed: bool) -> Self {
         self.sanitisers = allowed;
         self
     }
 
-    /// Says that the program is a copy of ours, with this identity: when it is gone or another file at the start, that is
-    /// our fault and not the program's.
+    /// Says that the program is a copy of ours, with this identity: when it is gone or another file at the start, that
+    /// is our fault and not the program's.
     #[must_use]
     pub fn staged(mut self, identity: Option<Identity>) -> Self {
         self.staged = identity;

@@ -17,8 +17,8 @@ use super::program::Program;
 use super::sys;
 use super::wire::{self, Order, Report};
 
-/// What runs must have in common to be served by one keeper: all of the order but arguments, environment and working folder with what
-/// lies there, and the very files that it names.
+/// What runs must have in common to be served by one keeper: all of the order but arguments, environment and working
+/// folder with what lies there, and the very files that it names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: Order,
@@ -27,8 +27,8 @@ pub(super) struct Kind {
 }
 
 impl Kind {
-    /// Whether there can be a keeper for this order. Otherwise its supervisor serves no other run: where there are no namespaces,
-    /// which end with the run, or processes that nobody counts.
+    /// Whether there can be a keeper for this order. Otherwise its supervisor serves no other run: where there are no
+    /// namespaces, which end with the run, or processes that nobody counts.
     pub(super) fn exists_for(order: &Order) -> bool {
         order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
     }
@@ -66,8 +66,8 @@ impl Keeper {
         Self { kind, child: Some(child), socket }
     }
 
-    /// Asks for a run of an order of its kind, whose files have these contents; the answer is the way to its supervisor, and what that
-    /// says.
+    /// Asks for a run of an order of its kind, whose files have these contents; the answer is the way to its
+    /// supervisor, and what that says.
     pub(super) fn ask(&self, order: &Order, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
@@ -104,8 +104,8 @@ pub(super) struct Pool {
 }
 
 impl Pool {
-    /// What is found out about the job's program, or what is known of it: a copy of ours that is still the same file needs no
-    /// second look.
+    /// What is found out about the job's program, or what is known of it: a copy of ours that is still the same file
+    /// needs no second look.
     pub(super) fn examined(
         &self,
         job: &Job,
@@ -172,8 +172,8 @@ impl Host {
         let _ = child.map(Child::kill);
     }
 
-    /// The run is over, and this is its report, if there is one. Only a keeper whose run has simply ended serves others, and only
-    /// if the run's folder is `gone`.
+    /// The run is over, and this is its report, if there is one. Only a keeper whose run has simply ended serves
+    /// others, and only if the run's folder is `gone`.
     pub(super) fn rest(self, report: Option<&Report>, gone: bool) {
         match self {
             Self::Own(mut child) => {

@@ -1,7 +1,7 @@
 //! Runs one program under limits and says how it ended.
 //!
-//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and an [`RunOutcome`] says what the kernel
-//! saw. [`Job`] is what to run, [`Backend`] is how, [`Running`] is a program at work.
+//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and an [`RunOutcome`] says what the
+//! kernel saw. [`Job`] is what to run, [`Backend`] is how, [`Running`] is a program at work.
 //!
 //! How it works: the grader starts its own binary again with a hidden first argument ([`supervisor_main`]). That
 //! fresh, single-threaded process is the *supervisor*: it makes itself the reaper of everything below it, forks, shuts
@@ -12,8 +12,9 @@
 //!
 //! Where the kernel lets it, the supervisor first moves into namespaces of its own, in which only the run's processes
 //! and files exist and no network; whatever dies there takes all below it along. This is a further wall, never the only
-//! one: everything else holds without it. There, runs of one submission have a *keeper* in common, which is prepared once and
-//! forks a supervisor for each run into fresh namespaces; one whose run was stopped, crashed or left anything serves no other.
+//! one: everything else holds without it. There, runs of one submission have a *keeper* in common, which is prepared
+//! once and forks a supervisor for each run into fresh namespaces; one whose run was stopped, crashed or left anything
+//! serves no other.
 //!
 //! What it never does: trust a path the program could change, read a result while the program lives, or go on
 //! silently when a required layer is missing ([`Backend::best`] refuses).

@@ -41,11 +41,12 @@ pub(super) fn unshare(flags: i32) -> io::Result<()> {
     check(i64::from(unsafe { libc::unshare(flags) })).map(drop)
 }
 
-/// Forks into new namespaces (`CLONE_NEW*`), in which the child is at once, and the first process if one is of processes.
+/// Forks into new namespaces (`CLONE_NEW*`), in which the child is at once, and the first process if one is of
+/// processes.
 pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
     let flags = namespaces | libc::SIGCHLD;
-    // SAFETY: without a stack of its own the child goes on with a copy of ours, as after `fork`; the process has one thread,
-    // so that the copy is consistent. The other arguments are for flags that are not set.
+    // SAFETY: without a stack of its own the child goes on with a copy of ours, as after `fork`; the process has one
+    // thread, so that the copy is consistent. The other arguments are for flags that are not set.
     match check(unsafe { libc::syscall(libc::SYS_clone, flags, 0, 0, 0, 0) })? {
         0 => Ok(Fork::Child),
         pid => Ok(Fork::Parent(pid as i32)),

@@ -30,8 +30,8 @@ fn is_named(name: &OsStr) -> bool {
     NAMES.iter().any(begins)
 }
 
-/// The same as [`files`] for this program and the one that supervises its runs, looked up once for all runs: `/usr/bin` alone
-/// may hold thousands.
+/// The same as [`files`] for this program and the one that supervises its runs, looked up once for all runs: `/usr/bin`
+/// alone may hold thousands.
 pub(super) fn known(supervisor: &Path) -> Arc<[PathBuf]> {
     static KNOWN: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);

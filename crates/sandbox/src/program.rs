@@ -42,8 +42,8 @@ pub(super) struct Program {
     pub(super) sanitised: bool,
 }
 
-/// The program that reads a script, as the kernel and `env` would find it. It is executed in their place, so that a script
-/// needs no execution but the one that starts it.
+/// The program that reads a script, as the kernel and `env` would find it. It is executed in their place, so that a
+/// script needs no execution but the one that starts it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Script {
     /// The interpreter's file.

@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Whether a folder of so many bytes may lie in memory: as many as there can be runs at one time, and as much again for the
-/// programs, must leave the machine and our own control groups room.
+/// Whether a folder of so many bytes may lie in memory: as many as there can be runs at one time, and as much again for
+/// the programs, must leave the machine and our own control groups room.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
     static RUNS: OnceLock<u64> = OnceLock::new();
     let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
     left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
 }
 
-/// What the machine and our groups have left, as it was at most a moment ago: to add it up takes the kernel longer than to start a
-/// small program.
+/// What the machine and our groups have left, as it was at most a moment ago: to add it up takes the kernel longer than
+/// to start a small program.
 fn left() -> Option<u64> {
     const MOMENT: Duration = Duration::from_millis(500);
     static LAST: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);

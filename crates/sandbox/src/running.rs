@@ -97,8 +97,8 @@ impl Running {
     /// The bytes that the program writes into its trace pipe; `None` without one, and from the second call on.
     ///
     /// The program waits while nobody reads and the pipe is full; its clock stands still then, within bounds
-    /// ([`Limits::PATIENCE`](super::Limits::PATIENCE)). A reader that is dropped before the end makes the program's next
-    /// write fail (`SIGPIPE`).
+    /// ([`Limits::PATIENCE`](super::Limits::PATIENCE)). A reader that is dropped before the end makes the program's
+    /// next write fail (`SIGPIPE`).
     pub fn trace(&mut self) -> Option<TraceReader> {
         self.trace.take()
     }

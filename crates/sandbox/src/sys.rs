@@ -1,8 +1,8 @@
 //! The system calls that the standard library does not offer, each behind a safe function.
 //!
-//! This file and `mounts.rs` are the sandbox's only ones with `unsafe` code. Every function passes the kernel valid pointers to live values
-//! and turns its answer into a `Result`; none keeps a pointer. The one call with a condition of its own, [`fork`],
-//! checks that condition.
+//! This file and `mounts.rs` are the sandbox's only ones with `unsafe` code. Every function passes the kernel valid
+//! pointers to live values and turns its answer into a `Result`; none keeps a pointer. The one call with a condition of
+//! its own, [`fork`], checks that condition.
 
 #![expect(unsafe_code, reason = "fork, seccomp, prctl and their kin have no safe wrapper among the dependencies")]
 
@@ -27,8 +27,8 @@ pub(super) enum Fork {
     Parent(i32),
 }
 
-/// The proof that this process, or the one that it was forked from, has one thread, and starts none: the copy of its memory that a
-/// child gets is consistent.
+/// The proof that this process, or the one that it was forked from, has one thread, and starts none: the copy of its
+/// memory that a child gets is consistent.
 pub(super) struct SingleThread(());
 
 /// # Errors
@@ -204,12 +204,12 @@ pub(super) fn close_on_execute() -> io::Result<()> {
     Ok(())
 }
 
-/// The signals that this process ignores. Only these stay as they are when a program is executed: what has a function gets the
-/// default reaction then.
+/// The signals that this process ignores. Only these stay as they are when a program is executed: what has a function
+/// gets the default reaction then.
 pub(super) fn ignored_signals() -> Vec<i32> {
     let is_ignored = |signal: &i32| {
-        // SAFETY: an all-zero action is valid and outlives the call, which only asks; numbers without a signal are refused by the
-        // kernel.
+        // SAFETY: an all-zero action is valid and outlives the call, which only asks; numbers without a signal are
+        // refused by the kernel.
         unsafe {
             let mut action: libc::sigaction = std::mem::zeroed();
             libc::sigaction(*signal, std::ptr::null(), &raw mut action) == 0 && action.sa_sigaction == libc::SIG_IGN
@@ -247,11 +247,13 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
     check(i64::from(unsafe { libc::kill(pid, signal) })).map(drop)
 }
 
-/// Kills everybody in this process namespace if this process is the namespace's first, which is the answer; nothing otherwise.
+/// Kills everybody in this process namespace if this process is the namespace's first, which is the answer; nothing
+/// otherwise.
 pub(super) fn kill_everybody_inside() -> bool {
     let is_first = std::process::id() == 1;
     if is_first {
-        // SAFETY: integers only. For the first process of a namespace -1 means everybody else in it, and nobody outside.
+        // SAFETY: integers only. For the first process of a namespace -1 means everybody else in it, and nobody
+        // outside.
         unsafe { libc::kill(-1, libc::SIGKILL) };
     }
     is_first

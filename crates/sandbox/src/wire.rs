@@ -1,8 +1,9 @@
 //! The messages between the grader and its supervisor process.
 //!
 //! The grader writes one length-prefixed [`Order`] to the supervisor's standard input, a socket, and then, if need be,
-//! single command bytes. A working folder in memory comes back there, open, and so does its trace pipe. The supervisor answers on its standard output with length-prefixed [`Event`]s; the last one is
-//! followed by the captured bytes. Paths travel as bytes, because they need not be UTF-8.
+//! single command bytes. A working folder in memory comes back there, open, and so does its trace pipe. The supervisor
+//! answers on its standard output with length-prefixed [`Event`]s; the last one is followed by the captured bytes.
+//! Paths travel as bytes, because they need not be UTF-8.
 
 use std::io::{self, Read, Write};
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
@@ -24,10 +25,11 @@ const USUAL_MESSAGE: u64 = 4 << 10;
 /// No message is longer than this; a longer one means that the streams are out of step.
 const LONGEST_MESSAGE: u64 = 64 << 20;
 
-/// Comes with the ways of commands and of answers and with the working folder as it lies on the disk, to a supervisor that serves
-/// several runs.
+/// Comes with the ways of commands and of answers and with the working folder as it lies on the disk, to a supervisor
+/// that serves several runs.
 pub(super) const RUN: u8 = b'r';
-/// Comes with the working folder, to the grader, where that lies in memory, and with the reading end of the trace pipe if there is one.
+/// Comes with the working folder, to the grader, where that lies in memory, and with the reading end of the trace pipe
+/// if there is one.
 pub(super) const FOLDER: u8 = b'f';
 
 /// Bytes of a path or an argument.
@@ -80,8 +82,8 @@ pub(super) struct Order {
     /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
     pub(super) own: Vec<Raw>,
     pub(super) pipe: Option<Raw>,
-    /// Files that are laid into the working folder, by name, with their length: their bytes follow the order. Only where that folder
-    /// lies in memory.
+    /// Files that are laid into the working folder, by name, with their length: their bytes follow the order. Only
+    /// where that folder lies in memory.
     pub(super) files: Vec<(Raw, u64)>,
     /// Whether the working folder lies in memory. The supervisor then makes the pipe, and hands both to the grader.
     pub(super) volatile: bool,
@@ -230,8 +232,8 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     Ok(serde_json::from_slice(&receive_bytes(from, length)?)?)
 }
 
-/// Reads as many messages of each kind as these bytes hold, and asks that each be the same once it was sent: for the fuzz target.
-/// The number of messages.
+/// Reads as many messages of each kind as these bytes hold, and asks that each be the same once it was sent: for the
+/// fuzz target. The number of messages.
 #[doc(hidden)]
 #[must_use]
 pub fn read_messages(bytes: &[u8]) -> usize {

@@ -1,5 +1,6 @@
-//! Archives that strangers send: sources and suites. Nothing is taken over from one that its own program would not make: no
-//! way out of the folder, no links, no devices, no two files of one name, no more bytes than allowed when unpacked.
+//! Archives that strangers send: sources and suites. Nothing is taken over from one that its own program would not
+//! make: no way out of the folder, no links, no devices, no two files of one name, no more bytes than allowed when
+//! unpacked.
 use flate2::read::GzDecoder;
 use std::{
     collections::BTreeSet,
@@ -134,8 +135,8 @@ fn damaged(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
 }
 
-/// Whether a file manager put this into the archive by itself, and not the person who packed it: Finder's folder of attributes and its
-/// notes on windows, Explorer's on pictures.
+/// Whether a file manager put this into the archive by itself, and not the person who packed it: Finder's folder of
+/// attributes and its notes on windows, Explorer's on pictures.
 fn is_of_a_system(path: &Path) -> bool {
     path.iter().any(|part| {
         let part = part.as_encoded_bytes();

@@ -1,4 +1,5 @@
-//! How long uploads and reports are kept. Grades and their history stay for ever; bytes that nothing names any more go away.
+//! How long uploads and reports are kept. Grades and their history stay for ever; bytes that nothing names any more go
+//! away.
 use crate::{
     db::{Database, DbError, Transaction},
     store::{Store, StoreError},
@@ -30,8 +31,8 @@ pub struct GivenUp {
     pub artefacts: usize,
 }
 
-/// Gives up uploads and reports of submissions that are older than `keep`, and artefacts older than `least` that nothing
-/// names. Submissions that are being graded or regraded stay.
+/// Gives up uploads and reports of submissions that are older than `keep`, and artefacts older than `least` that
+/// nothing names. Submissions that are being graded or regraded stay.
 ///
 /// # Errors
 /// What database or store say; the rest is given up the next time.

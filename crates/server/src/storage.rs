@@ -1,8 +1,8 @@
 //! Whether the server can still write, and whether it has room for more.
 //!
-//! A database that answers reads may be unable to write: a full disk, a folder that became read-only. So [`Storage::prove`]
-//! writes, to the database and to the store, and [`Storage::has_room`] refuses uploads before the disk is full, so that what
-//! was accepted can still be graded.
+//! A database that answers reads may be unable to write: a full disk, a folder that became read-only. So
+//! [`Storage::prove`] writes, to the database and to the store, and [`Storage::has_room`] refuses uploads before the
+//! disk is full, so that what was accepted can still be graded.
 use crate::{
     db::{Database, DbError},
     problem::Problem,

@@ -1,6 +1,6 @@
 //! The store of artefacts: submissions, reports, suites. Each lies under the SHA-256 of its bytes, is written once and
-//! never changed; whoever reads one gets the bytes that its name promises, or an error. A folder by default; a bucket of S3, or
-//! of what speaks like it, for several servers.
+//! never changed; whoever reads one gets the bytes that its name promises, or an error. A folder by default; a bucket
+//! of S3, or of what speaks like it, for several servers.
 //!
 //! An artefact is safely stored before the database hears of it, so that what the database names is always there.
 use crate::secret::hex;
@@ -28,8 +28,8 @@ const CHUNK: usize = 256 * 1024;
 const KEPT: &str = "sha256";
 const ASIDE: &str = "aside";
 
-/// An artefact that is stored once more is written anew when it is older than this: whoever gives up what nobody names looks at
-/// its age, and must not take what somebody is about to name.
+/// An artefact that is stored once more is written anew when it is older than this: whoever gives up what nobody names
+/// looks at its age, and must not take what somebody is about to name.
 const FRESH: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artefact's bytes, in lower-case hexadecimal.
@@ -259,9 +259,10 @@ impl Store {
 
     /// Gives up every artefact that is older than `least` and not `named`; how many these were.
     ///
-    /// Whoever stores one of them at this very moment does not lose it: it is put aside first, where it is still read, and looked
-    /// at again there, at once and every time from then on. When it is named by then it comes back. It goes only when it lay
-    /// there unnamed and older than `least`: in a folder it keeps its age, in a bucket, where it is a copy, it begins anew.
+    /// Whoever stores one of them at this very moment does not lose it: it is put aside first, where it is still read,
+    /// and looked at again there, at once and every time from then on. When it is named by then it comes back. It goes
+    /// only when it lay there unnamed and older than `least`: in a folder it keeps its age, in a bucket, where it is a
+    /// copy, it begins anew.
     ///
     /// # Errors
     /// When the store fails. What was put aside is looked at again the next time.

@@ -1,5 +1,5 @@
-//! When the reference may be the one that is wrong: many students who are right otherwise answer the same in a scene, and not
-//! what the reference does. Then staff is told; students hear of it when staff says so.
+//! When the reference may be the one that is wrong: many students who are right otherwise answer the same in a scene,
+//! and not what the reference does. Then staff is told; students hear of it when staff says so.
 use crate::{
     db::{DbError, Transaction},
     values,
@@ -11,8 +11,8 @@ const FEWEST: i64 = 3;
 /// More than one of so many of those who are otherwise right have to agree.
 const SHARE: i64 = 3;
 
-/// Looks at what the students of a course answer in an assignment, and notes what was not suspected before. Each student counts
-/// once, with the latest submission that has a grade.
+/// Looks at what the students of a course answer in an assignment, and notes what was not suspected before. Each
+/// student counts once, with the latest submission that has a grade.
 ///
 /// # Errors
 /// What the database says.

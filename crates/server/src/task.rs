@@ -68,7 +68,8 @@ pub enum Suite {
     Archive(Digest),
 }
 
-/// What a grading came to: as the grader tells it (`F` are files of its own), as a worker brings it and as the service shows it.
+/// What a grading came to: as the grader tells it (`F` are files of its own), as a worker brings it and as the service
+/// shows it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Outcome<F = OutputFile> {
     /// The verdict in words.
@@ -86,7 +87,8 @@ pub struct Outcome<F = OutputFile> {
     /// The SHA-256 of the grader, where it is known.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub grader: String,
-    /// The SHA-256 of what the grade says, without what was measured: whoever grades again by the same comes to the same.
+    /// The SHA-256 of what the grade says, without what was measured: whoever grades again by the same comes to the
+    /// same.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub essence: String,
     /// Scenes that are not accepted, of a submission that is nearly right; not shown.

@@ -1,8 +1,8 @@
 //! What tests need of a machine, and what they say where it is not there. Only tests use it.
 //!
 //! A test that can't run asks [`skip`] and returns. That leaves a line in a list, which `cargo test` prints at its end
-//! (the test `skips` of this crate, which comes last because of the crate's name). Where `FOSSSIM_REQUIRE` names the need,
-//! or says `all`, the test fails instead: a machine that is known to have something can't pass without it.
+//! (the test `skips` of this crate, which comes last because of the crate's name). Where `FOSSSIM_REQUIRE` names the
+//! need, or says `all`, the test fails instead: a machine that is known to have something can't pass without it.
 #![forbid(unsafe_code)]
 
 pub mod scenes;

@@ -1,6 +1,7 @@
 //! The difference of two texts, for every place that shows one.
 //!
-//! It stands in a crate of its own so that the algorithms are compiled once, and not with every change of what calls them.
+//! It stands in a crate of its own so that the algorithms are compiled once, and not with every change of what calls
+//! them.
 
 use diffy::DiffOptions;
 

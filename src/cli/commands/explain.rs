@@ -39,7 +39,8 @@ use std::{
 /// So much of a trace is looked at, in bytes.
 const LONGEST: usize = Keep::EXPLAINED.most;
 
-/// So often a program may run into a limit; from then on it has [`LEAST`]: what it has recorded until then is looked at all the same.
+/// So often a program may run into a limit; from then on it has [`LEAST`]: what it has recorded until then is looked at
+/// all the same.
 const PATIENCE: usize = 2;
 
 /// So much time is left to a program that runs into limits, on scenes of which a right one needs some milliseconds.
@@ -128,8 +129,8 @@ fn case(
     (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten(), outcome.steps_judged)
 }
 
-/// A program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays, also that of a link:
-/// programs may go by the name that they are called.
+/// A program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays, also that
+/// of a link: programs may go by the name that they are called.
 fn placed(program: &Path) -> PathBuf {
     let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (folder.canonicalize(), program.file_name()) {
@@ -197,7 +198,8 @@ fn program_on_probes(
     Ok(Some((Diagnosis { cases, common, located }, cards)))
 }
 
-/// What the scenes have in common in which the program failed, by how it ended in each and how many steps were complete.
+/// What the scenes have in common in which the program failed, by how it ended in each and how many steps were
+/// complete.
 fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Located> {
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;

@@ -1,7 +1,7 @@
 //! What the last grading of the same submissions did not accept, for `grade --failed`.
 //!
-//! Remembered in the output folder, or where there is none in the user's cache. A convenience: what can't be read or written
-//! is forgotten.
+//! Remembered in the output folder, or where there is none in the user's cache. A convenience: what can't be read or
+//! written is forgotten.
 use crate::{
     cli::output,
     suite::{Grade, Submission, Verdict},

@@ -25,8 +25,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// So many numbers of one motion are kept of a graded scene, because several are graded at a time. The largest course scene
-/// has 70,444.
+/// So many numbers of one motion are kept of a graded scene, because several are graded at a time. The largest course
+/// scene has 70,444.
 const BUDGET: usize = 1 << 19;
 
 /// The cards of a grading, and where the pages go.
@@ -78,8 +78,8 @@ impl Pages {
         GradePage { grade, card: &|scene| self.card(scene), class, reader }.html()
     }
 
-    /// Writes the pages for staff into the folder for results, and those to hand out beside them where they are asked for; the
-    /// one to begin with.
+    /// Writes the pages for staff into the folder for results, and those to hand out beside them where they are asked
+    /// for; the one to begin with.
     pub(super) fn write(&self, grades: &[Grade], reader: Audience) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
         if reader == Audience::Student {
@@ -114,8 +114,8 @@ const RECORDED: &str = "The verdict compares with the recording, where nearly ev
                         follows judges each step from the trace's own state before it: what is wrong by itself, and what only \
                         follows from that.";
 
-/// Draws the card of a graded scene. `names` are those under which whoever reads the page finds scene and trace. Of a trace
-/// that was judged against a recording each step is judged once more, from the trace's own state.
+/// Draws the card of a graded scene. `names` are those under which whoever reads the page finds scene and trace. Of a
+/// trace that was judged against a recording each step is judged once more, from the trace's own state.
 pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;

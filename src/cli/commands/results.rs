@@ -72,8 +72,8 @@ pub(super) struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Writes the reports and, into the folder, the files that a batch ends with. `text` is the report for people who look at
-    /// it now.
+    /// Writes the reports and, into the folder, the files that a batch ends with. `text` is the report for people who
+    /// look at it now.
     ///
     /// # Errors
     /// The first file that can't be written; the others are written all the same.

@@ -1,4 +1,5 @@
-//! A part of a grading that was shared out among machines: which submissions are its own, and what it leaves for `merge`.
+//! A part of a grading that was shared out among machines: which submissions are its own, and what it leaves for
+//! `merge`.
 use crate::{
     cli::{
         console,
@@ -89,8 +90,8 @@ impl Part {
     }
 }
 
-/// A shard's own entries of a list: every N-th one. Neighbours in the alphabet may have worked together and share slow programs;
-/// so they go to different machines.
+/// A shard's own entries of a list: every N-th one. Neighbours in the alphabet may have worked together and share slow
+/// programs; so they go to different machines.
 fn own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
 }

@@ -59,8 +59,8 @@ impl<'a> Search<'a> {
         Ok(with_distinct_names(found))
     }
 
-    /// The submission that a folder is: its sources when they are to be built, else the program inside. A program that is
-    /// missing is the submission's fault: its grade says so.
+    /// The submission that a folder is: its sources when they are to be built, else the program inside. A program that
+    /// is missing is the submission's fault: its grade says so.
     fn folder(&self, path: &Path) -> Submission {
         let program = self.build.is_none().then(|| self.arguments.program.clone());
         Submission { name: name_of(path), path: path.to_owned(), program }
@@ -87,8 +87,8 @@ impl<'a> Search<'a> {
         same(path, self.output) || RESULTS.iter().all(|name| path.join(name).is_file())
     }
 
-    /// One submission per entry, in alphabetical order. With a word about each are passed over hidden entries, what can't be
-    /// run, results of gradings, and links: they could lead to another's submission.
+    /// One submission per entry, in alphabetical order. With a word about each are passed over hidden entries, what
+    /// can't be run, results of gradings, and links: they could lead to another's submission.
     fn entries(&self, folder: &Path) -> Result<Vec<Submission>> {
         let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
         let mut paths: Vec<PathBuf> = listing

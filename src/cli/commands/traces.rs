@@ -1,5 +1,5 @@
-//! `grade --traces`: judges traces that are there already, a folder of them for each submission. Nothing is run, so that no
-//! sandbox is needed; how long a program took, and that it ended well, nobody knows.
+//! `grade --traces`: judges traces that are there already, a folder of them for each submission. Nothing is run, so
+//! that no sandbox is needed; how long a program took, and that it ended well, nobody knows.
 use super::{
     ending::{exit_code, shown, with_class},
     pages::{self, Pages},
@@ -179,8 +179,8 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
     Ok(result)
 }
 
-/// The trace of a scene, under its whole name or the name behind its group; nothing when there is none. More than `most` bytes
-/// are not read: what is cut there is a bad trace.
+/// The trace of a scene, under its whole name or the name behind its group; nothing when there is none. More than
+/// `most` bytes are not read: what is cut there is a bad trace.
 fn read(folder: &Path, scene: &str, most: u64) -> io::Result<Vec<u8>> {
     let last = scene.rsplit('/').next().unwrap_or(scene);
     let places: [PathBuf; 2] = [scene, last].map(|name| folder.join(format!("{name}.bin")));

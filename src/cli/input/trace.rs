@@ -77,7 +77,8 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     Ok(TraceInput { name: shown, reader, length, identity, looks_like, failure })
 }
 
-/// A scene in the place of the trace is a slip of whoever types, and no wrong trace: refused where name and content agree.
+/// A scene in the place of the trace is a slip of whoever types, and no wrong trace: refused where name and content
+/// agree.
 fn refuse_scene(name: &Path, shown: &str) -> Result<()> {
     if is_scene(name) {
         bail!("{shown} is a scene and no trace: SCENE comes first, then TRACE");
@@ -101,7 +102,8 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
 /// So many bytes show what a file is.
 const LOOKED_AT: u64 = 512;
 
-/// What a file looks like that begins with these bytes, where that is no trace: a trace begins with the bits of a position.
+/// What a file looks like that begins with these bytes, where that is no trace: a trace begins with the bits of a
+/// position.
 fn looks_like(start: &[u8]) -> Option<&'static str> {
     const MARKS: [(&[u8], &str); 8] = [
         (b"\x7fELF", "looks like a program (ELF)"),

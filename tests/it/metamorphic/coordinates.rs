@@ -1,8 +1,8 @@
 //! What other coordinates, other lengths and other names change: nothing but the names.
 //!
 //! Quarter turns and mirrors only exchange and negate coordinates, so every sum of products keeps its bits; so does a
-//! power of two as unit of length, unless an absolute constant bites. Elsewhere round-off differs, and a step is compared from
-//! the same state, where no decision hangs on round-off.
+//! power of two as unit of length, unless an absolute constant bites. Elsewhere round-off differs, and a step is
+//! compared from the same state, where no decision hangs on round-off.
 use super::{
     built_in,
     crowd::{Wanted, crowd, hybrid},
@@ -149,8 +149,8 @@ fn powers_of_two_as_unit_of_length_change_no_bit() {
     assert!(whole * 20 > all * 17, "{whole} of {all} scenes stay the same to their end");
 }
 
-/// Hears whether a decision hangs on round-off: on the coefficients by a few thousand roundings of the greatest, or on whether
-/// one is dropped.
+/// Hears whether a decision hangs on round-off: on the coefficients by a few thousand roundings of the greatest, or on
+/// whether one is dropped.
 #[derive(Default)]
 struct Doubt {
     any: bool,
@@ -219,9 +219,9 @@ const REWRITINGS: [Rewriting; 5] = [
     Rewriting { name: "particles in opposite order", scene: with_particles_reversed, state: reversed },
 ];
 
-/// Compares every step of the scene with that of the rewritten one, both from the same state and with the right approach;
-/// counts the steps compared. In one pass of `continuous-time` the order of the particles matters, and `simple` decides
-/// without polynomials, so that doubts are not noticed.
+/// Compares every step of the scene with that of the rewritten one, both from the same state and with the right
+/// approach; counts the steps compared. In one pass of `continuous-time` the order of the particles matters, and
+/// `simple` decides without polynomials, so that doubts are not noticed.
 fn compare(scene: &Scene, rewriting: &Rewriting) -> Result<(u32, u32), String> {
     let is_ordered = matches!(scene.collision, Collision::ContinuousTime { .. });
     if is_ordered && rewriting.name.starts_with("particles") || matches!(scene.collision, Collision::Simple { .. }) {

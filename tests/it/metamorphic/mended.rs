@@ -10,8 +10,8 @@ use fosssim_oracle::{
     sim::{Detection, Observer, Pair, PairKind},
 };
 
-/// The motion of a particle and an edge within the step, as three quadratics (numerics.md 1.2), lowest power first: the cross
-/// product of the edge with the way to the particle, the edge's squared length, and alpha times that.
+/// The motion of a particle and an edge within the step, as three quadratics (numerics.md 1.2), lowest power first: the
+/// cross product of the edge with the way to the particle, the edge's squared length, and alpha times that.
 #[derive(Debug, Clone, Copy)]
 pub struct Quadratics {
     /// `e x w`, positive to the left of the edge.

@@ -44,8 +44,8 @@ fn discs_do_not_pass_through_one_another() {
             return Ok(());
         }
         met.set(met.get() + 1);
-        // They leave along the normal at contact, on whose sides they were at the start: the way from start to end nears
-        // no further than to contact.
+        // They leave along the normal at contact, on whose sides they were at the start: the way from start to end
+        // nears no further than to contact.
         let end = end_of(&scene);
         let new_way = at(&end, 1) - at(&end, 0) - apart;
         prop_assert!(length(new_way) > 0.0 && length(new_way - way) > 1e-9, "no response");
@@ -103,7 +103,8 @@ impl Observer for Crossings {
     }
 }
 
-/// Whether the centre of particle 0 goes from one side of the edge between 1 and 2 to the other, once, clearly between its ends.
+/// Whether the centre of particle 0 goes from one side of the edge between 1 and 2 to the other, once, clearly between
+/// its ends.
 fn crosses(q_start: &[f64], q_end: &[f64]) -> bool {
     let quadratics = Quadratics::of(q_start, q_end, 0, [1, 2]);
     let side = |time| Quadratics::value(quadratics.cross, time);

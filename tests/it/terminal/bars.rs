@@ -23,8 +23,8 @@ pub(super) fn terminal() -> (File, OwnedFd) {
     }
 }
 
-/// Interrupts the program as soon as these words stand on the terminal of its standard error; what was written there in all, and
-/// the exit code.
+/// Interrupts the program as soon as these words stand on the terminal of its standard error; what was written there in
+/// all, and the exit code.
 fn interrupted(workspace: &Workspace, words: &[&str], at: &str) -> (String, Option<i32>) {
     let (mut main, side) = terminal();
     let mut command = workspace.command();

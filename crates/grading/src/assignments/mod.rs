@@ -1,15 +1,18 @@
-//! What is bound to an assignment of the course: the versions of its suite, and the template of suites. One folder each.
+//! What is bound to an assignment of the course: the versions of its suite, and the template of suites. One folder
+//! each.
 use fosssim_model::assignments::Assignment;
 
 /// The commented suite to start from.
 pub const TEMPLATE: &str = include_str!("t2m2/template.toml");
 
-/// A version of an assignment's suite. More scenes change the points of all, so they make a new one; what is published stays.
+/// A version of an assignment's suite. More scenes change the points of all, so they make a new one; what is published
+/// stays.
 #[derive(Debug, Clone, Copy)]
 pub struct Version {
     /// The suite, as a text.
     pub suite: &'static str,
-    /// The names of its scenes, a line each; none for the newest version, which has all that lie in the assignment's folder.
+    /// The names of its scenes, a line each; none for the newest version, which has all that lie in the assignment's
+    /// folder.
     scenes: Option<&'static str>,
 }
 

@@ -1,7 +1,7 @@
 //! Shares the scenes of submissions out among jobs, and tells how it goes.
 //!
-//! Events are the interface to reports and progress displays. They arrive on the caller's thread, one after the other, and a
-//! result is kept before its event is sent. What a grading consists of is in [`grader`](super::grader).
+//! Events are the interface to reports and progress displays. They arrive on the caller's thread, one after the other,
+//! and a result is kept before its event is sent. What a grading consists of is in [`grader`](super::grader).
 use super::{
     cancellation::Cancellation,
     grade::Grade,

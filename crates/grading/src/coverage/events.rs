@@ -202,8 +202,8 @@ pub(super) fn why(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     }
 }
 
-/// How a zone moves from the start of the step to where the failsafe finds it, in the arithmetic of collisions.md 5: what does not
-/// turn has no angular momentum to the last bit.
+/// How a zone moves from the start of the step to where the failsafe finds it, in the arithmetic of collisions.md 5:
+/// what does not turn has no angular momentum to the last bit.
 pub(super) fn motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
     let mass = |particle: usize| scene.particles[particle].mass;
     let moved = |particle| at(q_end, particle) - at(q_start, particle);

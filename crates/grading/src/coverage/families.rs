@@ -1,4 +1,5 @@
-//! What happens in a step, by its properties: the kinds of events that are counted, and which properties exclude each other.
+//! What happens in a step, by its properties: the kinds of events that are counted, and which properties exclude each
+//! other.
 use super::axes::{
     Age, Axis, Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Forces, Found, Held, Hits, Integrator,
     Kind, Likeness, Limit, Links, LoopEnd, Motion, Normal, Penalty, Place, Position, Radii, Restitution, Rounds, Side,

@@ -1,9 +1,9 @@
 //! What the scenes of a suite contain, measured from the reference's run: kinds of contacts, zones and steps.
 //!
-//! What happens in a step is an event with properties ([`FAMILIES`]): a contact, a pair that does not collide, a zone that the failsafe
-//! moves, the step as a whole. A suite covers two values of two properties when one event of one of its scenes has both. A mistake
-//! that shows with one or two properties together therefore meets a scene where it can show; the mutants of
-//! [`fosssim_mistakes::student`] tell whether it does.
+//! What happens in a step is an event with properties ([`FAMILIES`]): a contact, a pair that does not collide, a zone
+//! that the failsafe moves, the step as a whole. A suite covers two values of two properties when one event of one of
+//! its scenes has both. A mistake that shows with one or two properties together therefore meets a scene where it can
+//! show; the mutants of [`fosssim_mistakes::student`] tell whether it does.
 mod axes;
 mod events;
 mod families;
@@ -19,8 +19,8 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// Two values of one kind of event, by their numbers: the kind, and twice a property and its value. The first property comes before
-/// the second in the family's list.
+/// Two values of one kind of event, by their numbers: the kind, and twice a property and its value. The first property
+/// comes before the second in the family's list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pairing {
     /// The kind of event, an index into [`FAMILIES`].

@@ -1,5 +1,5 @@
-//! The serialised form of explanations. What stands in the data of an assignment is written by its key, and what the data do
-//! not hold is not read.
+//! The serialised form of explanations. What stands in the data of an assignment is written by its key, and what the
+//! data do not hold is not read.
 use super::*;
 use fosssim_mistakes::{
     assignments::t2m2::{Input, Reading, Subject, find_exchange, find_special, ingredient_name, letter_name},

@@ -1,7 +1,7 @@
 //! Where results are kept, so that nothing is lost and nothing is done twice.
 //!
-//! Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene, rule or grader
-//! is simply not found. What becomes of a grading does not depend on where its results are kept.
+//! Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene, rule or
+//! grader is simply not found. What becomes of a grading does not depend on where its results are kept.
 mod folder;
 mod memory;
 

@@ -1,8 +1,9 @@
 //! What the fair rules say about a step whose records are the reference's but for polynomials that are right.
 //!
-//! It follows [`Follower`](super::follow::Follower): decisions, states and impulses are the reference's, so what is left is whether
-//! each polynomial is right, by which factor, and of which form. Nearly all are right [at once](super::compare::Likeness); a few are
-//! looked at closely, and where that is not enough the step goes the long way.
+//! It follows [`Follower`](super::follow::Follower): decisions, states and impulses are the reference's, so what is
+//! left is whether each polynomial is right, by which factor, and of which form. Nearly all are right [at
+//! once](super::compare::Likeness); a few are looked at closely, and where that is not enough the step goes the long
+//! way.
 use super::{
     compare::{MOST, Match},
     contact,
@@ -179,8 +180,8 @@ impl<'a> AlikeStep<'a> {
         (self.judged.pended() == pended || is_first(seen)).then_some(())
     }
 
-    /// Whether what the trace's polynomials decide of a pair is the reference's decision, so that the trace's own, which is that
-    /// one, needs no excuse.
+    /// Whether what the trace's polynomials decide of a pair is the reference's decision, so that the trace's own,
+    /// which is that one, needs no excuse.
     #[inline(never)]
     fn decides_alike(&self, call: &Call<'_>, seen: &SeenPass, watch: &Watch) -> Option<()> {
         let time = |side: usize| {
@@ -258,8 +259,8 @@ impl Forms {
     }
 }
 
-/// The sums of moduli above which polynomials of each kind and number say something: more than the round-off of the largest
-/// positions and displacements. Infinite, where that is not known.
+/// The sums of moduli above which polynomials of each kind and number say something: more than the round-off of the
+/// largest positions and displacements. Infinite, where that is not known.
 fn telling(scene: &Scene, watch: &Watch) -> ByKind<[f64; PairKind::MOST_POLYNOMIALS]> {
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -293,8 +294,8 @@ fn telling(scene: &Scene, watch: &Watch) -> ByKind<[f64; PairKind::MOST_POLYNOMI
         let number = Bounded { value: Size(value), bound: Size(bound) };
         Plane { x: number, y: number }
     };
-    // Only differences of positions matter, which are not larger than the spread; what is too small of their moduli in the bounds
-    // is added.
+    // Only differences of positions matter, which are not larger than the spread; what is too small of their moduli in
+    // the bounds is added.
     let x = both(0.5 * spread, size + size);
     let d = both(shift, 5.0 * size);
     let radii = Bounded { value: Size(radius), bound: Size(radius) };

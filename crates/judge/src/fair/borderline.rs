@@ -8,8 +8,8 @@ use fosssim_model::{
     sim::{Decision, Detection, Observer, Pass, RootSearch, Simulation, Stage, StepError},
 };
 
-/// All decisions of the reference that roundings of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS) units can flip, in
-/// their order; `collides` is what the reference decides. Decisions whose arithmetic is exact are never among them.
+/// All decisions of the reference that roundings of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS) units can flip,
+/// in their order; `collides` is what the reference decides. Decisions whose arithmetic is exact are never among them.
 ///
 /// # Errors
 /// When a step has no result.

@@ -13,7 +13,8 @@ fosssim_model::drops_leading!();
 pub struct Match {
     /// The positive factor by which the logged one is larger; `None` where round-off is all there is.
     pub scale: Option<f64>,
-    /// The largest share of the tolerance that a coefficient uses, 0 to 1; at most so, where it is right at once (a quarter or less).
+    /// The largest share of the tolerance that a coefficient uses, 0 to 1; at most so, where it is right at once (a
+    /// quarter or less).
     pub share: f64,
 }
 
@@ -38,9 +39,9 @@ pub enum Mismatch {
 /// Compares. `expected` is complete; `actual` is as logged, its small leading coefficients dropped by the course's
 /// library. `hints` are factors of polynomials of the same kind, for those that hold too little to tell their own.
 ///
-/// Where the expected polynomial is zero but for round-off, every other one that has numbers is right, too: some programs
-/// divide polynomials by their size. Where the expected one has no number, because the trace's own state has lost them,
-/// the logged one has none either.
+/// Where the expected polynomial is zero but for round-off, every other one that has numbers is right, too: some
+/// programs divide polynomials by their size. Where the expected one has no number, because the trace's own state has
+/// lost them, the logged one has none either.
 #[inline]
 pub fn compare(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     match is_clear(expected, actual).or_else(|| fits(expected, actual)) {
@@ -51,9 +52,9 @@ pub fn compare(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Ma
 
 /// How two lists of coefficients compare that have lost the same ones, without a look at bounds.
 ///
-/// The factor is that of the sums of moduli. Bounds are at least as large as the values, so whatever is off by less than
-/// [`FAIR_NORM_UNITS`] of the sum of moduli is right; what is off by a small part of that, as nearly all right coefficients
-/// are, is right at once.
+/// The factor is that of the sums of moduli. Bounds are at least as large as the values, so whatever is off by less
+/// than [`FAIR_NORM_UNITS`] of the sum of moduli is right; what is off by a small part of that, as nearly all right
+/// coefficients are, is right at once.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Likeness {
     /// The sum of the expected coefficients' moduli.
@@ -119,13 +120,13 @@ fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     is_right.then(|| Match { scale: Some(likeness.scale), share: likeness.worst / likeness.tolerance() })
 }
 
-/// Whether a logged polynomial is certainly wrong with every factor, found without looking for the best one. `false` leaves it
-/// open.
+/// Whether a logged polynomial is certainly wrong with every factor, found without looking for the best one. `false`
+/// leaves it open.
 ///
-/// Whatever [`compare`] takes for right differs from the expected one times its factor by less than `WIDEST` units of all bounds
-/// together, at any time within the step: the tolerances of six coefficients are at most 2 `FAIR_UNITS` of the sum of bounds and
-/// six times `FAIR_NORM_UNITS` of it, and where values are compared instead they have less. So each time allows an interval of
-/// factors, and where two of these have nothing in common there is none.
+/// Whatever [`compare`] takes for right differs from the expected one times its factor by less than `WIDEST` units of
+/// all bounds together, at any time within the step: the tolerances of six coefficients are at most 2 `FAIR_UNITS` of
+/// the sum of bounds and six times `FAIR_NORM_UNITS` of it, and where values are compared instead they have less. So
+/// each time allows an interval of factors, and where two of these have nothing in common there is none.
 pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
     /// Tolerances, and the rounding of values here.
     const WIDEST: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
@@ -135,7 +136,8 @@ pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
     let size: f64 = expected.iter().map(|r| r.bound.max(r.value.abs())).sum();
     let room = WIDEST * UNIT_ROUNDOFF * size;
     let rounding = 32.0 * UNIT_ROUNDOFF * actual.iter().map(|s| s.abs()).sum::<f64>();
-    // What was dropped may be missing, whatever the factor; where both have dropped it, it may have been a little larger.
+    // What was dropped may be missing, whatever the factor; where both have dropped it, it may have been a little
+    // larger.
     let logged_room = rounding + missing as f64 * FAIR_LOSS * LEADING_COEFFICIENT;
     if !(room.is_finite() && logged_room.is_finite()) {
         return false;
@@ -154,8 +156,9 @@ pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
     least > most + 1e-9 * most.abs()
 }
 
-/// [`compare`], where the logged polynomial is complete and right with the factor that fits best, as nearly all are; `None`
-/// leaves it open. The factor is found once, and all coefficients are compared with it at once, by the same operations.
+/// [`compare`], where the logged polynomial is complete and right with the factor that fits best, as nearly all are;
+/// `None` leaves it open. The factor is found once, and all coefficients are compared with it at once, by the same
+/// operations.
 fn fits(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
@@ -295,8 +298,8 @@ fn fit(right: &[Bounded], logged: &[f64], missing: usize) -> Option<f64> {
     (squares > 0.0).then(|| products / squares)
 }
 
-/// How far a coefficient may be off, in units of the roundoff. Both sides round. What is small beside the others may hold
-/// the rounding of all of them: some correct programs interpolate, and on [0, 1] no decision can tell.
+/// How far a coefficient may be off, in units of the roundoff. Both sides round. What is small beside the others may
+/// hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no decision can tell.
 fn units(r: &Bounded, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }
@@ -324,8 +327,8 @@ fn norm(right: &[Bounded]) -> f64 {
 }
 
 /// The factors with which a logged polynomial would be right although it does not tell its own: at least so large that
-/// what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it tells, or if there is
-/// no such factor.
+/// what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it tells, or
+/// if there is no such factor.
 pub fn possible_factors(expected: &[Bounded], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -346,14 +349,16 @@ fn most_factor(dropped: &[Bounded]) -> f64 {
     LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - UNIT * r.bound))
 }
 
-/// Whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has to vouch for it.
+/// Whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has to
+/// vouch for it.
 pub fn shows_factor(expected: &[Bounded], actual: &[f64]) -> bool {
     let missing = expected.len().saturating_sub(actual.len());
     expected[missing..].iter().filter(|r| is_significant(r)).count() > 1
 }
 
-/// The factors that a right polynomial claims and does not show: it has a single coefficient, of whatever size, and lacks others
-/// that the course's library would not drop with the factor 1. `None` if it shows its factor, or lacks nothing.
+/// The factors that a right polynomial claims and does not show: it has a single coefficient, of whatever size, and
+/// lacks others that the course's library would not drop with the factor 1. `None` if it shows its factor, or lacks
+/// nothing.
 pub fn claimed_factors(expected: &[Bounded], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);

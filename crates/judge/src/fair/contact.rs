@@ -74,8 +74,8 @@ fn time_fits(expected: &Expected, own: f64, t: f64, value: Value) -> bool {
     is_near || is_possible(expected, t, value) && undecided()
 }
 
-/// Whether a time of impact is that of the reference, whose polynomials may have lost coefficients themselves, or one of the
-/// polynomials without losses.
+/// Whether a time of impact is that of the reference, whose polynomials may have lost coefficients themselves, or one
+/// of the polynomials without losses.
 pub(super) fn is_time_without_losses(expected: &Expected, own: f64, t: f64) -> bool {
     let is_near = (own - t).abs() <= FAIR_TIME;
     is_near || time_fits(expected, possible_time(expected), t, value_without_losses)
@@ -130,8 +130,8 @@ pub(super) fn possible_hit(
     compare_normal(Impulse { pair, normal, time: actual.time }, tolerance, actual, judged)
 }
 
-/// The contact normal at a time, and the tolerance of that vector. Of the whole vector: in axes of another direction the
-/// round-off of one component is that of both.
+/// The contact normal at a time, and the tolerance of that vector. Of the whole vector: in axes of another direction
+/// the round-off of one component is that of both.
 fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     let normal = motion.normal(t);
     let bound = length(Vec2::new(normal.x.bound, normal.y.bound));

@@ -55,7 +55,8 @@ impl<'a> Context<'a> {
 }
 
 impl Records<'_> {
-    /// Whether it starts from states that are nothing out of the ordinary; the geometric part starts from the mid record.
+    /// Whether it starts from states that are nothing out of the ordinary; the geometric part starts from the mid
+    /// record.
     pub fn start_ordinarily(&self, context: &Context<'_>) -> bool {
         let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
         let mid = self.mid.filter(|_| is_hybrid);

@@ -2,7 +2,8 @@
 use fosssim_model::sim::{ByKind, PairKind};
 use fosssim_num::tolerances::FAIR_OUTLIER;
 
-/// The factors that polynomials of one kind of pair and number tell: the least and the greatest, and how they are spread.
+/// The factors that polynomials of one kind of pair and number tell: the least and the greatest, and how they are
+/// spread.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factors {
     least: f64,
@@ -66,8 +67,8 @@ impl Factors {
         (self.count > 0).then_some([self.least, self.greatest])
     }
 
-    /// The factors that are usual: the whole range but for outliers, which say nothing of polynomials that are gone; none of no
-    /// factor.
+    /// The factors that are usual: the whole range but for outliers, which say nothing of polynomials that are gone;
+    /// none of no factor.
     pub(super) fn usual(&self) -> Option<[f64; 2]> {
         let [least, greatest] = self.range()?;
         let of_all = |sum: i64| sum as f64 / self.count as f64;

@@ -32,8 +32,8 @@ fn fair(scene: &Scene, trace: &[u8]) -> Judgement {
     *judged(scene, trace).fair.expect("the fair rules were asked")
 }
 
-/// A program whose polynomials are divided by powers of two: the course's library drops what becomes small, and the step
-/// goes on with the rest.
+/// A program whose polynomials are divided by powers of two: the course's library drops what becomes small, and the
+/// step goes on with the rest.
 struct Factors<F>(F, usize);
 
 impl<F: FnMut(usize, usize) -> i32> Observer for Factors<F> {
@@ -58,8 +58,8 @@ fn distance(one: &[Frame], other: &[Frame]) -> f64 {
     most / size
 }
 
-/// Whatever the factors are: where they change what happens, the trace is refused. So many scenes they change. Factors are
-/// powers of two, so nothing is rounded, and no decision is borderline because of them.
+/// Whatever the factors are: where they change what happens, the trace is refused. So many scenes they change. Factors
+/// are powers of two, so nothing is rounded, and no decision is borderline because of them.
 fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
     let mut changed = 0;
     for (name, scene) in assets() {
@@ -289,8 +289,8 @@ fn the_references_own_way_is_right_wherever_it_leads() {
     assert_eq!(fair(&scene, &written(&scene, &frames)).verdict, FairVerdict::Accepted);
 }
 
-/// Balls that rest on each other: every approach is zero but for round-off. A trace in which all of them go the other way
-/// shows nothing.
+/// Balls that rest on each other: every approach is zero but for round-off. A trace in which all of them go the other
+/// way shows nothing.
 #[test]
 fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     let ball = |x: f64| format!(r#"<particle m="1" px="{x}" py="0.3" vx="0.1" vy="0.3" fixed="0" radius="0.6"/>"#);
@@ -366,8 +366,8 @@ fn what_a_response_has_moved_is_not_left_out() {
     assert!(told > 5, "{told}");
 }
 
-/// An edge that turns under a ball, and another one that is stretched along its line, on which a ball lies: there the right form
-/// vanishes, and the course's has a tiny t^3.
+/// An edge that turns under a ball, and another one that is stretched along its line, on which a ball lies: there the
+/// right form vanishes, and the course's has a tiny t^3.
 const STRETCHED: &str = r#"<scene><duration time="0.4"/><integrator type="explicit-euler" dt="0.1"/>
     <collision type="continuous-time" COR="1"/>
     <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0" radius="0.1"/>
@@ -403,7 +403,8 @@ fn what_is_gone_is_no_mixture_of_forms() {
     }
 }
 
-/// In the first round of a hybrid step nothing has been moved, whatever has collided: who has a wrong formula there is told so.
+/// In the first round of a hybrid step nothing has been moved, whatever has collided: who has a wrong formula there is
+/// told so.
 #[test]
 fn in_a_hybrid_steps_first_pass_formulas_are_charged() {
     let mut told = 0;

@@ -1,8 +1,8 @@
 //! The detection polynomials with bounds of their rounding errors (collisions.md 2; numerics.md 1 and 2).
 //!
 //! What a polynomial should be, and how far a correct program may be off: every operation, and every input, adds its
-//! modulus to the bound of what it yields. The formulas are those of the passes ([`fosssim_model::sim::formulas`]), so values
-//! are the reference's own bits.
+//! modulus to the bound of what it yields. The formulas are those of the passes ([`fosssim_model::sim::formulas`]), so
+//! values are the reference's own bits.
 use fosssim_model::{
     scene::Scene,
     sim::{
@@ -28,8 +28,8 @@ pub struct BoundedPointMotion {
 }
 
 impl BoundedPointMotion {
-    /// The way between two points whose coordinates may be off by roundings of `size`: a program may compute in axes of its
-    /// own, turned or shifted. Nothing is off if it rests for certain.
+    /// The way between two points whose coordinates may be off by roundings of `size`: a program may compute in axes of
+    /// its own, turned or shifted. Nothing is off if it rests for certain.
     fn between([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
         let start_place = within(start, size);
         let shift = if rests { Bounded2::default() } else { within(end, size) - start_place };
@@ -194,8 +194,8 @@ impl BoundedPairMotion {
         expected
     }
 
-    /// Whether two times within the step are one moment: the points are where they are, but for some roundings of the size of
-    /// their positions.
+    /// Whether two times within the step are one moment: the points are where they are, but for some roundings of the
+    /// size of their positions.
     pub fn is_moment(&self, one: f64, other: f64) -> bool {
         let ways = match self {
             Self::Particles(ways, _) => &ways[..],

@@ -66,7 +66,8 @@ pub struct Judgement {
     pub shares: Shares,
     /// The factors that single coefficients claim.
     claimed: Scales,
-    /// How many polynomials are the reference's bit for bit; approaches, which say nothing of objects at rest, count once a step.
+    /// How many polynomials are the reference's bit for bit; approaches, which say nothing of objects at rest, count
+    /// once a step.
     same: ByKind<[u64; PairKind::MOST_POLYNOMIALS]>,
     /// What hangs on the factors of polynomials, step by step.
     pending: Vec<PendingOfStep>,
@@ -151,8 +152,9 @@ impl Judgement {
         self.pending.extend(hanging);
     }
 
-    /// What is wrong with polynomials that hang on factors, with those that are usual in the trace so far: those that others show,
-    /// beside the reference's own polynomials; where there are none of either, those that all claim; or else 1.
+    /// What is wrong with polynomials that hang on factors, with those that are usual in the trace so far: those that
+    /// others show, beside the reference's own polynomials; where there are none of either, those that all claim; or
+    /// else 1.
     fn finding(&self, pending: &Pending) -> Option<Finding> {
         let (kind, number) = pending.place;
         let mut told = self.scales[kind][number];
@@ -167,7 +169,8 @@ impl Judgement {
         self.findings.keep_first(&finding);
     }
 
-    /// Charges what is no round-off with the factors that are usual for polynomials of the same kind, in the form that the trace uses.
+    /// Charges what is no round-off with the factors that are usual for polynomials of the same kind, in the form that
+    /// the trace uses.
     fn settle_pending(&mut self) {
         let all = std::mem::take(&mut self.pending);
         let fails =

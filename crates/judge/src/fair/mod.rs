@@ -6,23 +6,24 @@
 //! 1. It rebuilds what the submission should have logged from *its own* states, and follows the submission: its
 //!    polynomials are what is searched, its logged contacts are what is answered, its mid record is what the geometric
 //!    part starts from. So a mistake is charged once, at the stage where it is made. Where the time of impact that its
-//!    polynomials give is the reference's but for round-off, the reference's is taken; where right polynomials lead the root
-//!    finder to another decision than the reference's, either will do.
-//! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running
-//!    error bound. A small leading coefficient may be missing, because the course's library drops it, if the factor makes it
-//!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace tells. NaN fails.
+//!    polynomials give is the reference's but for round-off, the reference's is taken; where right polynomials lead the
+//!    root finder to another decision than the reference's, either will do.
+//! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running error
+//!    bound. A small leading coefficient may be missing, because the course's library drops it, if the factor makes it
+//!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace tells. NaN
+//!    fails.
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; where that is too little, by
 //!    [`FAIR_SENSITIVITY`] times what such roundings of the step's input do to its result.
-//! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged. Where and when the
-//!    pair collides, if it does, is not free. Coefficients that were lost because of a factor are no round-off: decisions
-//!    and times of impact are compared with those of the whole polynomials. Those that a factor keeps, and the course's
-//!    library drops of the reference's, are followed.
+//! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged. Where and when
+//!    the pair collides, if it does, is not free. Coefficients that were lost because of a factor are no round-off:
+//!    decisions and times of impact are compared with those of the whole polynomials. Those that a factor keeps, and
+//!    the course's library drops of the reference's, are followed.
 //! 5. It looks at everything: the first record, mid records, times of impact, repeated contacts, and what follows the
 //!    last record.
 //! 6. A step from or to a state that leads nowhere is never right.
 //!
-//! A step whose records are the reference's bit for bit needs none of this, and one where only polynomials differ, which are right
-//! at once, only what `alike` looks at.
+//! A step whose records are the reference's bit for bit needs none of this, and one where only polynomials differ,
+//! which are right at once, only what `alike` looks at.
 //!
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS
 //! [`FAIR_SENSITIVITY`]: fosssim_num::tolerances::FAIR_SENSITIVITY

@@ -17,7 +17,8 @@ pub enum Form {
 /// The factors of a polynomial that none makes right: it is so in the other form only.
 pub(super) const NONE: [f64; 2] = [f64::INFINITY, 0.0];
 
-/// Polynomials of a kind and form, claims or not, that are right if the program's polynomials of that kind have a factor within bounds.
+/// Polynomials of a kind and form, claims or not, that are right if the program's polynomials of that kind have a
+/// factor within bounds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
     /// Kind of pair and number of the polynomial.

@@ -1,5 +1,5 @@
-//! What one logged polynomial says, as far as its own step tells: the factor and the form of a right one, what a wrong one lacks,
-//! and what hangs on the factors that others of the trace tell.
+//! What one logged polynomial says, as far as its own step tells: the factor and the form of a right one, what a wrong
+//! one lacks, and what hangs on the factors that others of the trace tell.
 use super::{
     compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
     formulas::Expected,
@@ -53,8 +53,8 @@ pub(super) fn compare_first(
 }
 
 impl StepJudgement {
-    /// Notes what a polynomial says, whose comparison with the course's form is `first`. What hangs on factors is kept to be settled
-    /// if `is_known`, that is if the positions that it belongs to are.
+    /// Notes what a polynomial says, whose comparison with the course's form is `first`. What hangs on factors is kept
+    /// to be settled if `is_known`, that is if the positions that it belongs to are.
     pub(super) fn note(
         &mut self,
         expected: &Expected,
@@ -108,8 +108,8 @@ impl StepJudgement {
         }
     }
 
-    /// Notes the factor of a right polynomial. One that shows a single coefficient, and lacks others that the course's library would
-    /// have kept of the assignment's own, claims a factor, which others have to confirm.
+    /// Notes the factor of a right polynomial. One that shows a single coefficient, and lacks others that the course's
+    /// library would have kept of the assignment's own, claims a factor, which others have to confirm.
     fn take(&mut self, logged: &Logged<'_>, expected: &[Bounded], found: Match, is_known: bool) -> Said {
         self.shares.coefficient = self.shares.coefficient.max(found.share);
         let Some(scale) = found.scale else { return Said::Right };

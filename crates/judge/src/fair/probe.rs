@@ -1,8 +1,8 @@
 //! How sensitive a step is: what roundings of its input do to its results and decisions.
 //!
 //! The step is repeated from perturbed states, each component off by a few roundings in a fixed random pattern. The
-//! deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994), so contacts that
-//! graze, stiff springs and zones of nearly no extent get the room that they need, and nothing else gets any.
+//! deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994), so contacts
+//! that graze, stiff springs and zones of nearly no extent get the room that they need, and nothing else gets any.
 use super::{
     context::{Context, Followed, Records},
     formulas::BoundedPairMotion,
@@ -19,8 +19,9 @@ use fosssim_num::{
 /// So many perturbed repetitions.
 const RUNS: u64 = 8;
 
-/// Repeats a step whose decisions are known. Where the reference's own polynomials can't be solved from here (the trace's
-/// can, else nobody would ask), nothing is known, and nothing deviates: each value's own bounds are all that counts.
+/// Repeats a step whose decisions are known. Where the reference's own polynomials can't be solved from here (the
+/// trace's can, else nobody would ask), nothing is known, and nothing deviates: each value's own bounds are all that
+/// counts.
 pub(super) fn probe(
     context: &Context<'_>,
     simulation: &mut Simulation,

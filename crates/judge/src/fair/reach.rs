@@ -17,7 +17,8 @@ use fosssim_model::{
 };
 use fosssim_num::vector::at;
 
-/// Compares states with the reference's own run, which is simulated as far as it is needed: for ordinary states not at all.
+/// Compares states with the reference's own run, which is simulated as far as it is needed: for ordinary states not at
+/// all.
 #[derive(Debug)]
 pub(crate) struct Reach<'a> {
     scene: &'a Scene,
@@ -42,9 +43,9 @@ impl<'a> Reach<'a> {
         Self { scene, range: Range::of(scene), run: None, other: None }
     }
 
-    /// Judges a step with a state that is out of the ordinary. `known` is its judgement, if it starts from ordinary states;
-    /// else it is judged only if the reference gets there, too. Steps are asked about in their order. Besides the judgement
-    /// it says how much work that took, which ends soon beyond `most_work`.
+    /// Judges a step with a state that is out of the ordinary. `known` is its judgement, if it starts from ordinary
+    /// states; else it is judged only if the reference gets there, too. Steps are asked about in their order. Besides
+    /// the judgement it says how much work that took, which ends soon beyond `most_work`.
     pub fn judge(
         &mut self,
         context: &Context<'_>,

@@ -1,5 +1,5 @@
-//! Judges one step by the fair rules: follows it, looks at its sensitivity where something differs, and tries borderline
-//! decisions the other way where they can't be seen.
+//! Judges one step by the fair rules: follows it, looks at its sensitivity where something differs, and tries
+//! borderline decisions the other way where they can't be seen.
 use super::{
     ahead::Ahead,
     contact,
@@ -21,9 +21,9 @@ use fosssim_num::polynomial::MAX_COEFFICIENTS;
 const MOST_FLIPS: usize = 4;
 
 /// Judges a step. `identical` says that states, impulses and polynomials of both records are the reference's bit for
-/// bit; then only what the records say besides is looked at. With `ahead` calls are looked at many at a time; the judgement is
-/// the same. The reference has a result; if there is none here, it is what
-/// the trace logged that leads to a search without end.
+/// bit; then only what the records say besides is looked at. With `ahead` calls are looked at many at a time; the
+/// judgement is the same. The reference has a result; if there is none here, it is what the trace logged that leads to
+/// a search without end.
 pub(crate) fn judge(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -128,8 +128,8 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     }
 }
 
-/// Whether the record holds what the course's library does not write: small leading coefficients that were not dropped, or
-/// more coefficients than any detection has.
+/// Whether the record holds what the course's library does not write: small leading coefficients that were not dropped,
+/// or more coefficients than any detection has.
 fn is_impossible(frame: &LenientFrame) -> bool {
     let log = &frame.polynomials;
     frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)

@@ -73,9 +73,11 @@ pub(crate) struct StepJudgement {
     pub course_form: Option<PolynomialPlace>,
     /// A polynomial that is of the right form and not of the course's.
     pub right_form: Option<PolynomialPlace>,
-    /// Polynomials that are right with some factors only: whether the program uses such a one, only the whole trace says.
+    /// Polynomials that are right with some factors only: whether the program uses such a one, only the whole trace
+    /// says.
     pub pending: Vec<Pending>,
-    /// Whether anything is said of polynomials at positions that a response or the failsafe has led to, with its round-off.
+    /// Whether anything is said of polynomials at positions that a response or the failsafe has led to, with its
+    /// round-off.
     pub hangs: bool,
     /// The trace's polynomials lead the step into a search without end.
     pub endless: bool,
@@ -107,8 +109,8 @@ impl StepJudgement {
         self
     }
 
-    /// The factors that a polynomial may have whose coefficients tell its own only roughly: that of the same polynomial of another
-    /// pair of its kind, or 1. Factors of other polynomials vouch for nothing.
+    /// The factors that a polynomial may have whose coefficients tell its own only roughly: that of the same polynomial
+    /// of another pair of its kind, or 1. Factors of other polynomials vouch for nothing.
     pub(super) fn hints(&self, kind: PairKind, number: usize) -> [f64; 2] {
         [self.scales[kind][number].last(), 1.0]
     }

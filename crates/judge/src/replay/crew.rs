@@ -66,7 +66,8 @@ impl<'a> Crew<'a> {
         self.workers.resize_with(workers.max(self.workers.len()), worker);
     }
 
-    /// Judges a batch, beside which nothing is read; one that is the trace's last on one thread unless more are asked for.
+    /// Judges a batch, beside which nothing is read; one that is the trace's last on one thread unless more are asked
+    /// for.
     pub(super) fn judge(&mut self, batch: &Batch, shape: &Shape<'_>, rest: u64, is_last: bool) {
         if is_last && self.threads == 0 && self.pool.is_none() || !self.has_pool() {
             self.hire(1);

@@ -323,9 +323,9 @@ impl Change {
     }
 }
 
-/// Why a polynomial that is not the program's may pass, whatever others say: it is zero but for round-off and has numbers, so it
-/// may be anything; or it is right with the program's factor; or it is right with a factor that two of its coefficients agree on, or
-/// that takes nothing from it.
+/// Why a polynomial that is not the program's may pass, whatever others say: it is zero but for round-off and has
+/// numbers, so it may be anything; or it is right with the program's factor; or it is right with a factor that two of
+/// its coefficients agree on, or that takes nothing from it.
 fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
     let of_form = |expected: &[Bounded]| {
         let scaled: Vec<Bounded> =
@@ -402,8 +402,9 @@ enum Factors {
     Leading,
 }
 
-/// Runs a program whose polynomials have factors. What the fair rules say about it that they must not, if anything: it may be
-/// refused where lost coefficients change a decision, and where polynomials are gone of a kind of which none tells a factor.
+/// Runs a program whose polynomials have factors. What the fair rules say about it that they must not, if anything: it
+/// may be refused where lost coefficients change a decision, and where polynomials are gone of a kind of which none
+/// tells a factor.
 pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     let kind = random.pick(&PairKind::ALL);
     let factor = if random.below(2) == 0 { random.log(-300.0, 300.0) } else { random.log(-12.0, 6.0) };
@@ -461,8 +462,9 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     })
 }
 
-/// Makes one coefficient wrong of a polynomial whose pair is proven to be where it should, since the polynomial that comes from the
-/// same coordinates is right. What the fair rules say about it that they must not, if anything: it is the formula that is wrong.
+/// Makes one coefficient wrong of a polynomial whose pair is proven to be where it should, since the polynomial that
+/// comes from the same coordinates is right. What the fair rules say about it that they must not, if anything: it is
+/// the formula that is wrong.
 pub fn misprint(stage: &Stage, random: &mut Random) -> Option<String> {
     let Target::One { step, index } = Target::draw(stage, random) else { return None };
     let known = stage.known(step, index);

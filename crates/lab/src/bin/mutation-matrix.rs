@@ -1,11 +1,11 @@
-//! Which scene catches which mistake: makes the traces of every wrong sample and every correct variant on every scene of a
-//! folder, in memory, and judges them under each rule book. `scripts/mutation-matrix [FOLDER [PART-OF-AN-ID]]` builds and
-//! calls it.
+//! Which scene catches which mistake: makes the traces of every wrong sample and every correct variant on every scene
+//! of a folder, in memory, and judges them under each rule book. `scripts/mutation-matrix [FOLDER [PART-OF-AN-ID]]`
+//! builds and calls it.
 //!
 //! It prints one matrix per rule book, the mistakes that no scene catches, the variants that are refused, and a small
-//! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all (then
-//! no rule book could ever see it), when the fair rules miss one, and when they refuse a correct variant that is not on
-//! the list of those that they are known to refuse.
+//! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all
+//! (then no rule book could ever see it), when the fair rules miss one, and when they refuse a correct variant that is
+//! not on the list of those that they are known to refuse.
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
@@ -29,8 +29,8 @@ type Rules = fn(&Scene, &[u8]) -> Answer;
 enum Answer {
     /// It is accepted.
     Accepted,
-    /// It is refused for nothing but decisions that hang on coefficients which the course's library dropped as too small:
-    /// the factor of the polynomials is to blame, and the program really does something else then.
+    /// It is refused for nothing but decisions that hang on coefficients which the course's library dropped as too
+    /// small: the factor of the polynomials is to blame, and the program really does something else then.
     Lost,
     /// It is refused.
     Refused,

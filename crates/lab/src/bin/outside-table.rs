@@ -1,5 +1,5 @@
-//! What is told of programs whose mistake the catalogue does not have (`student::mutants`): a line on each, and the figures that
-//! `docs/fair.md` names. Ends with status 1 when something misleads.
+//! What is told of programs whose mistake the catalogue does not have (`student::mutants`): a line on each, and the
+//! figures that `docs/fair.md` names. Ends with status 1 when something misleads.
 //!
 //! usage: `outside-table [PART-OF-A-NAME]`
 use std::process::ExitCode;

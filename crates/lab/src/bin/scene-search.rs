@@ -1,12 +1,13 @@
-//! Searches small scenes that contain what the scenes of a suite lack (`suite check --missing`), and that refuse wrong programs
-//! which fewer than three of them refuse (`sight-matrix`).
+//! Searches small scenes that contain what the scenes of a suite lack (`suite check --missing`), and that refuse wrong
+//! programs which fewer than three of them refuse (`sight-matrix`).
 //!
 //!     scene-search SUITE SCENES [TRIES] [SEED] [FOLDER]
 //!
-//! Random scenes of few bodies are simulated by the reference; each round keeps the one with the most missing pairs of properties
-//! and wrong programs for its work, and takes away whatever it does not need for them. Numbers are small dyadic fractions, so that contacts fall
-//! exactly on the start and the end of steps. Scenes with decisions that hang on round-off, and those that correct variants fail,
-//! are not kept. What is found is printed, or written into the folder; names and descriptions are for people to give.
+//! Random scenes of few bodies are simulated by the reference; each round keeps the one with the most missing pairs of
+//! properties and wrong programs for its work, and takes away whatever it does not need for them. Numbers are small
+//! dyadic fractions, so that contacts fall exactly on the start and the end of steps. Scenes with decisions that hang
+//! on round-off, and those that correct variants fail, are not kept. What is found is printed, or written into the
+//! folder; names and descriptions are for people to give.
 use anyhow::Context;
 use fosssim_oracle::{
     judge::{
@@ -189,7 +190,8 @@ impl Wanted {
 /// A wrong program is worth so many pairs of properties.
 const PROGRAM: f64 = 6.0;
 
-/// So many scenes of a round are shown to the wrong programs: those with the most pairs of properties, and as many others.
+/// So many scenes of a round are shown to the wrong programs: those with the most pairs of properties, and as many
+/// others.
 const SHOWN: usize = 500;
 
 /// What a scene has of what is missing.
@@ -204,8 +206,8 @@ fn gain(scene: &Scene, missing: &[Pairing]) -> Vec<Pairing> {
 /// Variants whose own roundings decide whether something touches exactly at a step's end (`tests/it/samples.rs`).
 const ROUNDING: [&str; 3] = ["normalised-norm", "through-bernstein", "frame-rotated"];
 
-/// Whether nothing hangs on round-off: correct programs move everything alike, whatever the order of their operations, and are accepted;
-/// the reference's own trace by the original's rules, too.
+/// Whether nothing hangs on round-off: correct programs move everything alike, whatever the order of their operations,
+/// and are accepted; the reference's own trace by the original's rules, too.
 fn is_fair(scene: &Scene) -> bool {
     let right = student::trace(scene, Student::default());
     let (Ok(right), true) = (right, borderline(scene).is_ok_and(|found| found.is_empty())) else { return false };

@@ -1,8 +1,9 @@
 //! How many scenes of a suite, and how many probe scenes, refuse each wrong program: those of the catalogue, of
-//! `student::mutants`, and of `student::operators`. `scripts/sight-matrix [SUITE [PART-OF-A-NAME [ENOUGH]]]` builds and calls it.
+//! `student::mutants`, and of `student::operators`. `scripts/sight-matrix [SUITE [PART-OF-A-NAME [ENOUGH]]]` builds and
+//! calls it.
 //!
-//! It prints the programs that fewer than three scenes of the suite refuse, or no probe scene, with those that do, and the figures
-//! that `docs/fair.md` names. It ends with status 1 when there is such a program.
+//! It prints the programs that fewer than three scenes of the suite refuse, or no probe scene, with those that do, and
+//! the figures that `docs/fair.md` names. It ends with status 1 when there is such a program.
 use std::process::ExitCode;
 
 use fosssim_oracle::{

@@ -1,11 +1,12 @@
-//! Judges and explains millions of traces that were made wrong at random: the fuzz targets' own functions, on all processors and
-//! without a fuzzer's coverage, some hundred times faster than with it.
+//! Judges and explains millions of traces that were made wrong at random: the fuzz targets' own functions, on all
+//! processors and without a fuzzer's coverage, some hundred times faster than with it.
 //!
 //!     storm [TARGET] [RUNS] [SEED]        TARGET judge (default), explain or trace; RUNS 1,000,000
 //!
-//! Every trace is made from a seed of the target by one to eight changes: a number replaced by an extreme one, by its neighbour, its
-//! negative or another number of the trace; a bit turned; a count changed; bytes cut out, doubled, moved or left off. The same
-//! seed makes the same traces. A panic ends the storm and leaves the trace as `storm-TARGET-RUN` in the working folder.
+//! Every trace is made from a seed of the target by one to eight changes: a number replaced by an extreme one, by its
+//! neighbour, its negative or another number of the trace; a bit turned; a count changed; bytes cut out, doubled, moved
+//! or left off. The same seed makes the same traces. A panic ends the storm and leaves the trace as `storm-TARGET-RUN`
+//! in the working folder.
 use rayon::prelude::*;
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},

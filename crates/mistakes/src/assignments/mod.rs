@@ -1,11 +1,12 @@
-//! What is bound to an assignment of the course, one folder each: the catalogue of mistakes, formulas as data, probe scenes.
+//! What is bound to an assignment of the course, one folder each: the catalogue of mistakes, formulas as data, probe
+//! scenes.
 pub mod t2m2;
 
 use fosssim_model::{assignments::Assignment, scene::Scene};
 use t2m2::{Row, probes};
 
-/// What programs of an assignment do differently. Programs of the earlier milestones are parts of the later ones', and so are
-/// their mistakes.
+/// What programs of an assignment do differently. Programs of the earlier milestones are parts of the later ones', and
+/// so are their mistakes.
 #[must_use]
 pub const fn catalogue(assignment: Assignment) -> &'static [Row] {
     match assignment {
@@ -13,8 +14,8 @@ pub const fn catalogue(assignment: Assignment) -> &'static [Row] {
     }
 }
 
-/// The probe scenes of an assignment, each with a name that can be a file's. They make every part of a program's work visible;
-/// the earlier milestones have none, since they log nothing of what goes on within a step.
+/// The probe scenes of an assignment, each with a name that can be a file's. They make every part of a program's work
+/// visible; the earlier milestones have none, since they log nothing of what goes on within a step.
 #[must_use]
 pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     match assignment {

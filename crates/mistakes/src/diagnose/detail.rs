@@ -11,7 +11,8 @@ pub enum Detail {
     Term(&'static str),
     /// Where to look for mistakes of this part of the assignment.
     Look(Area),
-    /// What the letters mean that stand in the lines before, which speak of pairs of these kinds. None where none needs it.
+    /// What the letters mean that stand in the lines before, which speak of pairs of these kinds. None where none needs
+    /// it.
     Letters(Vec<PairKind>),
     /// What is wrong with polynomials.
     Polynomial(PolynomialDetail),

@@ -11,9 +11,11 @@ use std::io::Read;
 /// What is kept of a trace while it is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Keep {
-    /// So many bytes of its beginning at most, the reference's own steps not counted; with 0 nothing is kept, and nothing explained.
+    /// So many bytes of its beginning at most, the reference's own steps not counted; with 0 nothing is kept, and
+    /// nothing explained.
     pub most: usize,
-    /// Whether what follows is read, too, where judging stops before the trace's end. Whoever writes a trace may write no more.
+    /// Whether what follows is read, too, where judging stops before the trace's end. Whoever writes a trace may write
+    /// no more.
     pub reads_on: bool,
 }
 
@@ -58,8 +60,8 @@ impl Examined<'_> {
     }
 }
 
-/// As [`explain`](super::explain), of what was kept of a trace: its beginning, and the steps beyond in which a book has found
-/// something.
+/// As [`explain`](super::explain), of what was kept of a trace: its beginning, and the steps beyond in which a book has
+/// found something.
 #[must_use]
 pub fn explain_kept(trace: &KeptTrace<'_>) -> Vec<Explanation> {
     let source = || Source { beginning: Box::new(trace.beginning()), is_whole: trace.is_whole(), late: trace.late() };

@@ -31,9 +31,9 @@ pub struct Explanation {
     pub same_as: Vec<String>,
     /// Keys of mistakes that the trace speaks against: it does what they say is never done.
     pub denies: Vec<String>,
-    /// All that would make its polynomials as they are, one word each: the polynomial, then the known mistake, or a digest of the guess and
-    /// one of its exact form, which give nothing of them away. The guess that it tells stands first. A polynomial that nothing makes has a
-    /// word without a guess.
+    /// All that would make its polynomials as they are, one word each: the polynomial, then the known mistake, or a
+    /// digest of the guess and one of its exact form, which give nothing of them away. The guess that it tells stands
+    /// first. A polynomial that nothing makes has a word without a guess.
     pub claims: Vec<String>,
 }
 
@@ -111,7 +111,8 @@ impl Explanation {
         matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
     }
 
-    /// What it says, in one word: equal for explanations that are told in the same words, and different where they are not.
+    /// What it says, in one word: equal for explanations that are told in the same words, and different where they are
+    /// not.
     #[must_use]
     pub fn said(&self) -> String {
         match &self.about {
@@ -151,7 +152,8 @@ impl Explanation {
         all
     }
 
-    /// Whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet, one stage.
+    /// Whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet, one
+    /// stage.
     #[must_use]
     pub fn is_named_in(&self, explanations: &[Self]) -> bool {
         if self.is_unfinished() {
@@ -172,8 +174,8 @@ impl Explanation {
         explanations.iter().any(|one| one.bears_out(&said, Some(self)))
     }
 
-    /// Whether a trace's explanation speaks for what is said, as told by another one: it says the same, or something that it can't
-    /// tell apart, or its polynomials are those that it would make.
+    /// Whether a trace's explanation speaks for what is said, as told by another one: it says the same, or something
+    /// that it can't tell apart, or its polynomials are those that it would make.
     pub(super) fn bears_out(&self, said: &str, told: Option<&Self>) -> bool {
         let is_same = self.said() == said || self.same_as.iter().any(|key| key == said);
         let is_in_other_words = || find(said).is_some_and(|row| self.is_in_other_words(row) && self.is_complete());
@@ -197,8 +199,8 @@ impl Explanation {
         }
     }
 
-    /// Whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of particles and
-    /// edges is `pe-radii-squared-apart`.
+    /// Whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of
+    /// particles and edges is `pe-radii-squared-apart`.
     pub(super) fn is_in_other_words(&self, row: &Row) -> bool {
         let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == self.key);
         let About::Polynomials { subjects, .. } = &self.about else { return false };

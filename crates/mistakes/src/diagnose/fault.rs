@@ -140,7 +140,8 @@ pub enum WrongResponses {
 pub struct Changed {
     /// The kind of the contact's pair.
     pub kind: PairKind,
-    /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint, and 2 its second one.
+    /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint, and 2 its
+    /// second one.
     pub body: usize,
     /// What of it.
     pub quantity: Quantity,

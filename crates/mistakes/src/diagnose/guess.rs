@@ -1,4 +1,5 @@
-//! Guesses about wrong polynomials, without what would give a formula away ([`PolynomialDetail`](super::PolynomialDetail)).
+//! Guesses about wrong polynomials, without what would give a formula away
+//! ([`PolynomialDetail`](super::PolynomialDetail)).
 
 /// What is likely wrong with polynomials.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! What the traces of one program say together.
 //!
-//! Votes are by what is said, in the words in which it is told ([`Explanation::said`]): two mistakes with one key are two. A trace
-//! votes for all that would explain it as well as what it tells, so that what is told first has been tried on all traces
-//! before anything is told beside it.
+//! Votes are by what is said, in the words in which it is told ([`Explanation::said`]): two mistakes with one key are
+//! two. A trace votes for all that would explain it as well as what it tells, so that what is told first has been tried
+//! on all traces before anything is told beside it.
 use super::{
     Explanation,
     about::{About, OfPolynomials},
@@ -20,9 +20,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// So many mistakes of a program are told.
 const MOST: usize = 3;
 
-/// The likeliest mistake of a program that left several traces: the one that explains most of them, whether it was told first or
-/// as not to be told apart. Ties go to mistakes of the catalogue, then to the one that was told
-/// first more often, then to the one that was told earlier. `None` when no trace has an explanation.
+/// The likeliest mistake of a program that left several traces: the one that explains most of them, whether it was told
+/// first or as not to be told apart. Ties go to mistakes of the catalogue, then to the one that was told first more
+/// often, then to the one that was told earlier. `None` when no trace has an explanation.
 ///
 /// A scene alone often can't tell mistakes apart; several together nearly always can.
 #[must_use]
@@ -147,7 +147,8 @@ impl Explanation {
         self.is_made_by(said, told) || (self.is_settled() && self.bears_out(said, told))
     }
 
-    /// Whether a trace's explanation, which does not bear it out, speaks against what is told of polynomials: the same ones are wrong.
+    /// Whether a trace's explanation, which does not bear it out, speaks against what is told of polynomials: the same
+    /// ones are wrong.
     fn speaks_against(&self, told: &Self) -> bool {
         let is_of_formula = match &told.about {
             About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
@@ -159,10 +160,10 @@ impl Explanation {
     }
 }
 
-/// The likely mistakes of a program that left several traces, at most three: greedily, each the one that explains most of
-/// what those before leave open ([`common`]). Stages that are still empty count as one, which is told first. `refuted` are
-/// keys of mistakes that right traces of the same program speak against. What is no finite number comes before all others and
-/// counts as none.
+/// The likely mistakes of a program that left several traces, at most three: greedily, each the one that explains most
+/// of what those before leave open ([`common`]). Stages that are still empty count as one, which is told first.
+/// `refuted` are keys of mistakes that right traces of the same program speak against. What is no finite number comes
+/// before all others and counts as none.
 #[must_use]
 pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted: &[String]) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
@@ -240,8 +241,8 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     Some(likeliest)
 }
 
-/// The polynomials that are wrong in most traces, where no exact form holds in most and what comes first says nothing of them: their
-/// place, and what most traces say of them without an exact form.
+/// The polynomials that are wrong in most traces, where no exact form holds in most and what comes first says nothing
+/// of them: their place, and what most traces say of them without an exact form.
 fn wrong_polynomials(traces: &[Vec<Explanation>], first: Option<&Explanation>) -> Option<Explanation> {
     let mut wrong: BTreeMap<Subject, usize> = BTreeMap::new();
     for list in traces {
@@ -271,8 +272,8 @@ fn wrong_polynomials(traces: &[Vec<Explanation>], first: Option<&Explanation>) -
     }
 }
 
-/// Whether a further mistake is one that was told, in other words: a program has one formula for a polynomial, and what is seen of a
-/// stage may follow from what is told of that one or of one before it.
+/// Whether a further mistake is one that was told, in other words: a program has one formula for a polynomial, and what
+/// is seen of a stage may follow from what is told of that one or of one before it.
 fn is_said_already(found: &[Explanation], next: &Explanation, open: &[Vec<Explanation>], covered: &[bool]) -> bool {
     let said = next.said();
     let mut beside = open.iter().zip(covered).filter(|(_, covered)| **covered);
@@ -307,8 +308,9 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[Vec<Explan
     found.iter().any(is_said)
 }
 
-/// Leaves of what is said of stages only what concerns the earliest one: what is wrong behind it may follow. And a known mistake
-/// of that stage or a later one that explains fewer traces than there are of these is no more than like what is wrong.
+/// Leaves of what is said of stages only what concerns the earliest one: what is wrong behind it may follow. And a
+/// known mistake of that stage or a later one that explains fewer traces than there are of these is no more than like
+/// what is wrong.
 fn keep_earliest_stage(open: &mut Vec<Vec<Explanation>>) {
     let Some(earliest) = open.iter().flatten().filter_map(Explanation::stage).min() else { return };
     let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
@@ -345,8 +347,8 @@ const fn stage_of(area: Area) -> Option<StepStage> {
     }
 }
 
-/// Keys of mistakes that [`several`] would tell and that these scenes speak against: the program was right there, and with the
-/// mistake it would not have been ([`shows`]).
+/// Keys of mistakes that [`several`] would tell and that these scenes speak against: the program was right there, and
+/// with the mistake it would not have been ([`shows`]).
 #[must_use]
 pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
     let mut refuted: Vec<String> = Vec::new();
@@ -365,9 +367,9 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
 /// Among so many traces one that looks as if a stage were empty is no evidence.
 const MANY: usize = 8;
 
-/// Whether enough of what is left names this further mistake: a trace that nothing explains yet, or two others, where there
-/// are several. What is seen of a stage counts only where nothing explains the trace, and in one trace alone it may follow from what was
-/// found before. That polynomials are missing does.
+/// Whether enough of what is left names this further mistake: a trace that nothing explains yet, or two others, where
+/// there are several. What is seen of a stage counts only where nothing explains the trace, and in one trace alone it
+/// may follow from what was found before. That polynomials are missing does.
 fn is_supported(open: &[Vec<Explanation>], covered: &[bool], next: &Explanation) -> bool {
     let said = next.said();
     let naming = |wanted: bool| {
@@ -394,7 +396,8 @@ fn leave_open(open: &mut [Vec<Explanation>], covered: &mut [bool], said: &str, t
         }
     }
 }
-/// All stages that are told to be empty by a trace, or by two where there are [`MANY`], as one explanation; their keys are in [`Explanation::same_as`].
+/// All stages that are told to be empty by a trace, or by two where there are [`MANY`], as one explanation; their keys
+/// are in [`Explanation::same_as`].
 fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
     let told: Vec<&Explanation> = traces.iter().flatten().filter(|one| one.is_complete()).collect();
     let naming = |key: &str| traces.iter().filter(|list| names_completely(list, key)).count();

@@ -1,7 +1,7 @@
 //! From which step on a trace holds what is no finite number, and which stage of the step makes it of numbers.
 //!
-//! NaN spreads: whatever is computed of it is NaN, and comparisons with it are false. So only the first stage whose input was
-//! numbers and whose output is not says anything, and nothing behind it proves any mistake.
+//! NaN spreads: whatever is computed of it is NaN, and comparisons with it are false. So only the first stage whose
+//! input was numbers and whose output is not says anything, and nothing behind it proves any mistake.
 use super::{
     Explanation,
     about::About,
@@ -19,8 +19,8 @@ use fosssim_model::{
     trace::{Layout, Lenient, LenientFrame, LoggedImpulse, PolynomialLog, record_memory},
 };
 
-/// What is told of the first number of a kept trace that is none, and nothing else that explanations find; empty where all are
-/// finite, or where the reference comes to the same.
+/// What is told of the first number of a kept trace that is none, and nothing else that explanations find; empty where
+/// all are finite, or where the reference comes to the same.
 #[must_use]
 pub fn not_finite(trace: &KeptTrace<'_>) -> Vec<Explanation> {
     let source = Source { beginning: Box::new(trace.beginning()), is_whole: trace.is_whole(), late: trace.late() };
@@ -89,7 +89,8 @@ fn is_wild(frame: &LenientFrame) -> bool {
         || frame.polynomials.coefficients.iter().any(|value| !value.is_finite())
 }
 
-/// The stage of a step that leaves what is no number, of a state that is numbers; nothing where the reference does as well.
+/// The stage of a step that leaves what is no number, of a state that is numbers; nothing where the reference does as
+/// well.
 fn of_step(scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     simulation.state_mut().clone_from(&frames.before.state);

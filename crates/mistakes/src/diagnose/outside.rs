@@ -1,4 +1,5 @@
-//! What is told of programs whose mistake the catalogue does not have: the measure of explanations where they can't know.
+//! What is told of programs whose mistake the catalogue does not have: the measure of explanations where they can't
+//! know.
 use super::{About, Explanation, Keep, examine, probe_scenes, refuted, several};
 use crate::student::{
     self, Area, Student,
@@ -52,8 +53,8 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
     several(traces, &refuted)
 }
 
-/// Asks about the mutants with these numbers. What an explanation says is told by `words`: a mutant names words by which it
-/// is recognised. Several are asked about at a time; the answers come in the mutants' order.
+/// Asks about the mutants with these numbers. What an explanation says is told by `words`: a mutant names words by
+/// which it is recognised. Several are asked about at a time; the answers come in the mutants' order.
 pub fn rated(wanted: impl Fn(usize) -> bool, words: impl Fn(&Explanation) -> String + Sync) -> Vec<Rated> {
     let wanted: Vec<&Mutant> =
         mutants().enumerate().filter(|(number, _)| wanted(*number)).map(|(_, mutant)| mutant).collect();

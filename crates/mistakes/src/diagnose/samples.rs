@@ -1,9 +1,9 @@
 //! Gathers what explanations of polynomials are made of: detections whose inputs are known for certain, and what the
 //! trace logged for them.
 //!
-//! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end is
-//! what the integrator makes of it, before any response. So the first pass of each step is looked at, and in hybrid scenes the
-//! first pass of the geometric part, which starts from the mid record.
+//! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end
+//! is what the integrator makes of it, before any response. So the first pass of each step is looked at, and in hybrid
+//! scenes the first pass of the geometric part, which starts from the mid record.
 use super::{
     polynomial::Sample,
     source::{Source, StepFrames, read},
@@ -123,8 +123,8 @@ impl<'a> Gatherer<'a> {
     }
 }
 
-/// How many polynomials each detection logs so that the lists consist of whole passes: all of them if that fits, else as
-/// many as possible. `None` when nothing fits. `pairs` are those of one pass.
+/// How many polynomials each detection logs so that the lists consist of whole passes: all of them if that fits, else
+/// as many as possible. `None` when nothing fits. `pairs` are those of one pass.
 fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<Sizes> {
     let fits = |sizes: &ByKind<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();

@@ -11,8 +11,8 @@ pub struct Settled {
 }
 
 /// Settles a trace's own explanations by those of all traces together ([`several`](super::several)). Where any of these
-/// explains the trace, they are all that is said: in the place of the trace's own ones, which can't tell as much, but with its
-/// counts and its example. Else the trace keeps its own.
+/// explains the trace, they are all that is said: in the place of the trace's own ones, which can't tell as much, but
+/// with its counts and its example. Else the trace keeps its own.
 #[must_use]
 pub fn settled(own: &[Explanation], likely: &[Explanation]) -> Settled {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| agreed(own, one));
@@ -65,7 +65,8 @@ mod tests {
         }
     }
 
-    /// One scene takes a loop that is one round short for an empty one; together they know better, and then it says so, too.
+    /// One scene takes a loop that is one round short for an empty one; together they know better, and then it says so,
+    /// too.
     #[test]
     fn a_scene_says_what_all_scenes_together_know() {
         let short = named("loop-one-fewer", &[], (7, 7));

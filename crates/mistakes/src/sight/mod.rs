@@ -57,7 +57,8 @@ pub struct WrongProgram {
     pub student: Student,
 }
 
-/// All programs that the scenes have to refuse: those of the catalogue, of the mutants, and every mutation that changes something.
+/// All programs that the scenes have to refuse: those of the catalogue, of the mutants, and every mutation that changes
+/// something.
 #[must_use]
 pub fn wrong_programs() -> Vec<WrongProgram> {
     let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong);

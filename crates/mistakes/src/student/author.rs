@@ -42,14 +42,14 @@ impl Student {
         self.mistakes().any(|made| made == mistake)
     }
 
-    /// The mistake of these parts of the assignment, where many are told apart in one place; the first part that has one
-    /// counts.
+    /// The mistake of these parts of the assignment, where many are told apart in one place; the first part that has
+    /// one counts.
     pub fn mistake_in(self, areas: &[Area]) -> Option<Mistake> {
         areas.iter().find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
     }
 
-    /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too, and
-    /// independent of the mistake.
+    /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too,
+    /// and independent of the mistake.
     #[must_use]
     pub fn with_right_approach(self) -> Self {
         Self { right_approach: true, ..self }

@@ -15,8 +15,8 @@ use super::{
     operators::Place,
 };
 
-/// Everything that stays as it is during a run. Programs of many students share a scene, and none holds a list of its pairs,
-/// of which a large scene has millions.
+/// Everything that stays as it is during a run. Programs of many students share a scene, and none holds a list of its
+/// pairs, of which a large scene has millions.
 pub struct World {
     /// The scene as loaded.
     pub scene: Arc<Scene>,

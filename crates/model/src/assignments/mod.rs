@@ -1,9 +1,9 @@
 //! The course's assignments: what each one has programs detect, log and drop.
 //!
-//! A [`Definition`] says it as data, one file per assignment here. What else is bound to an assignment - suites, the catalogue
-//! of mistakes, formulas, probe scenes - stands in a folder `assignments/<key>` of the room that has such a thing. Readers of
-//! traces, simulator and judge ask the assignment of a scene, which its collision type tells ([`Assignment::of`]). It knows
-//! nothing of scenes, states and files.
+//! A [`Definition`] says it as data, one file per assignment here. What else is bound to an assignment - suites, the
+//! catalogue of mistakes, formulas, probe scenes - stands in a folder `assignments/<key>` of the room that has such a
+//! thing. Readers of traces, simulator and judge ask the assignment of a scene, which its collision type tells
+//! ([`Assignment::of`]). It knows nothing of scenes, states and files.
 #![forbid(unsafe_code)]
 
 mod collision_type;
@@ -17,8 +17,8 @@ pub use pair_kind::PairKind;
 /// An assignment of the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Assignment {
-    /// Theme 1 and Theme 2, Milestone 1: forces, integrators, simple and penalty collisions. Their scenes and traces are read
-    /// alike, so that they are one (scene-format.md 8).
+    /// Theme 1 and Theme 2, Milestone 1: forces, integrators, simple and penalty collisions. Their scenes and traces
+    /// are read alike, so that they are one (scene-format.md 8).
     Earlier,
     /// Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
     T2M2,
@@ -71,8 +71,8 @@ pub struct Definition {
     pub title: &'static str,
     /// The collision types that it brings, and what a program does for each.
     pub handlings: &'static [Handling],
-    /// The kinds of pairs whose polynomials its detections log, in the order in which a pass looks at a particle's pairs;
-    /// [`PairKind::polynomials`] says how many each logs.
+    /// The kinds of pairs whose polynomials its detections log, in the order in which a pass looks at a particle's
+    /// pairs; [`PairKind::polynomials`] says how many each logs.
     pub pairs: &'static [PairKind],
     /// What is dropped of polynomials.
     pub dropping: Dropping,
@@ -135,8 +135,8 @@ pub enum Dropping {
     Leading,
 }
 
-/// Says that the code beside it takes it for granted that small leading coefficients are dropped. A second rule makes the
-/// compiler name all these places.
+/// Says that the code beside it takes it for granted that small leading coefficients are dropped. A second rule makes
+/// the compiler name all these places.
 #[macro_export]
 macro_rules! drops_leading {
     () => {

@@ -1,6 +1,7 @@
 //! The scene's elements with their places, and everything that is wrong with the XML itself.
 //!
-//! quick-xml cuts the text into tags; nesting and the names of elements are judged here, attributes in `tag`. Nothing is looked at twice, so that the work grows with the length of the text only.
+//! quick-xml cuts the text into tags; nesting and the names of elements are judged here, attributes in `tag`. Nothing
+//! is looked at twice, so that the work grows with the length of the text only.
 use std::collections::BTreeSet;
 use std::ops::Range;
 

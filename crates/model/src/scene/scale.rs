@@ -5,10 +5,10 @@
 use super::model::{Collision, Force, Scene};
 
 impl Scene {
-    /// The scene with lengths times `2^power`: positions, velocities, radii, points of half-planes, thicknesses and rest
-    /// lengths. Times and masses stay, and so do stiffnesses, dampings and the directions of normals; accelerations
-    /// and constant forces grow like lengths, `G` like their cube, a vortex's strength like a length and its coupling
-    /// like a square. What only a display uses stays, too.
+    /// The scene with lengths times `2^power`: positions, velocities, radii, points of half-planes, thicknesses and
+    /// rest lengths. Times and masses stay, and so do stiffnesses, dampings and the directions of normals;
+    /// accelerations and constant forces grow like lengths, `G` like their cube, a vortex's strength like a length and
+    /// its coupling like a square. What only a display uses stays, too.
     #[must_use]
     pub fn scaled(&self, power: i32) -> Self {
         let base = if power < 0 { 0.5 } else { 2.0 };

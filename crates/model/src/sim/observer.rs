@@ -4,14 +4,14 @@ use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
 /// Hears what happens inside a step. Every method does nothing by default.
 ///
-/// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`,
-/// a `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that
-/// caused it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronise` (continuous-time:
-/// at the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part:
-/// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last
-/// `end_step`.
+/// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`, a
+/// `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that caused
+/// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronise` (continuous-time: at
+/// the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part: `begin_pass`
+/// .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last `end_step`.
 ///
-/// Four methods may steer what they hear: `passes_over`, `solve`, `decide` and `synchronise`. By default they change nothing.
+/// Four methods may steer what they hear: `passes_over`, `solve`, `decide` and `synchronise`. By default they change
+/// nothing.
 pub trait Observer {
     /// A step begins; steps count from 1.
     fn begin_step(&mut self, _step: u32) {}
@@ -25,10 +25,11 @@ pub trait Observer {
     fn wanted(&mut self) -> Wanted<'_> {
         Wanted::Calls
     }
-    /// How many calls of the pass, from this one on in the order of [`pairs`](super::pairs()), need not be made, because this
-    /// observer knows that a certificate excludes their impacts, and hears nothing of them that it does not know. They count
-    /// as excluded, and `solve`, `decide` and `detection` are not called. Asked before every call that is not passed over,
-    /// with the positions as they are then; not where searches are audited. `simple` does not ask.
+    /// How many calls of the pass, from this one on in the order of [`pairs`](super::pairs()), need not be made,
+    /// because this observer knows that a certificate excludes their impacts, and hears nothing of them that it does
+    /// not know. They count as excluded, and `solve`, `decide` and `detection` are not called. Asked before every call
+    /// that is not passed over, with the positions as they are then; not where searches are audited. `simple` does not
+    /// ask.
     #[inline]
     fn passes_over(&mut self, _next: Pair, _q_start: &[f64], _q_end: &[f64]) -> usize {
         0

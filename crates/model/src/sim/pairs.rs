@@ -1,8 +1,8 @@
 //! The pairs that a detection pass looks at: their kinds, order and number, and whose a logged polynomial is
 //! (collisions.md 1, trace-format.md 2).
 //!
-//! This is the only enumeration of a pass: whoever goes through the pairs of a particle, for the sake of values that pairs share, takes the
-//! ranges of each kind from [`Objects::row`].
+//! This is the only enumeration of a pass: whoever goes through the pairs of a particle, for the sake of values that
+//! pairs share, takes the ranges of each kind from [`Objects::row`].
 use super::pair::{ByKind, Pair, PairKind, pair};
 use crate::scene::Scene;
 use std::{borrow::Cow, cmp::Ordering, ops::Range};
@@ -44,7 +44,8 @@ impl Place {
 }
 
 impl Objects {
-    /// The numbers of what a particle meets: of particles the later ones, of edges all (but see [`is_end`]), of half-planes all.
+    /// The numbers of what a particle meets: of particles the later ones, of edges all (but see [`is_end`]), of
+    /// half-planes all.
     #[inline]
     fn seconds(self, kind: PairKind, first: usize) -> Range<usize> {
         match kind {
@@ -54,8 +55,8 @@ impl Objects {
         }
     }
 
-    /// What is left of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of what it meets. Among edges
-    /// there are those that it is an end of ([`is_end`]).
+    /// What is left of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of what
+    /// it meets. Among edges there are those that it is an end of ([`is_end`]).
     #[inline(always)]
     pub fn row(self, from: Place) -> [Range<usize>; PairKind::ALL.len()] {
         PairKind::ALL.map(|kind| {
@@ -98,8 +99,8 @@ impl Pairs<'_> {
         Pairs { particles: 0, edges: Cow::Borrowed(&[]), half_planes: 0 }
     }
 
-    /// All pairs, in the order of the pass: particle by particle, with all later particles, then with the edges that it is no
-    /// end of, then with the half-planes.
+    /// All pairs, in the order of the pass: particle by particle, with all later particles, then with the edges that it
+    /// is no end of, then with the half-planes.
     pub fn iter(&self) -> impl Iterator<Item = Pair> + Clone {
         (0..self.particles).flat_map(|particle| self.of(particle))
     }
@@ -142,8 +143,8 @@ impl Pairs<'_> {
         self.counts().iter().map(|(kind, count)| kind.polynomials() * count).sum()
     }
 
-    /// Whose polynomial `index` of a step's list is: the number of the pass, the pair, and the polynomial's number among its
-    /// own. None where a pass has no polynomial.
+    /// Whose polynomial `index` of a step's list is: the number of the pass, the pair, and the polynomial's number
+    /// among its own. None where a pass has no polynomial.
     #[must_use]
     pub fn polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
         let per_pass = self.polynomials();

@@ -1,15 +1,16 @@
 //! Polynomials as a trace holds them: written once, where they are known.
 //!
-//! A detection pass whose polynomials only have to be logged writes them here (trace-format.md 1: little-endian, packed,
-//! a 32-bit size before the coefficients), and whoever records or compares a step takes the bytes as they are.
+//! A detection pass whose polynomials only have to be logged writes them here (trace-format.md 1: little-endian,
+//! packed, a 32-bit size before the coefficients), and whoever records or compares a step takes the bytes as they are.
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 use std::ops::Range;
 
-/// A list of polynomials in a trace's own bytes, without the list's count. Its memory is kept from step to step, and so may
-/// be its bytes, for whoever writes those of several steps at once.
+/// A list of polynomials in a trace's own bytes, without the list's count. Its memory is kept from step to step, and so
+/// may be its bytes, for whoever writes those of several steps at once.
 #[derive(Debug, Clone, Default)]
 pub struct PolynomialBytes {
-    /// Those from `begin` up to `used` are the list's; before them earlier ones may stand; what follows is room for more.
+    /// Those from `begin` up to `used` are the list's; before them earlier ones may stand; what follows is room for
+    /// more.
     bytes: Vec<u8>,
     begin: usize,
     used: usize,
@@ -37,8 +38,8 @@ impl Searched<'_> {
 /// Bytes of the largest polynomial that a detection logs.
 const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 
-/// Small lists double; larger ones grow by so many bytes at most: a hostile trace may make a step's list take hundreds of
-/// megabytes, but not twice as many.
+/// Small lists double; larger ones grow by so many bytes at most: a hostile trace may make a step's list take hundreds
+/// of megabytes, but not twice as many.
 const MOST_GROWTH: usize = 16 << 20;
 
 impl PolynomialBytes {
@@ -87,14 +88,15 @@ impl PolynomialBytes {
         })
     }
 
-    /// No coefficient has a larger modulus than this; a NaN does not count. It may be that of a pair that is not logged.
+    /// No coefficient has a larger modulus than this; a NaN does not count. It may be that of a pair that is not
+    /// logged.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.largest
     }
 
-    /// The numbers of the first polynomials of those pairs for which the certificate was not enough, ascending: of all other
-    /// pairs these polynomials exclude an impact.
+    /// The numbers of the first polynomials of those pairs for which the certificate was not enough, ascending: of all
+    /// other pairs these polynomials exclude an impact.
     #[must_use]
     pub fn searched(&self) -> &[u32] {
         &self.searched

@@ -4,8 +4,8 @@
 //! low-order ones; polynomials are read without any check. The one thing not reproduced is how the original dies of
 //! nonsense counts: [`Unreadable::Memory`] is the answer instead.
 //!
-//! Memory is bounded by what a record of the scene can hold ([`record_memory`]). Polynomials beyond that are counted and
-//! not kept: the reference never logs so many, so their number alone is the finding.
+//! Memory is bounded by what a record of the scene can hold ([`record_memory`]). Polynomials beyond that are counted
+//! and not kept: the reference never logs so many, so their number alone is the finding.
 use super::{
     decode,
     error::{List, Malformation, TraceError},
@@ -127,7 +127,8 @@ pub enum Unreadable {
     State,
     /// "Error while trying to deserialize time step impulses": the bytes end inside the impulse list.
     Impulses,
-    /// A count that no file could satisfy: the original runs out of memory (SIGABRT), or would with more bytes than we read.
+    /// A count that no file could satisfy: the original runs out of memory (SIGABRT), or would with more bytes than we
+    /// read.
     Memory,
     /// A limit of ours: the record is larger than any sound one of the scene, and the original reads on.
     Limit,
@@ -197,8 +198,8 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Goes past the records of a step if they are these bytes, and says so; otherwise nothing is read. Records that take
-    /// more memory than allowed are not gone past.
+    /// Goes past the records of a step if they are these bytes, and says so; otherwise nothing is read. Records that
+    /// take more memory than allowed are not gone past.
     pub fn passes(&mut self, step: &StepBytes) -> bool {
         if self.failed || step.memory() > self.limit {
             return false;
@@ -219,10 +220,10 @@ impl<R: Read> Lenient<R> {
         true
     }
 
-    /// Goes past the next records if they have the states and impulses of this step, as many polynomials, and `accepts` says that
-    /// these, as bytes, will do in their place: those of the mid record, if there is one, and of the end record. Otherwise
-    /// nothing is read. `buffer` takes the bytes. Nobody is asked about records that take more memory than allowed, or more
-    /// than `MOST_LIKENED`.
+    /// Goes past the next records if they have the states and impulses of this step, as many polynomials, and `accepts`
+    /// says that these, as bytes, will do in their place: those of the mid record, if there is one, and of the end
+    /// record. Otherwise nothing is read. `buffer` takes the bytes. Nobody is asked about records that take more memory
+    /// than allowed, or more than `MOST_LIKENED`.
     pub fn passes_like(
         &mut self,
         step: &StepBytes,

@@ -5,8 +5,8 @@
 //! still name it.
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show at once. A larger one makes no faster reading:
-/// its pages have to be made, and its bytes do not stay near the processor.
+/// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show at once. A larger one makes no
+/// faster reading: its pages have to be made, and its bytes do not stay near the processor.
 pub(crate) const WINDOW: usize = 64 * 1024;
 
 #[derive(Debug)]
@@ -105,8 +105,8 @@ impl<R: Read> Source<R> {
         self.offset += count as u64;
     }
 
-    /// Steps over the next bytes as far as they are those of `expected`, piece by piece. Whether they all are; if not, some of
-    /// those that are may have been stepped over, and [`Source::unread`] gives them back.
+    /// Steps over the next bytes as far as they are those of `expected`, piece by piece. Whether they all are; if not,
+    /// some of those that are may have been stepped over, and [`Source::unread`] gives them back.
     pub(crate) fn follow(&mut self, expected: &[u8]) -> bool {
         let mut rest = expected;
         while !rest.is_empty() {
@@ -120,7 +120,8 @@ impl<R: Read> Source<R> {
         true
     }
 
-    /// Puts the `count` bytes that were consumed last in front of what follows; `bytes` are these, piece by piece, and may go on.
+    /// Puts the `count` bytes that were consumed last in front of what follows; `bytes` are these, piece by piece, and
+    /// may go on.
     pub(crate) fn unread<'a>(&mut self, count: usize, bytes: impl Iterator<Item = &'a [u8]>) {
         self.offset -= count as u64;
         if let Some(start) = self.start.checked_sub(count) {
@@ -162,8 +163,8 @@ impl<R: Read> Source<R> {
     #[cold]
     fn fill(&mut self, wanted: usize) {
         if self.buffer.is_empty() {
-            // Small traces get a small buffer; one byte more shows the end of the stream in the same call. Memory that is
-            // not used stays untouched.
+            // Small traces get a small buffer; one byte more shows the end of the stream in the same call. Memory that
+            // is not used stays untouched.
             let size = self.length.map_or(WINDOW as u64, |length| length.saturating_add(1).clamp(64, WINDOW as u64));
             self.buffer = vec![0; usize::try_from(size).unwrap_or(WINDOW)];
         }

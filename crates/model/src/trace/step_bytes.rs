@@ -80,7 +80,8 @@ impl StepBytes {
         &self.log.polynomials
     }
 
-    /// The largest modulus of their coefficients, see [`PolynomialBytes::largest`](crate::sim::PolynomialBytes::largest).
+    /// The largest modulus of their coefficients, see
+    /// [`PolynomialBytes::largest`](crate::sim::PolynomialBytes::largest).
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.log.polynomials.largest()

@@ -1,8 +1,9 @@
 //! Frames to bytes.
 //!
-//! [`Writer`] gathers records and hands them to any `Write` in large pieces, so the stream below needs no buffer of its own.
-//! What is short it copies into a buffer; a recorder's long lists stay where they are until they are written. It counts what it wrote, keeps the first I/O error until [`Writer::finish`], and checks nothing:
-//! damaged traces for tests can be written, too.
+//! [`Writer`] gathers records and hands them to any `Write` in large pieces, so the stream below needs no buffer of its
+//! own. What is short it copies into a buffer; a recorder's long lists stay where they are until they are written. It
+//! counts what it wrote, keeps the first I/O error until [`Writer::finish`], and checks nothing: damaged traces for
+//! tests can be written, too.
 use super::{encode, frame::Frame, layout::Layout, log::Log};
 use crate::sim::State;
 use std::{
@@ -34,7 +35,8 @@ pub struct Writer<W: Write> {
     stream: W,
     layout: Layout,
     buffer: Vec<u8>,
-    /// Long lists that are not in the buffer: where they belong in it, and where they stand among the log's polynomials.
+    /// Long lists that are not in the buffer: where they belong in it, and where they stand among the log's
+    /// polynomials.
     lists: Vec<(usize, Range<usize>)>,
     /// Their bytes.
     listed: usize,
@@ -72,7 +74,8 @@ impl<W: Write> Writer<W> {
         self.end(&[]);
     }
 
-    /// Writes one record whose lists are encoded already. While it [borrows](Self::borrows) the log keeps its polynomials.
+    /// Writes one record whose lists are encoded already. While it [borrows](Self::borrows) the log keeps its
+    /// polynomials.
     pub(super) fn record(&mut self, state: &State, log: &Log) {
         self.begin(state);
         if self.layout.impulses {

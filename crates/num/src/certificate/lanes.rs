@@ -1,8 +1,8 @@
 //! The certificate's closed forms for several polynomials at once: the questions of `closed_form`, in the same order of
 //! operations, about polynomials whose small leading coefficients are still there.
 //!
-//! The answers are the same as those for each polynomial alone, where all numbers are finite; lanes in which a question does
-//! not arise compute what nobody looks at.
+//! The answers are the same as those for each polynomial alone, where all numbers are finite; lanes in which a question
+//! does not arise compute what nobody looks at.
 use super::super::{
     lanes::{Lanes, Mask, Simd},
     tolerances::{
@@ -41,7 +41,8 @@ fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     !((before & nothing.lt(zero)) | (after & zero.le(one)))
 }
 
-/// Where the polynomial `a t^2 + b t + c`, with small leading coefficients dropped, is certainly not positive within the step.
+/// Where the polynomial `a t^2 + b t + c`, with small leading coefficients dropped, is certainly not positive within
+/// the step.
 #[inline(always)]
 pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let small = is_small(a);
@@ -76,15 +77,15 @@ fn within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
     value.at_least(low) & value.below(high)
 }
 
-/// Where an impact is excluded of a pair of particles, or with a half-plane: one of its polynomials, a parabola and a line, is
-/// certainly not positive within the step.
+/// Where an impact is excluded of a pair of particles, or with a half-plane: one of its polynomials, a parabola and a
+/// line, is certainly not positive within the step.
 #[inline(always)]
 pub fn excludes_two<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
     never_positive(a, b, c) | never_positive_line(d, e)
 }
 
-/// Where the closed forms exclude an impact of a pair with an edge: one of its polynomials is certainly not positive within
-/// the step, and the search among all of them would end.
+/// Where the closed forms exclude an impact of a pair with an edge: one of its polynomials is certainly not positive
+/// within the step, and the search among all of them would end.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(
     distance: [Lanes<S>; 5],

@@ -21,7 +21,8 @@ impl<const LENGTH: usize> Entries<LENGTH> {
     }
 
     /// One step of the division: less so many times the divisor that the leading one vanishes, and up by one place. All
-    /// places are computed, since those behind the last ones stay 0 and what has no branches is done for several at once.
+    /// places are computed, since those behind the last ones stay 0 and what has no branches is done for several at
+    /// once.
     #[inline(always)]
     fn less(&mut self, divisor: &Self, reciprocal: f64) {
         let Self { values, changes } = self;

@@ -1,29 +1,31 @@
 //! Certified decisions: does a detection hit within the step, whatever rounding did to its polynomials?
 //!
-//! A detection hits if the first time `tau` of its polynomials is at most 1 (root-finder.md 16): they need not be positive
-//! in one open interval, it is enough that the *closures* of the sets where each is positive meet in `(0, 1]`. Each
-//! coefficient is known up to an error; [`decide`] says whether the answer is the same for all choices of coefficients, and
-//! proves it. It never asks what the original's root finder would have said (that is
+//! A detection hits if the first time `tau` of its polynomials is at most 1 (root-finder.md 16): they need not be
+//! positive in one open interval, it is enough that the *closures* of the sets where each is positive meet in `(0, 1]`.
+//! Each coefficient is known up to an error; [`decide`] says whether the answer is the same for all choices of
+//! coefficients, and proves it. It never asks what the original's root finder would have said (that is
 //! [`first_time`](super::first_time), and [`certificate`](super::certificate) for skipping it).
 //!
-//! The mathematics is short. For `t >= 0` a polynomial grows with each of its coefficients, so among all choices the one
-//! with the greatest coefficients ("upper") is positive where any is, and the one with the least ("lower") only where all
-//! are. Hence `tau(upper) <= tau <= tau(lower)` for every choice, and both ends are choices themselves:
+//! The mathematics is short. For `t >= 0` a polynomial grows with each of its coefficients, so among all choices the
+//! one with the greatest coefficients ("upper") is positive where any is, and the one with the least ("lower") only
+//! where all are. Hence `tau(upper) <= tau <= tau(lower)` for every choice, and both ends are choices themselves:
 //!
 //! * **Yes** exactly if `tau(lower) <= 1`, with `[tau(upper), tau(lower)]` as enclosure of the time;
 //! * **No** exactly if `tau(upper) > 1`;
-//! * **Borderline** otherwise: some choices hit, others do not. (Also where a proof would take too long; see [`decide`].)
+//! * **Borderline** otherwise: some choices hit, others do not. (Also where a proof would take too long; see
+//!   [`decide`].)
 //!
-//! So two lists without errors are left to decide. `range` rejects them by signs and by Bernstein coefficients, `pieces`
-//! by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, section 3.3;
-//! Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and what is left goes to
-//! integer arithmetic ([`exact`]), which always decides.
+//! So two lists without errors are left to decide. `range` rejects them by signs and by Bernstein coefficients,
+//! `pieces` by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*,
+//! section 3.3; Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and what is left
+//! goes to integer arithmetic ([`exact`]), which always decides.
 //!
-//! What counts (and where it differs from the original): zeros at which a polynomial only touches zero from above do not
-//! interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11); a time of exactly 1
-//! counts, sets that end at exactly 0 do not (16.2); an empty list, an empty polynomial and one that vanishes are nowhere
-//! positive (17.2). Coefficients are taken as they are: small leading ones are not dropped, and `c t^m` is positive after 0
-//! if `c` is, while the original takes it as nowhere positive (17.1). Whoever compares with the original has to know these two.
+//! What counts (and where it differs from the original): zeros at which a polynomial only touches zero from above do
+//! not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11); a time of
+//! exactly 1 counts, sets that end at exactly 0 do not (16.2); an empty list, an empty polynomial and one that vanishes
+//! are nowhere positive (17.2). Coefficients are taken as they are: small leading ones are not dropped, and `c t^m` is
+//! positive after 0 if `c` is, while the original takes it as nowhere positive (17.1). Whoever compares with the
+//! original has to know these two.
 pub mod exact;
 pub(crate) mod pieces;
 pub(crate) mod range;
@@ -44,7 +46,8 @@ pub const MAX_POLYNOMIALS: usize = 4;
 /// Most coefficients of one polynomial.
 pub const MAX_COEFFICIENTS: usize = 6;
 
-/// The greatest margin that is reported, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about 1.
+/// The greatest margin that is reported, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about
+/// 1.
 pub const MARGIN_CAP: f64 = 9_007_199_254_740_992.0;
 
 /// Over how many powers of two coefficients may spread for [`decide`] to use integers although there are errors: enough
@@ -109,25 +112,26 @@ impl LevelCounts {
 pub struct Certified {
     /// The decision.
     pub certainty: Certainty,
-    /// For `Yes`: encloses `tau` for every choice of coefficients, a fraction of the step in `[0, 1]`. About as
-    /// wide as the errors of the coefficients move it; wider if the polynomials nearly touch earlier in the step. For
-    /// `Borderline`: encloses the least `tau` of any choice (if it is at most 1, where that could not be shown); `None` if a
-    /// coefficient is not finite. `None` for `No`.
+    /// For `Yes`: encloses `tau` for every choice of coefficients, a fraction of the step in `[0, 1]`. About as wide as
+    /// the errors of the coefficients move it; wider if the polynomials nearly touch earlier in the step. For
+    /// `Borderline`: encloses the least `tau` of any choice (if it is at most 1, where that could not be shown); `None`
+    /// if a coefficient is not finite. `None` for `No`.
     pub time: Option<[f64; 2]>,
-    /// The decision is proved to survive errors of at least this many units `u` of the coefficients' bounds, at least the
-    /// `units` that were asked for and at most [`MARGIN_CAP`]; the true number may be greater. 0 for `Borderline`.
+    /// The decision is proved to survive errors of at least this many units `u` of the coefficients' bounds, at least
+    /// the `units` that were asked for and at most [`MARGIN_CAP`]; the true number may be greater. 0 for `Borderline`.
     pub margin: f64,
     /// Which level was needed.
     pub level: Level,
 }
 
 /// Decides whether all polynomials of a detection become positive within the step: is `tau <= 1` for every choice of
-/// coefficients within `units` times [`UNIT_ROUNDOFF`] times their bounds, for none, or for some (see the module's header)?
+/// coefficients within `units` times [`UNIT_ROUNDOFF`] times their bounds, for none, or for some (see the module's
+/// header)?
 ///
 /// Coefficients come highest power first and untrimmed. With `units` 0 (or bounds that are all 0) the answer is that of
-/// [`exact_first`] and never `Borderline`; a coefficient that is not finite makes every answer `Borderline`. So does, if there
-/// are errors, a polynomial whose coefficients' sizes spread over more than 400 powers of two and which is so close to the
-/// limit that only integers could decide: they might take a tenth of a second.
+/// [`exact_first`] and never `Borderline`; a coefficient that is not finite makes every answer `Borderline`. So does,
+/// if there are errors, a polynomial whose coefficients' sizes spread over more than 400 powers of two and which is so
+/// close to the limit that only integers could decide: they might take a tenth of a second.
 ///
 /// # Panics
 /// With more than [`MAX_POLYNOMIALS`] polynomials, or more than [`MAX_COEFFICIENTS`] coefficients in one.

@@ -1,11 +1,11 @@
 //! Subdivision of `[0, 1]`: L2 of [`super::decide`].
 //!
-//! Pieces are visited from left to right and halved by de Casteljau's algorithm. On a piece a polynomial lies between the
-//! least and the greatest of its Bernstein coefficients; each list carries a bound on its rounding, which grows by what
-//! every halving adds. A piece is closed when one polynomial is negative throughout; a time at which all are positive ends
-//! the search. Halving stops where the coefficients are no more than their own rounding: such pieces stay open. Where one
-//! polynomial is left and its coefficients change their sign once, it has exactly one zero there, which bisection by values
-//! brackets faster.
+//! Pieces are visited from left to right and halved by de Casteljau's algorithm. On a piece a polynomial lies between
+//! the least and the greatest of its Bernstein coefficients; each list carries a bound on its rounding, which grows by
+//! what every halving adds. A piece is closed when one polynomial is negative throughout; a time at which all are
+//! positive ends the search. Halving stops where the coefficients are no more than their own rounding: such pieces stay
+//! open. Where one polynomial is left and its coefficients change their sign once, it has exactly one zero there, which
+//! bisection by values brackets faster.
 use super::{
     MAX_POLYNOMIALS, UNIT_ROUNDOFF,
     range::{Control, Problem, slack},
@@ -172,8 +172,8 @@ impl Walk<'_> {
     }
 }
 
-/// Whether the Bernstein coefficients are negative up to some place and positive from the next one on, or the next but one:
-/// whatever the sign between, it changes once, so the polynomial does (Descartes' rule of signs).
+/// Whether the Bernstein coefficients are negative up to some place and positive from the next one on, or the next but
+/// one: whatever the sign between, it changes once, so the polynomial does (Descartes' rule of signs).
 fn rises_once(control: &Control) -> bool {
     let values = &control.values[..control.length];
     let negative = values.iter().take_while(|&&value| value < -control.error).count();

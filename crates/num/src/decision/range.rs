@@ -1,8 +1,8 @@
 //! The two extreme choices of a detection's coefficients, and what their signs and Bernstein coefficients exclude.
 //!
-//! Levels L0 and L1 of [`super::decide`]: they look at one polynomial at a time. Every comparison allows for the rounding of
-//! the computation itself, so what it says is proved (rounding as in Higham, *Accuracy and Stability of Numerical
-//! Algorithms*, section 3.1).
+//! Levels L0 and L1 of [`super::decide`]: they look at one polynomial at a time. Every comparison allows for the
+//! rounding of the computation itself, so what it says is proved (rounding as in Higham, *Accuracy and Stability of
+//! Numerical Algorithms*, section 3.1).
 use super::{Bounded, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOFF};
 
 /// Which end of every coefficient's interval.
@@ -17,8 +17,8 @@ pub(crate) enum Ends {
 /// More than all that underflow can take from a sum or a convex combination of six numbers, fifty times in a row.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
 
-/// What the Bernstein coefficients may be off by, in units of the sum of the moduli of the power coefficients: a rounded
-/// weight, a product, at most five sums, and the rounding of that sum of moduli; sixteen is twice as much.
+/// What the Bernstein coefficients may be off by, in units of the sum of the moduli of the power coefficients: a
+/// rounded weight, a product, at most five sums, and the rounding of that sum of moduli; sixteen is twice as much.
 const CONVERSION: f64 = 16.0 * UNIT_ROUNDOFF;
 
 /// One polynomial without errors.
@@ -88,8 +88,8 @@ impl Problem {
         })
     }
 
-    /// Whether one polynomial alone shows that nothing happens within the step, at which level, and how many further units
-    /// of the bounds this survives. An empty problem is excluded.
+    /// Whether one polynomial alone shows that nothing happens within the step, at which level, and how many further
+    /// units of the bounds this survives. An empty problem is excluded.
     #[inline]
     pub(crate) fn exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {
@@ -134,9 +134,9 @@ impl Problem {
         self.polynomials().iter().map(spread).max().unwrap_or(0)
     }
 
-    /// How many further units of the bounds a hit survives: at the best of some times from this one on, the least of the
-    /// polynomials' values over their bounds. At least 0. The times are spread evenly over the rest of the step, and ever
-    /// closer after the first, because a hit may be short.
+    /// How many further units of the bounds a hit survives: at the best of some times from this one on, the least of
+    /// the polynomials' values over their bounds. At least 0. The times are spread evenly over the rest of the step,
+    /// and ever closer after the first, because a hit may be short.
     pub(crate) fn slack_of_yes(&self, first: f64) -> f64 {
         let slack_at = |t: f64| {
             let slacks = self.polynomials().iter().map(|polynomial| polynomial.slack_at(t));
@@ -177,8 +177,8 @@ pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
 }
 
 impl Exactly {
-    /// L0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive terms cannot
-    /// make up for a negative constant.
+    /// L0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive terms
+    /// cannot make up for a negative constant.
     #[inline]
     fn range(&self) -> Option<f64> {
         let (mut greatest, mut size) = (self.coefficients[0], self.coefficients[0].abs());
@@ -220,8 +220,8 @@ impl Exactly {
         Control { values, length: self.length, error: CONVERSION * size + UNDERFLOW, index: 0 }
     }
 
-    /// The Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1: scaling is exact
-    /// but for underflow.
+    /// The Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1: scaling is
+    /// exact but for underflow.
     pub(crate) fn control_until(&self, end: f64) -> Control {
         let (mut stretched, mut power) = (*self, 1.0);
         for value in &mut stretched.coefficients {

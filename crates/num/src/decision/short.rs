@@ -1,7 +1,7 @@
 //! Short numbers: when formulas over them are exact whatever the order of evaluation.
 //!
-//! A double is an integer times a power of two. If all inputs of a formula are integer multiples of *one* power of two and
-//! the integers are short, every sum and product of the formula still fits into 53 bits and nothing is rounded.
+//! A double is an integer times a power of two. If all inputs of a formula are integer multiples of *one* power of two
+//! and the integers are short, every sum and product of the formula still fits into 53 bits and nothing is rounded.
 
 /// Whether all values are integer multiples of one power of two with quotients of modulus below `2^bits`. Zeros fit
 /// everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.

@@ -65,8 +65,8 @@ impl Zeros {
         &self.list[..self.length]
     }
 
-    /// Steps with fixed shifts from which no zero was found: hardly ever any, up to 4200 for a zero where polynomials are
-    /// nearly nothing but round-off. Only the time that the search takes depends on them.
+    /// Steps with fixed shifts from which no zero was found: hardly ever any, up to 4200 for a zero where polynomials
+    /// are nearly nothing but round-off. Only the time that the search takes depends on them.
     #[must_use]
     pub fn fruitless(&self) -> u32 {
         self.fruitless

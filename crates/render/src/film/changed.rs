@@ -16,8 +16,8 @@ impl ChangedArea {
         Self { left: 0, top: 0, width: size.width(), height: size.height() }
     }
 
-    /// The smallest part outside of which two pictures of `N` bytes per pixel are the same; one pixel where they are the same
-    /// everywhere, because a film has no empty pictures.
+    /// The smallest part outside of which two pictures of `N` bytes per pixel are the same; one pixel where they are
+    /// the same everywhere, because a film has no empty pictures.
     pub fn changed<const N: usize>(size: Size, before: &[u8], after: &[u8]) -> Self {
         let row = N * size.width() as usize;
         let differs = |y: &usize| before[y * row..(y + 1) * row] != after[y * row..(y + 1) * row];

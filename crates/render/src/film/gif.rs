@@ -1,7 +1,7 @@
 //! A GIF: 256 colours for the whole film, chosen from the scene's own.
 //!
-//! Edges of shapes are blends of two colours; the palette holds the way from each colour to the background in steps, and a
-//! cube of all colours where there is room. What is not in it becomes the nearest that is.
+//! Edges of shapes are blends of two colours; the palette holds the way from each colour to the background in steps,
+//! and a cube of all colours where there is room. What is not in it becomes the nearest that is.
 use super::{Rate, changed::ChangedArea};
 use crate::{colour::Colour, raster::Raster, size::Size};
 use std::{

@@ -112,8 +112,8 @@ fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Shee
     let slopes = derivative(curve.coefficients);
     let most = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |most, value| most.max(value.abs()));
     let y = |value: f64| if most > 0.0 { MIDDLE - value / most * (MIDDLE - TOP - 8.0) } else { MIDDLE };
-    // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and for a quintic off by less than
-    // a thousandth of a pixel.
+    // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and for a quintic off by
+    // less than a thousandth of a pixel.
     let mut path: Vec<[f64; 2]> = Vec::new();
     for k in (0..SAMPLES as usize).step_by(PIECE) {
         let (start, end) = (times[k], times[k + PIECE]);

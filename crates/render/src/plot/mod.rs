@@ -1,8 +1,8 @@
 //! Plots as SVG: residuals over the steps, detection passes per step, detection polynomials on the step.
 //!
-//! Every plot has a title and a description in words, needs no script, and prints. Series differ by dash and marker, not by
-//! colour alone; the colours follow the reader's light or dark scheme by CSS variables (`--plot-ink`, `--plot-1` and so on
-//! override them), with plain attributes as fallback where there is no CSS.
+//! Every plot has a title and a description in words, needs no script, and prints. Series differ by dash and marker,
+//! not by colour alone; the colours follow the reader's light or dark scheme by CSS variables (`--plot-ink`, `--plot-1`
+//! and so on override them), with plain attributes as fallback where there is no CSS.
 mod curves;
 mod passes;
 mod residuals;
@@ -17,8 +17,8 @@ pub use residuals::{RESIDUALS_AXIS, ResidualPlot, Series};
 pub enum Embedding {
     /// A file of its own, which brings its style along.
     Alone,
-    /// Into an HTML page that has [`STYLE`] in its own style sheet, once for all plots; so the page's policy need not allow
-    /// styles in the markup.
+    /// Into an HTML page that has [`STYLE`] in its own style sheet, once for all plots; so the page's policy need not
+    /// allow styles in the markup.
     Inline,
 }
 

@@ -1,10 +1,11 @@
-//! What to look at: the part of the program that the likely mistake is in; where none is named, what the first finding's kind
-//! suggests.
+//! What to look at: the part of the program that the likely mistake is in; where none is named, what the first
+//! finding's kind suggests.
 use super::{Check, first};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
 
-/// What to look at; nothing where the explanations say it themselves: a known mistake says where to look, a polynomial has its name.
+/// What to look at; nothing where the explanations say it themselves: a known mistake says where to look, a polynomial
+/// has its name.
 pub(super) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first::first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
@@ -14,7 +15,8 @@ pub(super) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     }
 }
 
-/// What the fair rules charge first, where a polynomial of a later pass differs first: they know a wrong formula from wrong positions.
+/// What the fair rules charge first, where a polynomial of a later pass differs first: they know a wrong formula from
+/// wrong positions.
 fn charged<'a>(check: &Check<'a>, first: &'a Finding) -> &'a Finding {
     let is_later = match &first.detail {
         FindingDetail::PolynomialDegree { place, .. }

@@ -3,7 +3,8 @@ use super::{super::view::FindingView, Check, first};
 use fosssim_judge::FindingDetail;
 use fosssim_model::sim::PairKind;
 
-/// The commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input and is gone.
+/// The commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input and is
+/// gone.
 pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     let Some(first) = first::first(check).filter(|_| check.trace != "-") else { return Vec::new() };
     let (scene, trace, step) = (quoted(check.scene), quoted(check.trace), first.step);

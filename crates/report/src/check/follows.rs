@@ -12,8 +12,8 @@ const OF_FORMULAS: [FindingKind; 6] = [
     FindingKind::MixedForms,
 ];
 
-/// How many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all of them, where the
-/// fair rules, which follow the trace's own positions, charge no formula, but the positions of later passes.
+/// How many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all of them,
+/// where the fair rules, which follow the trace's own positions, charge no formula, but the positions of later passes.
 pub(crate) fn count(outcome: &Outcome) -> u64 {
     let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
     let charged = |kind: FindingKind| fair.findings.counts.get(kind);

@@ -91,8 +91,8 @@ impl Check<'_> {
         text::render(self, style)
     }
 
-    /// Annotations for GitHub Actions: the verdict with the likely mistakes, if it is not accepted, and where the rule books
-    /// differ.
+    /// Annotations for GitHub Actions: the verdict with the likely mistakes, if it is not accepted, and where the rule
+    /// books differ.
     #[must_use]
     pub fn github(&self) -> String {
         let mut text = String::new();

@@ -31,8 +31,9 @@ pub(super) fn scenes(grades: &[Grade]) -> String {
     write(head.split(',').map(str::to_owned).collect(), rows)
 }
 
-/// One row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge differently. Points are empty
-/// where the grader failed or was stopped; `reason` says in one sentence why not everything is accepted.
+/// One row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge differently.
+/// Points are empty where the grader failed or was stopped; `reason` says in one sentence why not everything is
+/// accepted.
 #[must_use]
 pub fn submissions(grades: &[Grade]) -> String {
     let mut head: Vec<String> =

@@ -1,7 +1,8 @@
 //! Grades in every format that courses use: pure functions from [`Grade`] to text.
 //!
-//! Names and program output are somebody else's words. Each format has [`plain`] or [`one_line`] take control characters out
-//! of them, and escapes what its own syntax gives a meaning; a test sends hostile words through every format.
+//! Names and program output are somebody else's words. Each format has [`plain`] or [`one_line`] take control
+//! characters out of them, and escapes what its own syntax gives a meaning; a test sends hostile words through every
+//! format.
 
 mod class;
 mod csv_table;
@@ -98,7 +99,8 @@ formats! {
     Markdown, "markdown", several github::summary;
     /// One row per scene, for spreadsheets.
     Csv, "csv", several csv_table::scenes;
-    /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a disk.
+    /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a
+    /// disk.
     Html, "html", one page;
 }
 
@@ -141,9 +143,9 @@ pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, 
 use phrases::{see_above, wrong_first};
 pub use text::{Advice, Text, TextDetail, changes, score, table as text_table};
 
-/// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at hand,
-/// and not when a whole class's reports are written. One that differs from the last one in nothing that could fail is passed over:
-/// of a right submission, only the first scene is rehearsed.
+/// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at
+/// hand, and not when a whole class's reports are written. One that differs from the last one in nothing that could
+/// fail is passed over: of a right submission, only the first scene is rehearsed.
 pub fn rehearse(result: &SceneResult) {
     static LAST: Mutex<Option<SceneResult>> = Mutex::new(None);
     let kind = without_the_harmless(result);
@@ -156,7 +158,8 @@ pub fn rehearse(result: &SceneResult) {
     *last() = Some(kind);
 }
 
-/// The result without what no renderer can stumble over: what was measured, numbers of steps that are all right, and plain text.
+/// The result without what no renderer can stumble over: what was measured, numbers of steps that are all right, and
+/// plain text.
 fn without_the_harmless(result: &SceneResult) -> SceneResult {
     let mut kind = result.clone();
     (kind.cpu, kind.wall, kind.memory) = (Duration::ZERO, Duration::ZERO, kind.memory.map(|_| 0));

@@ -4,8 +4,8 @@ use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
 use std::borrow::Cow;
 
-/// A terminal's codes for colours, cursors and titles are left out, as a log of FOSSSim's own holds them in every line: whole
-/// ones only, so that what is left of a broken one becomes visible.
+/// A terminal's codes for colours, cursors and titles are left out, as a log of FOSSSim's own holds them in every line:
+/// whole ones only, so that what is left of a broken one becomes visible.
 #[must_use]
 pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     const ESCAPE: char = '\u{1b}';
@@ -28,7 +28,8 @@ pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     Cow::Owned(out + rest)
 }
 
-/// The bytes of the code that begins behind an escape character: `[32;1m`, or `]0;title` with its end. ECMA-48, 5.4 and 5.6.
+/// The bytes of the code that begins behind an escape character: `[32;1m`, or `]0;title` with its end. ECMA-48, 5.4 and
+/// 5.6.
 fn length_of_code(code: &str) -> Option<usize> {
     let bytes = code.as_bytes();
     match bytes.first()? {

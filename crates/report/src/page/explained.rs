@@ -18,8 +18,8 @@ pub struct ExplainedCase<'a> {
 }
 
 impl ExplainedCase<'_> {
-    /// How much it takes to see what is wrong: without pictures, by another mistake than the common ones, by several that
-    /// can't be told apart, and how large the motion is. The least is the most telling.
+    /// How much it takes to see what is wrong: without pictures, by another mistake than the common ones, by several
+    /// that can't be told apart, and how large the motion is. The least is the most telling.
     fn telling(&self, common: &[Explanation]) -> (bool, usize, usize, usize) {
         let own = &self.case.explanations;
         let rank = common.iter().position(|one| one.is_named_in(own));

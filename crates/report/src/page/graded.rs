@@ -156,9 +156,9 @@ fn likely(grade: &Grade) -> Vec<Explanation> {
     likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect()
 }
 
-/// The place of a scene among those to look at first; the least comes first. In this order it counts whether nothing was drawn;
-/// whether the rule books differ, so that it may be a consequence or round-off; which of the likely mistakes explains it, if any;
-/// how many other mistakes would do the same there; how large its motion is.
+/// The place of a scene among those to look at first; the least comes first. In this order it counts whether nothing
+/// was drawn; whether the rule books differ, so that it may be a consequence or round-off; which of the likely mistakes
+/// explains it, if any; how many other mistakes would do the same there; how large its motion is.
 fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (bool, bool, usize, usize, usize) {
     let own = &scene.explanations;
     let rank = likely.iter().position(|one| one.is_named_in(own));

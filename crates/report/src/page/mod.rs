@@ -1,8 +1,8 @@
 //! Reports as one HTML file: the essentials as text and SVG, the motion viewer on top.
 //!
-//! The file asks for nothing else: no network, no second file. Its policy allows the one script and the one style sheet by
-//! their digests, and nothing that is evaluated; whatever a submission, a scene or a path says is text (`markup`). Without
-//! script everything but the viewer is there, and prints.
+//! The file asks for nothing else: no network, no second file. Its policy allows the one script and the one style sheet
+//! by their digests, and nothing that is evaluated; whatever a submission, a scene or a path says is text (`markup`).
+//! Without script everything but the viewer is there, and prints.
 
 mod call;
 mod card;
@@ -88,8 +88,8 @@ impl Page<'_> {
     }
 }
 
-/// The viewer's script without what only its authors need: indentation and lines that are comments. No text in it goes over
-/// several lines.
+/// The viewer's script without what only its authors need: indentation and lines that are comments. No text in it goes
+/// over several lines.
 fn script() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
         let lines = PARTS.iter().flat_map(|part| part.lines()).map(str::trim);

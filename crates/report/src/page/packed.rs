@@ -1,14 +1,14 @@
-//! Motions as the viewer reads them: doubles, exact to the last bit, deflated and in base64; motions that would take too much
-//! room as rounded positions.
+//! Motions as the viewer reads them: doubles, exact to the last bit, deflated and in base64; motions that would take
+//! too much room as rounded positions.
 //!
-//! A rounded motion is a block of bytes: a count of exact records as an 8-byte integer, these records as doubles, then for
-//! each record and coordinate the difference from the record before, in units, zigzag-coded, seven bits a byte, the lowest
-//! first (as Protocol Buffers code integers). Little-endian throughout.
+//! A rounded motion is a block of bytes: a count of exact records as an 8-byte integer, these records as doubles, then
+//! for each record and coordinate the difference from the record before, in units, zigzag-coded, seven bits a byte, the
+//! lowest first (as Protocol Buffers code integers). Little-endian throughout.
 use base64::Engine;
 use fosssim_evidence::{Evidence, Track};
 
-/// So many bytes the motions of one case may take on a page while they are exact. The largest course scene (11 particles, 1,601
-/// records) takes 384 KB with both of them.
+/// So many bytes the motions of one case may take on a page while they are exact. The largest course scene (11
+/// particles, 1,601 records) takes 384 KB with both of them.
 pub const EXACT: usize = 540_000;
 
 /// More raw bytes than this are not even tried.

@@ -27,8 +27,8 @@ pub(super) enum KeptMotion {
     Exact,
 }
 
-/// Words always; then pictures in the order of the cards; then their motions as small as they get; then, again in the order
-/// of the cards, exact motions.
+/// Words always; then pictures in the order of the cards; then their motions as small as they get; then, again in the
+/// order of the cards, exact motions.
 pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
     let count = cards.clone().count();
     let mut rooms = vec![Room::Words; count];
@@ -105,7 +105,8 @@ mod tests {
         (rooms, says)
     }
 
-    /// Where exact motions have no room together, the last ones are rounded; where not even these have, the page says so.
+    /// Where exact motions have no room together, the last ones are rounded; where not even these have, the page says
+    /// so.
     #[test]
     fn motions_are_rounded_before_they_are_left_out() {
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 3]);

@@ -269,9 +269,9 @@ pub(super) struct Opened {
 }
 
 impl Opened {
-    /// Opens the program: the file itself, or a copy in memory when its permission bits are for the owner only or nothing
-    /// may be executed where it lies. A program that its user may not read would be closed to the supervisor's looks as
-    /// well.
+    /// Opens the program: the file itself, or a copy in memory when its permission bits are for the owner only or
+    /// nothing may be executed where it lies. A program that its user may not read would be closed to the supervisor's
+    /// looks as well.
     pub(super) fn new(path: &Path, for_another: bool) -> io::Result<Self> {
         const READ_AND_EXECUTE: u32 = 0o005;
         let program = File::open(path)?;

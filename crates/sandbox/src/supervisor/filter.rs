@@ -1,10 +1,10 @@
 //! The seccomp filters: an allow list, refusals with an error number, and calls that end the program.
 //!
-//! Rules come in layers; the strictest answer counts, in the order kill, error, announce, allow. Forbidden calls are announced to
-//! the supervisor, which names the call and kills; that filter is installed first. Where the kernel cannot announce, the call
-//! kills by `SIGSYS`. All other layers make one filter, which comes last, because its allow list also takes away the calls
-//! that install filters. Every filter ends programs that use another architecture's calls (32-bit `int 0x80`); x32
-//! numbers are on no list and so do not exist.
+//! Rules come in layers; the strictest answer counts, in the order kill, error, announce, allow. Forbidden calls are
+//! announced to the supervisor, which names the call and kills; that filter is installed first. Where the kernel cannot
+//! announce, the call kills by `SIGSYS`. All other layers make one filter, which comes last, because its allow list
+//! also takes away the calls that install filters. Every filter ends programs that use another architecture's calls
+//! (32-bit `int 0x80`); x32 numbers are on no list and so do not exist.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -320,7 +320,8 @@ fn condition(argument: u8, operator: SeccompCmpOp, value: u64) -> io::Result<Sec
 mod tests {
     use super::*;
 
-    /// What the kernel makes of filters that are installed one after the other: the strictest answer, of equals the latest.
+    /// What the kernel makes of filters that are installed one after the other: the strictest answer, of equals the
+    /// latest.
     fn stacked(filters: &[BpfProgram], call: u32, architecture: u32, arguments: [u64; 6]) -> u32 {
         let answers = filters.iter().rev().map(|filter| search::tests::run(filter, call, architecture, arguments));
         // The action is the upper half, and killing a process is negative.

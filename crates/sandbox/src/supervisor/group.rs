@@ -118,7 +118,8 @@ impl Group {
     }
 
     fn set_limits(&self, order: &Order) -> io::Result<()> {
-        // Files count here, the working folder's above all, and so do buffers of others, but not for the program's own limit.
+        // Files count here, the working folder's above all, and so do buffers of others, but not for the program's own
+        // limit.
         let memory = order.memory.saturating_add(order.folder_bytes).saturating_add(SPARE_MEMORY);
         let processes = order.processes.saturating_add(SPARE_PROCESSES);
         for part in &self.parts {

@@ -5,8 +5,8 @@
 //! Root needs no user namespace; an ordinary user gets one in which it is itself, with rights over nothing but the new
 //! namespaces. These rights end with the execution of the program.
 //!
-//! A supervisor that serves many runs ([`keeper`](super::keeper)) moves in once, and gives each run a process namespace, mounts and
-//! messages of its own within.
+//! A supervisor that serves many runs ([`keeper`](super::keeper)) moves in once, and gives each run a process
+//! namespace, mounts and messages of its own within.
 
 use std::io;
 
@@ -41,7 +41,8 @@ pub(super) fn enter(order: &Order) -> Result<Side, Failure> {
     }
 }
 
-/// Forks into a new process namespace, an ordinary user's with a user namespace around it. The child dies with the guardian.
+/// Forks into a new process namespace, an ordinary user's with a user namespace around it. The child dies with the
+/// guardian.
 ///
 /// # Errors
 ///

@@ -69,8 +69,8 @@ fn probe() -> io::Result<Probe> {
     }
 }
 
-/// Tries to execute an empty file in the temporary folder: where files may be executed there, the kernel says that it is no
-/// program. Otherwise the same in memory. The answer is why neither works, and whether memory is needed.
+/// Tries to execute an empty file in the temporary folder: where files may be executed there, the kernel says that it
+/// is no program. Otherwise the same in memory. The answer is why neither works, and whether memory is needed.
 fn try_execution() -> (Option<String>, bool) {
     let executable = |error: io::Error| match error.raw_os_error() {
         Some(libc::ENOEXEC) => Ok(()),

@@ -65,7 +65,8 @@ pub(super) fn usage(pid: i32, tree: bool) -> Usage {
 }
 
 /// The process and, with `tree`, all other living descendants of this process, each with its threads. One thread is
-/// enough where all of a process share their descriptors and memory; a main thread that has left shares nothing any more.
+/// enough where all of a process share their descriptors and memory; a main thread that has left shares nothing any
+/// more.
 pub(super) fn members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
     let stats = if tree { descendants() } else { read(pid).into_iter().collect() };
     let living = |stat: &Stat| {

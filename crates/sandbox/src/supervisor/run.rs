@@ -315,7 +315,8 @@ impl Run {
             match found[4] {
                 Readiness::Idle => {}
                 Readiness::Ready => self.decide_announcement()?,
-                // Nobody is left under the filter: asked again, the kernel would say so at once until the end is reaped.
+                // Nobody is left under the filter: asked again, the kernel would say so at once until the end is
+                // reaped.
                 Readiness::HungUp => self.listener = None,
             }
             self.blame_if(self.stdout.truncated, Cause::Stdout);
@@ -453,8 +454,8 @@ impl Run {
         self.began.elapsed().saturating_sub(self.stalled.total.min(patience))
     }
 
-    /// The group's processor time, where there may be processes that nobody reaps. One process's own count is whole, and its group
-    /// may have served earlier runs.
+    /// The group's processor time, where there may be processes that nobody reaps. One process's own count is whole,
+    /// and its group may have served earlier runs.
     fn uncounted_cpu(&self) -> Duration {
         self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
@@ -483,7 +484,8 @@ impl Run {
         self.blame_if(over, Cause::Folder);
     }
 
-    /// Whether there may be memory that is resident for nobody: files that are neither in the folder nor refused by rules.
+    /// Whether there may be memory that is resident for nobody: files that are neither in the folder nor refused by
+    /// rules.
     fn can_hide_memory(&self) -> bool {
         self.order.tools || self.order.sanitised || !self.order.walls.landlock || !self.order.walls.seccomp
     }

@@ -1,9 +1,10 @@
 //! Filters that search for the number of a call.
 //!
-//! The kernel goes through a filter once for each call that exists when it is installed, and again for each call of the program
-//! whose answer depends on more than the number. The compiler's chain of comparisons is four instructions for a call; a search
-//! that halves what is left takes some twenty for any. What a run spends on its filters then follows their length, because the
-//! kernel checks and translates them each time; so calls that are answered alike share one answer.
+//! The kernel goes through a filter once for each call that exists when it is installed, and again for each call of the
+//! program whose answer depends on more than the number. The compiler's chain of comparisons is four instructions for a
+//! call; a search that halves what is left takes some twenty for any. What a run spends on its filters then follows
+//! their length, because the kernel checks and translates them each time; so calls that are answered alike share one
+//! answer.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -27,8 +28,8 @@ pub(super) enum Answer {
     Asked(Vec<BpfProgram>),
 }
 
-/// The filter that answers so, and `otherwise` to all other calls. `frame` is a filter without rules: it looks at the architecture,
-/// and answers.
+/// The filter that answers so, and `otherwise` to all other calls. `frame` is a filter without rules: it looks at the
+/// architecture, and answers.
 ///
 /// # Errors
 ///
@@ -98,8 +99,8 @@ fn one_after_the_other(programs: &[BpfProgram]) -> BpfProgram {
     joined
 }
 
-/// The end of a filter, which grows towards its beginning: so it is known how far each comparison has to jump, and answers and
-/// fragments are shared by all comparisons from which they can be reached.
+/// The end of a filter, which grows towards its beginning: so it is known how far each comparison has to jump, and
+/// answers and fragments are shared by all comparisons from which they can be reached.
 struct Tail {
     /// The instructions, the last one first.
     reversed: BpfProgram,
@@ -188,8 +189,8 @@ fn jump(over: usize) -> sock_filter {
     sock_filter { code: JUMP, jt: 0, jf: 0, k: over as u32 }
 }
 
-/// A filter for one call without its beginning, which asks for the architecture, as the frame does, and for the number: two jumps
-/// follow, on into the rules and past them. One that begins otherwise is left as it is.
+/// A filter for one call without its beginning, which asks for the architecture, as the frame does, and for the number:
+/// two jumps follow, on into the rules and past them. One that begins otherwise is left as it is.
 pub(super) fn without_number(mut program: BpfProgram, frame: &[sock_filter]) -> BpfProgram {
     let head = frame.len() - 1;
     let begins = program.get(..head) == frame.get(..head);

@@ -34,7 +34,8 @@ pub(super) fn take() -> io::Result<Slot> {
     take_of(&folder()?, FIRST..FIRST + COUNT, PATIENCE)
 }
 
-/// The id of a run that has lost its supervisor. `None` when another run has it by now, which found nobody left under it.
+/// The id of a run that has lost its supervisor. `None` when another run has it by now, which found nobody left under
+/// it.
 pub(super) fn retake(user: u32) -> Option<Slot> {
     retake_in(&folder().ok()?, user)
 }

@@ -74,8 +74,8 @@ pub(super) fn prepare(order: &Order) -> Result<(), Failure> {
     leave_host()
 }
 
-/// Adds a run's own to a copy of a root that was prepared: a working folder with what lies in the open one and these files, and its
-/// processes. The place of the folder is there.
+/// Adds a run's own to a copy of a root that was prepared: a working folder with what lies in the open one and these
+/// files, and its processes. The place of the folder is there.
 ///
 /// # Errors
 ///

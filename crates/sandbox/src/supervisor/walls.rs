@@ -102,8 +102,8 @@ impl Places {
         places
     }
 
-    /// The same under numbers that no program may have, so that they do not count for the limit of a child. `None` where this
-    /// process itself may not have so many.
+    /// The same under numbers that no program may have, so that they do not count for the limit of a child. `None`
+    /// where this process itself may not have so many.
     pub(super) fn out_of_the_way(self) -> Option<Self> {
         const FIRST: u32 = 800;
         let moved =
@@ -149,8 +149,8 @@ pub(super) fn rules(order: &Order, places: &Places, folder: BorrowedFd<'_>) -> i
     ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(refused)
 }
 
-/// Adds what the process may read of its own entry in `/proc`, file by file, because the entry also shows sockets, mounts
-/// and groups of the host and which pages of a file are in memory. Only the child itself can do so.
+/// Adds what the process may read of its own entry in `/proc`, file by file, because the entry also shows sockets,
+/// mounts and groups of the host and which pages of a file are in memory. Only the child itself can do so.
 pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {
     let Ok(own) = at_place(Path::new("/proc/self")) else { return Ok(ruleset) };
     let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));

@@ -70,8 +70,8 @@ impl Admin {
         Ok(rows.iter().map(Account::read).collect::<Result<_, DbError>>()?)
     }
 
-    /// Makes an account, or changes whether it may do everything, and returns a link that signs in once. One that was shut is
-    /// open again.
+    /// Makes an account, or changes whether it may do everything, and returns a link that signs in once. One that was
+    /// shut is open again.
     ///
     /// # Errors
     /// When a name is none.

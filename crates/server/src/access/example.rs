@@ -8,8 +8,8 @@ const ASSIGNMENT: (&str, &str) = ("m1", "Milestone one");
 const STUDENT: (&str, &str) = ("student", "A student");
 
 impl House {
-    /// Makes the example course, with an assignment and a student, where there is no course at all. Returns a link that signs
-    /// the student in once, unless they have been here before.
+    /// Makes the example course, with an assignment and a student, where there is no course at all. Returns a link that
+    /// signs the student in once, unless they have been here before.
     ///
     /// # Errors
     /// When there are other courses, or a `student` of theirs: this is a real server.

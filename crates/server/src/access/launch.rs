@@ -1,5 +1,5 @@
-//! Coming from a learning platform: the platform is asked who it is (SEC 5.1.1), answers once, and they are signed in as who they
-//! are here, in the course that belongs to theirs there.
+//! Coming from a learning platform: the platform is asked who it is (SEC 5.1.1), answers once, and they are signed in
+//! as who they are here, in the course that belongs to theirs there.
 use super::{House, NewSecret, Session, Visitor, identity};
 use crate::{
     db::{DbError, Row, Transaction},
@@ -95,7 +95,8 @@ impl Visitor {
         }
     }
 
-    /// Begins a sign-in: remembers what is asked, and says where to ask it. `browser` is what this browser showed before.
+    /// Begins a sign-in: remembers what is asked, and says where to ask it. `browser` is what this browser showed
+    /// before.
     ///
     /// # Errors
     /// When there are too many, or the database does not answer.
@@ -344,8 +345,8 @@ pub(super) struct Newcomer<'a> {
     pub(super) email: Option<&'a str>,
 }
 
-/// The account of somebody, made when they are new; their name as the platform has it. Never one that is there already under the
-/// same name or address: these are words that people choose for themselves.
+/// The account of somebody, made when they are new; their name as the platform has it. Never one that is there already
+/// under the same name or address: these are words that people choose for themselves.
 pub(super) async fn find_or_make(
     transaction: &mut Transaction,
     platform: &Platform,

@@ -153,8 +153,8 @@ impl Member {
         Ok((file, bytes))
     }
 
-    /// Whether a submission's reports tell of groups that its suite hides from whoever asks. Then there is only the page for
-    /// students, which the grader makes without them.
+    /// Whether a submission's reports tell of groups that its suite hides from whoever asks. Then there is only the
+    /// page for students, which the grader makes without them.
     ///
     /// # Errors
     /// When the store fails.

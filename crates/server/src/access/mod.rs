@@ -1,7 +1,7 @@
 //! Who may do what. Requests get their hands on the database through one of these only, and each offers what its role
-//! allows and nothing else: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with their own
-//! submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. A handler says whom it
-//! serves by the type it takes, and one that forgets to has nothing to read from.
+//! allows and nothing else: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with
+//! their own submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. A handler
+//! says whom it serves by the type it takes, and one that forgets to has nothing to read from.
 
 mod account;
 mod admin;

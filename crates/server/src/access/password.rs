@@ -1,8 +1,8 @@
 //! Passwords, for servers that allow them: a way in beside links and tokens.
 //!
-//! They are kept as Argon2id digests with the parameters that OWASP recommends (Password Storage Cheat Sheet: 19 MiB, two
-//! passes, one lane). Each check costs that memory and some hundredths of a second of a core, so that only a few run at one
-//! time, and each account is tried a few times a minute only.
+//! They are kept as Argon2id digests with the parameters that OWASP recommends (Password Storage Cheat Sheet: 19 MiB,
+//! two passes, one lane). Each check costs that memory and some hundredths of a second of a core, so that only a few
+//! run at one time, and each account is tried a few times a minute only.
 use super::{House, Person, Session, Visitor, identity};
 use crate::{
     problem::Problem,
@@ -56,7 +56,8 @@ fn digest(password: &str, salt: &str) -> Result<String, Problem> {
     Ok(format!("argon2id$m={},t={},p={}${salt}${}", COST.0, COST.1, COST.2, hex(&key)))
 }
 
-/// Whether a password is the one that is kept. Without one the same work is done, so that the time tells nobody who has one.
+/// Whether a password is the one that is kept. Without one the same work is done, so that the time tells nobody who has
+/// one.
 fn is_kept(password: &str, kept: Option<&str>) -> Result<bool, Problem> {
     let salt = kept.and_then(|kept| kept.split('$').nth(2)).unwrap_or("0123456789abcdef0123456789abcdef");
     let digest = digest(password, salt)?;
@@ -111,8 +112,8 @@ impl Visitor {
     /// Signs in with a password.
     ///
     /// # Errors
-    /// When it is not the account's, there is no such account, or there were too many tries. Which of the first two, nobody
-    /// learns.
+    /// When it is not the account's, there is no such account, or there were too many tries. Which of the first two,
+    /// nobody learns.
     pub async fn sign_in_by_password(&self, login: &str, password: &str) -> Result<Session, Problem> {
         let passwords = self.house.passwords()?;
         passwords.count(login)?;
@@ -147,8 +148,8 @@ impl Visitor {
 }
 
 impl Person {
-    /// Sets one's own password, or changes it; whoever has one shows it. All sessions end, so that whoever signed in by the old
-    /// one is out.
+    /// Sets one's own password, or changes it; whoever has one shows it. All sessions end, so that whoever signed in by
+    /// the old one is out.
     ///
     /// # Errors
     /// When the old one is wrong, or the new one too short.

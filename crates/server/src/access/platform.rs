@@ -159,8 +159,8 @@ impl Admin {
 }
 
 impl Staff {
-    /// Reads who is in the course from the platforms that it is connected with. Who is not told of any more leaves, unless staff
-    /// made them members; what they handed in stays.
+    /// Reads who is in the course from the platforms that it is connected with. Who is not told of any more leaves,
+    /// unless staff made them members; what they handed in stays.
     ///
     /// # Errors
     /// When no platform tells, or one does not answer; then nothing of what it tells changes.

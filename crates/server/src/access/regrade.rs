@@ -1,5 +1,5 @@
-//! A regrade: new results beside the old ones, at low priority, until somebody of the staff applies or discards them as one
-//! step. Until then no grade changes.
+//! A regrade: new results beside the old ones, at low priority, until somebody of the staff applies or discards them as
+//! one step. Until then no grade changes.
 use super::{
     Settings, Staff, submit,
     view::{self, Assignment},
@@ -139,8 +139,8 @@ impl Staff {
         find(&mut transaction, &assignment, id).await
     }
 
-    /// Makes the results of a regrade count, all in one step, and its settings the assignment's. Where the grader failed,
-    /// the old grade stays.
+    /// Makes the results of a regrade count, all in one step, and its settings the assignment's. Where the grader
+    /// failed, the old grade stays.
     ///
     /// # Errors
     /// When it is not finished; submissions that came in meanwhile are graded first, too.

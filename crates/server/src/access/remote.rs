@@ -1,5 +1,5 @@
-//! A worker on another machine. It runs hostile programs, so it may be theirs one day: it can claim jobs, read what belongs
-//! to those that it holds, and say what became of them. It sees no course, no student and no other submission.
+//! A worker on another machine. It runs hostile programs, so it may be theirs one day: it can claim jobs, read what
+//! belongs to those that it holds, and say what became of them. It sees no course, no student and no other submission.
 use super::House;
 use crate::{
     problem::Problem,
@@ -125,7 +125,8 @@ impl Remote {
         Ok(self.desk().fail(lease, &plain(fault, 2000)).await? == Answer::Held)
     }
 
-    /// Brings a result. It is looked at as what a stranger says: of files it may name those that it stored for this job.
+    /// Brings a result. It is looked at as what a stranger says: of files it may name those that it stored for this
+    /// job.
     ///
     /// # Errors
     /// When it makes no sense.

@@ -12,7 +12,8 @@ use utoipa::ToSchema;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// A suite that comes with the grader, `t2m2` for example; its default, if none is named. One that was uploaded goes before it.
+    /// A suite that comes with the grader, `t2m2` for example; its default, if none is named. One that was uploaded
+    /// goes before it.
     pub suite: String,
     /// The digest of an archive with a `suite.toml`; uploaded by its own request.
     #[serde(skip_serializing_if = "Option::is_none")]

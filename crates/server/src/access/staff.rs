@@ -72,8 +72,8 @@ impl Staff {
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }
 
-    /// Makes somebody a member, or changes what they are; makes the account when there is none. A new account gets a link
-    /// that signs in once. Whoever may do more from now on has to sign in again.
+    /// Makes somebody a member, or changes what they are; makes the account when there is none. A new account gets a
+    /// link that signs in once. Whoever may do more from now on has to sign in again.
     ///
     /// # Errors
     /// When a name is none.
@@ -144,8 +144,8 @@ impl Staff {
         Ok(())
     }
 
-    /// A new link that signs a student in once. Only for accounts that are this course's students and nothing else: whoever
-    /// could sign in as somebody could do what they may do.
+    /// A new link that signs a student in once. Only for accounts that are this course's students and nothing else:
+    /// whoever could sign in as somebody could do what they may do.
     ///
     /// # Errors
     /// When the account is more than that, or no member.

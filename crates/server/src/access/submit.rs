@@ -42,8 +42,8 @@ impl Member {
     /// Hands in.
     ///
     /// # Errors
-    /// When the assignment does not take it (any more), or the server can't. Then nothing was handed in, or the same key
-    /// finds it.
+    /// When the assignment does not take it (any more), or the server can't. Then nothing was handed in, or the same
+    /// key finds it.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<Accepted, Problem> {
         let assignment = self.assignment(assignment).await?;
         let forms = assignment.settings.forms.join(" or ");

@@ -1,11 +1,11 @@
-//! The suites that come with the grader, by name. The grader lists them itself (`suite list --format json`), so that this program
-//! need not know them.
+//! The suites that come with the grader, by name. The grader lists them itself (`suite list --format json`), so that
+//! this program need not know them.
 use super::file_name::is_file_name;
 use crate::problem::Problem;
 use serde::Deserialize;
 
-/// The names of these suites. A server whose workers are elsewhere may have no grader to ask; then it takes any plain name, and the
-/// worker's grader says whether it has such a suite.
+/// The names of these suites. A server whose workers are elsewhere may have no grader to ask; then it takes any plain
+/// name, and the worker's grader says whether it has such a suite.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Suites {
     names: Vec<String>,
@@ -47,9 +47,9 @@ impl Suites {
         Ok(Self { names, newest, default: default.unwrap_or_default() })
     }
 
-    /// The name for settings: that of the grader's default where there is none, and with the newest version where there is no
-    /// version, so that later versions of the grader change nothing. As it is where the grader can't be asked here, which leaves the
-    /// choice to it.
+    /// The name for settings: that of the grader's default where there is none, and with the newest version where there
+    /// is no version, so that later versions of the grader change nothing. As it is where the grader can't be asked
+    /// here, which leaves the choice to it.
     pub(super) fn or_default(&self, name: &str) -> String {
         let newest = self.newest.iter().find(|(suite, _)| suite == name);
         match newest {

@@ -70,8 +70,8 @@ impl Staff {
         Ok(suspicions)
     }
 
-    /// Decides on a suspicion: the reference is right (`dismissed`), or students whose submissions answer so are told that it
-    /// may not be (`told`). Either may be taken back by the other.
+    /// Decides on a suspicion: the reference is right (`dismissed`), or students whose submissions answer so are told
+    /// that it may not be (`told`). Either may be taken back by the other.
     ///
     /// # Errors
     /// When there is none of this number.
@@ -99,8 +99,8 @@ impl Staff {
 }
 
 impl Member {
-    /// Scenes in which the reference may be wrong, of a submission that answers what many answer: those of which staff says that
-    /// students are to know.
+    /// Scenes in which the reference may be wrong, of a submission that answers what many answer: those of which staff
+    /// says that students are to know.
     ///
     /// # Errors
     /// When they may see none of this number.

@@ -1,5 +1,5 @@
-//! How many requests an account may make: a bucket of tokens for each that fills by itself. By account and not by address:
-//! a lecture hall behind one address is many people.
+//! How many requests an account may make: a bucket of tokens for each that fills by itself. By account and not by
+//! address: a lecture hall behind one address is many people.
 use std::{
     collections::HashMap,
     sync::{Mutex, PoisonError},

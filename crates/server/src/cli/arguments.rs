@@ -45,8 +45,8 @@ pub(super) struct Place {
     /// The database: sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME. A SQLite file in the data folder by default.
     #[arg(long, value_name = "ADDRESS", env = "FOSSSIM_DATABASE", hide_env_values = true)]
     pub(super) database: Option<Address>,
-    /// A bucket for artefacts instead of a folder in the data folder: s3://BUCKET/PREFIX. How to reach it stands in the usual
-    /// variables, AWS_ACCESS_KEY_ID and so on.
+    /// A bucket for artefacts instead of a folder in the data folder: s3://BUCKET/PREFIX. How to reach it stands in the
+    /// usual variables, AWS_ACCESS_KEY_ID and so on.
     #[arg(long, value_name = "s3://BUCKET/PREFIX", env = "FOSSSIM_STORE")]
     pub(super) store: Option<String>,
 }
@@ -76,8 +76,8 @@ pub(super) struct Serve {
     /// Where to listen. Only this machine by default: put a proxy with HTTPS in front for others.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", env = "FOSSSIM_LISTEN")]
     pub(super) listen: SocketAddr,
-    /// The address that people know the server by, such as https://grades.example.org. With https, cookies are for HTTPS
-    /// only.
+    /// The address that people know the server by, such as https://grades.example.org. With https, cookies are for
+    /// HTTPS only.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
     pub(super) public_url: Option<String>,
     /// Gradings at one time in this process; 0 leaves them to other workers. One per core by default.
@@ -89,7 +89,8 @@ pub(super) struct Serve {
     /// After so many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
-    /// With fewer MiB than this free on the data folder's disk uploads are refused, so that what was accepted can be graded.
+    /// With fewer MiB than this free on the data folder's disk uploads are refused, so that what was accepted can be
+    /// graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]
     pub(super) low_water: u64,
     /// Let people sign in with passwords, too.
@@ -104,8 +105,8 @@ pub(super) struct Serve {
     /// Let learning platforms be reached, and people come from them, without HTTPS: to try it on one machine.
     #[arg(long)]
     pub(super) lti_over_http: bool,
-    /// On a fresh server: make a course with an assignment and a student, and write a program with a mistake for them to
-    /// hand in.
+    /// On a fresh server: make a course with an assignment and a student, and write a program with a mistake for them
+    /// to hand in.
     #[arg(long)]
     pub(super) example: bool,
     #[command(flatten)]
@@ -136,8 +137,8 @@ pub(super) struct AdminLink {
     pub(super) public_url: String,
 }
 
-/// Grades a submission once more by what it was graded by, and says whether the same comes out: nothing changes by it. The exit
-/// code is 0 when all results are the same, 1 when one is not.
+/// Grades a submission once more by what it was graded by, and says whether the same comes out: nothing changes by it.
+/// The exit code is 0 when all results are the same, 1 when one is not.
 #[derive(Debug, Args)]
 pub(super) struct Replay {
     #[command(flatten)]

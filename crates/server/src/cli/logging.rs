@@ -10,7 +10,8 @@ pub(super) fn begin(format: LogFormat) {
         Ok("error") => tracing::Level::ERROR,
         _ => tracing::Level::INFO,
     };
-    // A log that can't be written, as on a full disk, is no reason to answer nobody: a report of it would go the same way, and panic.
+    // A log that can't be written, as on a full disk, is no reason to answer nobody: a report of it would go the same
+    // way, and panic.
     let log = tracing_subscriber::fmt()
         .with_max_level(level)
         .with_writer(std::io::stderr)

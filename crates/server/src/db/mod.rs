@@ -36,8 +36,8 @@ const CONNECTIONS: u32 = 10;
 const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s'; SET LOCAL lock_timeout = '20s'; \
                      SET LOCAL statement_timeout = '60s'";
 
-/// Whether a connection's last transaction has ended. One whose COMMIT and ROLLBACK both failed, as on a full disk, counts as open
-/// for ever and could begin no other; the pool closes it and opens a new one.
+/// Whether a connection's last transaction has ended. One whose COMMIT and ROLLBACK both failed, as on a full disk,
+/// counts as open for ever and could begin no other; the pool closes it and opens a new one.
 fn has_ended(connection: &impl Connection) -> bool {
     !connection.is_in_transaction()
 }

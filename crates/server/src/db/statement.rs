@@ -25,8 +25,8 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             // Rows of the queue change five times each: room beside them, and dead ones swept early.
             ("{queue}", "WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.02)"),
             ("{skip locked}", "FOR UPDATE SKIP LOCKED"),
-            // NO KEY: rows that refer to this one may be written meanwhile. Otherwise whoever holds one of these, and refers
-            // to this one next, and whoever holds this one, and changes those next, wait for each other.
+            // NO KEY: rows that refer to this one may be written meanwhile. Otherwise whoever holds one of these, and
+            // refers to this one next, and whoever holds this one, and changes those next, wait for each other.
             ("{for update}", "FOR NO KEY UPDATE"),
         ],
     };

@@ -167,7 +167,8 @@ impl Client {
         asked.map_err(ServiceFault::away)?
     }
 
-    /// Asks a service, with a token for this scope; once more with a new one when the platform does not know it any more.
+    /// Asks a service, with a token for this scope; once more with a new one when the platform does not know it any
+    /// more.
     pub(super) async fn call(
         &self,
         database: &Database,

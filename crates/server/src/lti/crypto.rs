@@ -1,5 +1,5 @@
-//! Tokens are signed by RS256, which every platform knows (SEC 5.1.1), and by nothing else: other algorithms are refused before any
-//! key is looked at, so that no public key is ever taken for a shared secret.
+//! Tokens are signed by RS256, which every platform knows (SEC 5.1.1), and by nothing else: other algorithms are
+//! refused before any key is looked at, so that no public key is ever taken for a shared secret.
 use jsonwebtoken::{
     Algorithm, DecodingKey, DecodingKeyKind, EncodingKey, Header, Validation,
     crypto::{CryptoProvider, JwtSigner, JwtVerifier, KeyUtils},

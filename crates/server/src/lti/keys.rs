@@ -1,5 +1,5 @@
-//! The service's own keys. The first is made when somebody asks for it; a new one signs after an hour, when platforms had the time
-//! to read of it, and the one before it is told of until the next.
+//! The service's own keys. The first is made when somebody asks for it; a new one signs after an hour, when platforms
+//! had the time to read of it, and the one before it is told of until the next.
 use super::crypto;
 use crate::{
     db::{Database, DbError, Row, Transaction},

@@ -276,8 +276,8 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     })
 }
 
-/// What somebody is in the course by the platform's roles (LTI A.2.3). What they are in the institution or system says nothing
-/// of the course, unless they administer all of it and nothing else is said.
+/// What somebody is in the course by the platform's roles (LTI A.2.3). What they are in the institution or system says
+/// nothing of the course, unless they administer all of it and nothing else is said.
 pub(crate) fn role_of(roles: &[String]) -> Option<Role> {
     const COURSE: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
     // The simple names are deprecated, and still sent.

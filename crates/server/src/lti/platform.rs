@@ -109,8 +109,8 @@ impl Platform {
         own.chain(settings.hosts.iter().cloned()).collect()
     }
 
-    /// An address of one of its services. A message may name any; this service asks hosts alone that an administrator named, so
-    /// that nobody makes it ask others, or show them its token.
+    /// An address of one of its services. A message may name any; this service asks hosts alone that an administrator
+    /// named, so that nobody makes it ask others, or show them its token.
     pub(crate) fn service(&self, text: &str, over_http: bool) -> Option<Url> {
         let url = address(text, over_http)?;
         self.places(over_http).contains(&place(&url)).then_some(url)

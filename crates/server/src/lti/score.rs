@@ -1,8 +1,9 @@
 //! What a platform is to know of somebody's work on an assignment (AGS 3.4), and when it is to be told.
 //!
-//! Whoever changes a grade puts a job into the queue, in the same transaction. The job holds no score: what is sent is read when
-//! it is sent, so that many changes are one message. Each content has a time of its own, which only grows and stays the same
-//! however often it is sent; a platform keeps what is newer. So a message that comes twice, or late, changes nothing.
+//! Whoever changes a grade puts a job into the queue, in the same transaction. The job holds no score: what is sent is
+//! read when it is sent, so that many changes are one message. Each content has a time of its own, which only grows and
+//! stays the same however often it is sent; a platform keeps what is newer. So a message that comes twice, or late,
+//! changes nothing.
 use super::Platform;
 use crate::{
     db::{DbError, Row, Transaction},
@@ -173,8 +174,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
     }))
 }
 
-/// What somebody's work on an assignment is worth: the most points of all their submissions. While there are none the platform is
-/// told that they come, and when the grader failed, that somebody has to look: never a zero that nobody earned.
+/// What somebody's work on an assignment is worth: the most points of all their submissions. While there are none the
+/// platform is told that they come, and when the grader failed, that somebody has to look: never a zero that nobody
+/// earned.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let rows = transaction
         .rows(

@@ -32,7 +32,8 @@ const REFUSED: u32 = 6;
 /// The longest wait between two tries.
 const LONGEST_WAIT: Duration = Duration::from_secs(3600);
 
-/// For so long, in milliseconds, nobody else has a column made; and so often, after such a time, others look whether it is there.
+/// For so long, in milliseconds, nobody else has a column made; and so often, after such a time, others look whether it
+/// is there.
 const MAKING: i64 = 90_000;
 const LOOKS: u32 = 100;
 const LOOK_AGAIN: Duration = Duration::from_millis(250);

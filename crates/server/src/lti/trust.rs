@@ -1,5 +1,5 @@
-//! The keys of platforms, as they publish them: kept for an hour, looked for again when one is not known, since platforms change
-//! their keys.
+//! The keys of platforms, as they publish them: kept for an hour, looked for again when one is not known, since
+//! platforms change their keys.
 use super::{Client, Platform, Refused, crypto::PublicKey};
 use serde::Deserialize;
 use std::{

@@ -48,8 +48,8 @@ impl Bell {
         Ear(self.strokes.subscribe())
     }
 
-    /// Passes PostgreSQL's bell on to this process, for ever; ends at once where there is none. Behind a pooler that gives
-    /// every transaction another connection nobody hears it: then polling has to do.
+    /// Passes PostgreSQL's bell on to this process, for ever; ends at once where there is none. Behind a pooler that
+    /// gives every transaction another connection nobody hears it: then polling has to do.
     pub async fn listen(self, database: Database) {
         let Some(options) = database.postgres_options().cloned() else { return };
         loop {

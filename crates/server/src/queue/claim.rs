@@ -5,9 +5,9 @@ use crate::{
     secret, values,
 };
 
-/// Claims the job whose turn it is, if there is one. A job on which this worker failed last is left to others for a third of a lease:
-/// the fault may be the worker's. Two workers never get the same: the row is locked, and passed over by
-/// others, until the caller commits.
+/// Claims the job whose turn it is, if there is one. A job on which this worker failed last is left to others for a
+/// third of a lease: the fault may be the worker's. Two workers never get the same: the row is locked, and passed over
+/// by others, until the caller commits.
 ///
 /// # Errors
 /// What the database says.
@@ -44,8 +44,8 @@ pub async fn claim(
     }))
 }
 
-/// Whether something in a lane is to be looked at: a job whose turn has come, or one that somebody holds, and may have let go of.
-/// Costs a reader's transaction only.
+/// Whether something in a lane is to be looked at: a job whose turn has come, or one that somebody holds, and may have
+/// let go of. Costs a reader's transaction only.
 ///
 /// # Errors
 /// What the database says.

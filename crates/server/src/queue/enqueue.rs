@@ -1,10 +1,10 @@
 //! Putting jobs into the queue, and where they go.
 //!
 //! A job's **rank** is a time: when it would come if everybody waited for their turn. For the first waiting job of a
-//! student it is now; each further one comes [`Turn::Student`]'s spacing later, so that twenty uploads of one student do
-//! not hold up another's first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks do not
-//! change, and time goes on: so whatever waits is passed only by a bounded number of others, which is what ageing is for,
-//! and the place of a job in the queue is a count.
+//! student it is now; each further one comes [`Turn::Student`]'s spacing later, so that twenty uploads of one student
+//! do not hold up another's first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks
+//! do not change, and time goes on: so whatever waits is passed only by a bounded number of others, which is what
+//! ageing is for, and the place of a job in the queue is a count.
 use super::{Lane, millis};
 use crate::{
     db::{DbError, Transaction},
@@ -109,8 +109,8 @@ pub async fn cancel(transaction: &mut Transaction, job: i64) -> Result<bool, DbE
     Ok(changed > 0)
 }
 
-/// Whether a job of this turn waits, and goes on waiting until the caller's transaction ends: whoever is about to change what it
-/// is about need not enqueue another one.
+/// Whether a job of this turn waits, and goes on waiting until the caller's transaction ends: whoever is about to
+/// change what it is about need not enqueue another one.
 ///
 /// # Errors
 /// What the database says.

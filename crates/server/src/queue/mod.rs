@@ -112,8 +112,8 @@ pub struct Lease {
     pub key: String,
 }
 
-/// From so many failures on a job is suspected of killing its worker, and runs alone: others that would die with it count
-/// their failures, too.
+/// From so many failures on a job is suspected of killing its worker, and runs alone: others that would die with it
+/// count their failures, too.
 const SUSPECTED_AFTER: i64 = 2;
 
 /// A job that was claimed.

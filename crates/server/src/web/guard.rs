@@ -15,12 +15,13 @@ use std::time::Instant;
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; \
                       form-action 'self'; base-uri 'none'; frame-src 'self'; frame-ancestors 'none'";
 
-/// What learning platforms send people to comes from other sites always: it is bound to this browser by a sign-in of its own.
+/// What learning platforms send people to comes from other sites always: it is bound to this browser by a sign-in of
+/// its own.
 const FROM_PLATFORMS: [&str; 2] = ["/lti/login", "/lti/launch"];
 
-/// Refuses what another site made a browser send. A token in a header can't be sent by one, so that requests with a token
-/// pass; all others that change something must come from this site, by the browser's own word: `Sec-Fetch-Site`, or
-/// `Origin` from browsers that don't say.
+/// Refuses what another site made a browser send. A token in a header can't be sent by one, so that requests with a
+/// token pass; all others that change something must come from this site, by the browser's own word: `Sec-Fetch-Site`,
+/// or `Origin` from browsers that don't say.
 pub(super) async fn same_site(State(house): State<House>, request: Request, next: Next) -> Response {
     if is_harmless(request.method())
         || FROM_PLATFORMS.contains(&request.uri().path())

@@ -41,8 +41,9 @@ pub fn openapi() -> String {
     text
 }
 
-/// Receives a form with an upload that came in pieces of so many bytes, into a folder that is empty again afterwards: what the fuzzer
-/// of uploads, and tests, hand bytes to. The size of the file, and what the form says: its name, its kind, and its key.
+/// Receives a form with an upload that came in pieces of so many bytes, into a folder that is empty again afterwards:
+/// what the fuzzer of uploads, and tests, hand bytes to. The size of the file, and what the form says: its name, its
+/// kind, and its key.
 ///
 /// # Errors
 /// What is wrong with the form.

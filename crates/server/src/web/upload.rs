@@ -69,7 +69,8 @@ pub(super) async fn receive(house: &House, request: Request, most: u64) -> Resul
     receive_at(&Place { incoming: house.incoming(), patience: house.patience() }, request, most).await
 }
 
-/// Receives a form that came in pieces of so many bytes, as fuzzers make them: the size of its file, and what it says of it.
+/// Receives a form that came in pieces of so many bytes, as fuzzers make them: the size of its file, and what it says
+/// of it.
 pub(super) async fn receive_form(
     incoming: &Path,
     body: &[u8],

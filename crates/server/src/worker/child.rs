@@ -1,5 +1,5 @@
-//! A child process that never outlives its owner: it leads a process group that is killed as a whole, and the kernel kills
-//! it when this process dies, however that happens.
+//! A child process that never outlives its owner: it leads a process group that is killed as a whole, and the kernel
+//! kills it when this process dies, however that happens.
 use std::{
     io,
     os::unix::process::{CommandExt, ExitStatusExt},

@@ -40,8 +40,8 @@ pub trait Grader: Clone + Send + Sync + 'static {
     /// Why it can't; said to staff, never to students.
     fn prove(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
 
-    /// Grades the submission that lies at `submission`, by the suite whose archive lies at `suite` if it is one, and may
-    /// use `folder` as it likes. When `stop` is cancelled it ends soon, and nothing that it started goes on.
+    /// Grades the submission that lies at `submission`, by the suite whose archive lies at `suite` if it is one, and
+    /// may use `folder` as it likes. When `stop` is cancelled it ends soon, and nothing that it started goes on.
     fn grade(
         &self,
         task: &Task,

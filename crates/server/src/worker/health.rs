@@ -1,7 +1,8 @@
-//! Whether a worker can grade. One whose grader is broken fails at once and is free again at once: it would eat the queue.
+//! Whether a worker can grade. One whose grader is broken fails at once and is free again at once: it would eat the
+//! queue.
 //!
-//! So a worker proves itself before its first claim, and again after every fault. While it can't, it claims nothing, and what it
-//! holds goes to another worker without having cost a try.
+//! So a worker proves itself before its first claim, and again after every fault. While it can't, it claims nothing,
+//! and what it holds goes to another worker without having cost a try.
 use super::Grader;
 use std::{
     path::{Path, PathBuf},

@@ -1,5 +1,5 @@
-//! Which workers of this machine are alive, by locks that the kernel drops with the process that holds them. So a server
-//! that was killed and started again goes on at once, and waits for no lease.
+//! Which workers of this machine are alive, by locks that the kernel drops with the process that holds them. So a
+//! server that was killed and started again goes on at once, and waits for no lease.
 use std::{
     fs::{self, File, TryLockError},
     io,

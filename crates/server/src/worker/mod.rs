@@ -1,5 +1,5 @@
-//! Workers: they fetch jobs from a [`Desk`], let a [`Grader`] do them, and bring the results back. A worker knows neither
-//! courses nor students; what it holds is a lease.
+//! Workers: they fetch jobs from a [`Desk`], let a [`Grader`] do them, and bring the results back. A worker knows
+//! neither courses nor students; what it holds is a lease.
 
 mod child;
 mod desk;

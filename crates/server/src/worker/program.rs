@@ -1,5 +1,5 @@
-//! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory there never takes
-//! the worker down, and whatever the child leaves behind dies with the job.
+//! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory there never
+//! takes the worker down, and whatever the child leaves behind dies with the job.
 use super::{
     Graded, Grader, GraderFault, NewFile,
     child::{Child, End},
@@ -171,8 +171,8 @@ fn at_home(command: &mut Command, folder: &Path) {
 }
 
 impl Grader for Program {
-    /// There is room to work in; the reference's own trace of a scene is accepted; a program that does nothing is run in the
-    /// sandbox and is not accepted. A grader that records no traces, as those of tests, is only asked to start.
+    /// There is room to work in; the reference's own trace of a scene is accepted; a program that does nothing is run
+    /// in the sandbox and is not accepted. A grader that records no traces, as those of tests, is only asked to start.
     async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
         let room = folder.join("room");
         fs::write(&room, vec![1; ROOM]).map_err(|error| format!("no room to work in: {error}"))?;

@@ -5,8 +5,8 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::{fs, path::Path};
 
-/// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader may be older; what is
-/// read here was the same in both.
+/// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader
+/// may be older; what is read here was the same in both.
 const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
 /// What is measured, or tells of the machine and not of the submission.
@@ -143,7 +143,8 @@ fn wrong(scenes: &[&Scene]) -> Vec<WrongScene> {
         let explained =
             scene.explanations.iter().map(|known| format!("{} {} {}", known.key, known.reproduced, known.samples));
         let first = format!("{} {} {}", scene.code, scene.right_steps, scene.summary);
-        // What hints hide is not told here either: then the steps that are right, and the first that is not, have to do.
+        // What hints hide is not told here either: then the steps that are right, and the first that is not, have to
+        // do.
         [vec![first], scene.details.clone(), explained.collect()].concat().join("\n")
     };
     answered

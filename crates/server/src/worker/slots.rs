@@ -68,7 +68,8 @@ async fn slot<D: Desk, G: Grader>(
 ) {
     let mut wait = FIRST_WAIT;
     while health.well(&stop).await {
-        // Held together by all slots that claim or work; a job that must run alone waits until it has the gate for itself.
+        // Held together by all slots that claim or work; a job that must run alone waits until it has the gate for
+        // itself.
         let mut passed = Some(gate.read().await);
         match desk.claim().await {
             Ok(None) => {
@@ -253,8 +254,8 @@ async fn patiently<T, F: Future<Output = Result<T, DeskError>>>(ask: impl Fn() -
     ask().await
 }
 
-/// Tells the desk, as often as it takes: a result that is lost would have to be made again. A worker that is to stop says
-/// it a few times only; then the lease runs out.
+/// Tells the desk, as often as it takes: a result that is lost would have to be made again. A worker that is to stop
+/// says it a few times only; then the lease runs out.
 async fn settle<D: Desk>(desk: &D, lease: &Lease, ending: Ending, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;

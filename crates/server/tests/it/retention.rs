@@ -151,7 +151,8 @@ mod bucket {
     #[test]
     fn a_bucket_keeps_what_is_named() {
         let Some((_moto, url)) = start() else { return };
-        // SAFETY: the tests of this file read no variables, and others run in processes of their own or do not look at these.
+        // SAFETY: the tests of this file read no variables, and others run in processes of their own or do not look at
+        // these.
         variables(&url).into_iter().for_each(|(name, value)| unsafe { std::env::set_var(name, value) });
         run(async {
             let store = Store::bucket("s3://bucket/some/where").expect("a store");

@@ -1,7 +1,8 @@
 //! MP4 by a program: pictures go to ffmpeg through a pipe.
 //!
-//! Its output is our own temporary file, so nothing appears under the target's name before it is whole. A program that takes
-//! no picture for a minute is ended. No name of a user is among its arguments but that file's, which begins with `file:`.
+//! Its output is our own temporary file, so nothing appears under the target's name before it is whole. A program that
+//! takes no picture for a minute is ended. No name of a user is among its arguments but that file's, which begins with
+//! `file:`.
 use crate::{
     cli::output::Output,
     render::{Size, film::Rate},

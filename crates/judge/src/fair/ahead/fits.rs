@@ -1,5 +1,5 @@
-//! [`compare`](super::super::compare::compare) in lanes, where logged polynomials are right with the factor that fits best, or
-//! where nothing is to be right: the same operations in the same order.
+//! [`compare`](super::super::compare::compare) in lanes, where logged polynomials are right with the factor that fits
+//! best, or where nothing is to be right: the same operations in the same order.
 use crate::fair::compare::{LEAST, MOST};
 use fosssim_num::{
     bounded::{Bounded, UNIT_ROUNDOFF},
@@ -20,8 +20,8 @@ pub(super) struct Fit<S: Simd> {
     pub share: Lanes<S>,
 }
 
-/// Compares with logged coefficients of which the first `missing` were dropped, and are 0 here; all are finite. `own` are the
-/// expected values, 0 where the reference drops them, and their number. Shares up to `known` do not matter.
+/// Compares with logged coefficients of which the first `missing` were dropped, and are 0 here; all are finite. `own`
+/// are the expected values, 0 where the reference drops them, and their number. Shares up to `known` do not matter.
 #[inline(always)]
 pub(super) fn fits<S: Simd, const LENGTH: usize>(
     expected: &[Bounded<Lanes<S>>; LENGTH],

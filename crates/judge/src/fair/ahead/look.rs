@@ -26,8 +26,8 @@ use fosssim_num::{
 const MOST_COEFFICIENTS: usize = 17;
 
 /// What a lane says of a call, as bits of a small number: that the polynomials are the same; that they are right up to
-/// a factor, and can be searched; that those of the approach fit the definition, too; that the reference's exclude an impact;
-/// that the logged ones do; that these have lost other leading coefficients.
+/// a factor, and can be searched; that those of the approach fit the definition, too; that the reference's exclude an
+/// impact; that the logged ones do; that these have lost other leading coefficients.
 const SAME: u32 = 1;
 const ALIKE: u32 = 2;
 const RIGHT_FORM: u32 = 4;
@@ -248,7 +248,8 @@ impl Look<'_> {
         self.two(simd, &overlap, &approach, logged, answers);
     }
 
-    /// Whether all pairs with a parabola and a line have logged these coefficients bit for bit; decides about them then.
+    /// Whether all pairs with a parabola and a line have logged these coefficients bit for bit; decides about them
+    /// then.
     #[inline(always)]
     fn are_same_two<S: Simd>(
         &self,
@@ -274,8 +275,8 @@ impl Look<'_> {
         true
     }
 
-    /// The same of pairs with an edge, and whether their approach fits the definition, too. `right_cubic` is what the definition
-    /// gives for t^3.
+    /// The same of pairs with an edge, and whether their approach fits the definition, too. `right_cubic` is what the
+    /// definition gives for t^3.
     #[inline(always)]
     fn are_same_edges<S: Simd>(
         &self,

@@ -1,6 +1,6 @@
-//! Looks at many calls of a pass at once, before they are followed one by one: nearly all polynomials of a right submission are
-//! the expected ones up to a factor and round-off, and exclude an impact. What is said of those is what a close look says, bit
-//! for bit; all others get that look.
+//! Looks at many calls of a pass at once, before they are followed one by one: nearly all polynomials of a right
+//! submission are the expected ones up to a factor and round-off, and exclude an impact. What is said of those is what
+//! a close look says, bit for bit; all others get that look.
 //!
 //! `fits` compares in lanes, `look` computes what is expected and asks the certificate.
 mod fits;
@@ -19,8 +19,8 @@ use fosssim_num::{
 };
 use look::Look;
 
-/// So many calls, and the rest of a particle's, are looked at together. Smaller values fill fewer lanes, larger ones take more
-/// memory.
+/// So many calls, and the rest of a particle's, are looked at together. Smaller values fill fewer lanes, larger ones
+/// take more memory.
 const TOGETHER: usize = 4096;
 
 /// Where nearly all calls of a kind are open, it is not looked at so many times.
@@ -136,8 +136,9 @@ impl Ahead {
         seen.then(|| (self.pairs[self.at], &self.known[self.at]))
     }
 
-    /// Looks at the next calls of a pass of this stage, if the last ones are over. `log` holds their polynomials from number
-    /// `index` on. Shares of tolerances matter beyond `share` only. Where numbers are too large, nothing is known.
+    /// Looks at the next calls of a pass of this stage, if the last ones are over. `log` holds their polynomials from
+    /// number `index` on. Shares of tolerances matter beyond `share` only. Where numbers are too large, nothing is
+    /// known.
     pub(super) fn look(
         &mut self,
         context: &Context<'_>,

@@ -178,8 +178,8 @@ fn no_number_stands_where_none_is_expected() {
     }
 }
 
-/// Newton's divided differences of values at 0, 1/4, 1/2, 3/4 and 1 have coefficients with the round-off of all values, up to
-/// some hundred times; it cancels within the step.
+/// Newton's divided differences of values at 0, 1/4, 1/2, 3/4 and 1 have coefficients with the round-off of all values,
+/// up to some hundred times; it cancels within the step.
 #[test]
 fn round_off_that_cancels_within_the_step_is_right() {
     let right = [1e-3, -2e-3, 0.4, -1.1, 0.7].map(|value: f64| Bounded { value, bound: 4.0 * value.abs() });

@@ -50,8 +50,9 @@ impl Follower<'_> {
         decision
     }
 
-    /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault. Where a factor keeps some
-    /// that the course's library drops of the reference's, nothing is lost: what its root finder makes of them is not charged.
+    /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault. Where a factor
+    /// keeps some that the course's library drops of the reference's, nothing is lost: what its root finder makes of
+    /// them is not charged.
     fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: Own) {
         if !own.lost {
             return;
@@ -81,8 +82,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Whether round-off may flip the decision of this call, or has flipped it: where right polynomials lead the root finder to
-    /// another decision than the reference's, the submission may have either.
+    /// Whether round-off may flip the decision of this call, or has flipped it: where right polynomials lead the root
+    /// finder to another decision than the reference's, the submission may have either.
     fn is_borderline(&self, call: usize) -> bool {
         if self.is_disputed {
             return true;

@@ -1,7 +1,7 @@
 //! The observer that follows a submission through one step, and charges what can't be followed.
 //!
-//! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows what was decided, `over` takes
-//! over what was seen of calls beforehand.
+//! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows what was decided,
+//! `over` takes over what was seen of calls beforehand.
 mod decisions;
 mod over;
 mod passes;

@@ -15,8 +15,8 @@ use fosssim_num::bounded::Bounded;
 type Results = [Result<Match, Mismatch>; PairKind::MOST_POLYNOMIALS];
 
 impl<'a> Follower<'a> {
-    /// Compares a pair's logged polynomials, which begin at `index`, with what they should be. Whether they are right as far as
-    /// the place of the particles is known.
+    /// Compares a pair's logged polynomials, which begin at `index`, with what they should be. Whether they are right
+    /// as far as the place of the particles is known.
     pub(super) fn review(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize, count: usize) -> bool {
         let bounds = self.sensitivity.and_then(|known| known.passes.get(self.pass.index as usize));
         let motion = |q_end: &[f64], bounds: Option<&Vec<f64>>| {
@@ -82,8 +82,9 @@ impl<'a> Follower<'a> {
         Logged { place, number, list: self.records.end.polynomials.get(index) }
     }
 
-    /// Whether another polynomial of the pair that comes from the same coordinates is right, so that the pair is where it should be:
-    /// overlap and approach tell how far the objects are apart, the other two of a particle and an edge where along the edge.
+    /// Whether another polynomial of the pair that comes from the same coordinates is right, so that the pair is where
+    /// it should be: overlap and approach tell how far the objects are apart, the other two of a particle and an edge
+    /// where along the edge.
     fn is_proven(&self, expected: &Expected, results: &Results, pair: Pair, index: usize, number: usize) -> bool {
         let other = match pair.kind {
             PairKind::ParticleEdge => 3 - number,

@@ -1,4 +1,5 @@
-//! Certified decisions beside those of the root finder: how often each level decides, and how often and why they differ.
+//! Certified decisions beside those of the root finder: how often each level decides, and how often and why they
+//! differ.
 use std::fmt::Write as _;
 
 use fosssim_oracle::num::{

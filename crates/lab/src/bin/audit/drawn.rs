@@ -1,5 +1,6 @@
-//! Random traces on random scenes: polynomials with factors, roundings and lost coefficients, near the bounds of what is right.
-//! Judging many calls at a time, step by step from bytes, and one by one has to say the same to the last field.
+//! Random traces on random scenes: polynomials with factors, roundings and lost coefficients, near the bounds of what
+//! is right. Judging many calls at a time, step by step from bytes, and one by one has to say the same to the last
+//! field.
 use super::{Random, lanes};
 use fosssim_oracle::{
     judge::{
@@ -19,7 +20,8 @@ use std::{
     },
 };
 
-/// Programs with other polynomials that are right; half of the traces are theirs, the others begin with the reference's.
+/// Programs with other polynomials that are right; half of the traces are theirs, the others begin with the
+/// reference's.
 const VARIANTS: [&str; 4] = ["quintic-right", "normalised-per-pair", "rearranged-pe", "rearranged-pp"];
 
 /// So many that differ are shown, around the first place.

@@ -1,5 +1,6 @@
-//! Right traces made wrong at random, and programs whose polynomials have factors, on all scenes that come with the program and on
-//! those of a corpus: nothing passes the fair rules without a reason, and factors are charged with nothing but lost decisions.
+//! Right traces made wrong at random, and programs whose polynomials have factors, on all scenes that come with the
+//! program and on those of a corpus: nothing passes the fair rules without a reason, and factors are charged with
+//! nothing but lost decisions.
 #[path = "../../../../judge/tests/forged/forge.rs"]
 mod forge;
 

@@ -1,21 +1,21 @@
 //! Compares the certificate with the root finder on random detections, on all processors.
 //!
-//! `cargo run --release --example audit -- [detections] [seed]` draws that many detections (default: a million) of
-//! the three pair types from wide and nasty distributions. Wherever the certificate says that nothing happens within
-//! the step, the search has to say so, too: for the list, and for each polynomial by itself, where no other one hides
-//! a mistake. A fourth kind are products of linear factors whose zeros are as awkward as can be. It prints how many
-//! detections each level decided, how many the search alone could decide, and the first disagreement; there must be none.
-//! The draws depend on the seed only, not on the number of processors.
+//! `cargo run --release --example audit -- [detections] [seed]` draws that many detections (default: a million) of the
+//! three pair types from wide and nasty distributions. Wherever the certificate says that nothing happens within the
+//! step, the search has to say so, too: for the list, and for each polynomial by itself, where no other one hides a
+//! mistake. A fourth kind are products of linear factors whose zeros are as awkward as can be. It prints how many
+//! detections each level decided, how many the search alone could decide, and the first disagreement; there must be
+//! none. The draws depend on the seed only, not on the number of processors.
 //!
-//! A second table compares the certified decisions of `num::decision` (64 units of rounding, as the fair rules have it) with
-//! the root finder. Here disagreements are facts about the root finder, not mistakes: a decision says what is true. They are
-//! sorted by what the original does on purpose: `c t^m` counts as nowhere positive, small leading coefficients are dropped;
-//! whatever is left is its rounding. These do not change the exit code.
+//! A second table compares the certified decisions of `num::decision` (64 units of rounding, as the fair rules have it)
+//! with the root finder. Here disagreements are facts about the root finder, not mistakes: a decision says what is
+//! true. They are sorted by what the original does on purpose: `c t^m` counts as nowhere positive, small leading
+//! coefficients are dropped; whatever is left is its rounding. These do not change the exit code.
 //!
 //! `audit lanes [pairs] [seed]` compares detection in lanes with detection pair by pair instead, on random scenes, and
-//! `audit judging [CORPUS or part of a sample's id]` judging of many calls at a time with judging one by one; `audit drawn
-//! [traces] [seed]` does so on random traces. `audit forged [of each scene] [seed] [CORPUS]` looks for wrong traces that the fair
-//! rules accept, and for programs with factors that they refuse.
+//! `audit judging [CORPUS or part of a sample's id]` judging of many calls at a time with judging one by one; `audit
+//! drawn [traces] [seed]` does so on random traces. `audit forged [of each scene] [seed] [CORPUS]` looks for wrong
+//! traces that the fair rules accept, and for programs with factors that they refuse.
 use std::{
     fmt::Write as _,
     process::ExitCode,

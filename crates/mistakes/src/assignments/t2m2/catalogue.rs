@@ -92,8 +92,8 @@ pub struct Row {
     pub kind: RowKind,
     /// Where it is made.
     pub area: Area,
-    /// What is wrong, in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives nothing
-    /// away.
+    /// What is wrong, in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives
+    /// nothing away.
     pub what: &'static str,
     /// The exact form: what stands there and what belongs there, in the assignment's notation.
     pub term: &'static str,

@@ -21,7 +21,8 @@ impl Reading {
         readings(self.subject).get(self.number)
     }
 
-    /// The letter that a message calls so: one of the formula's own, or one that does not belong there and may stand there.
+    /// The letter that a message calls so: one of the formula's own, or one that does not belong there and may stand
+    /// there.
     #[must_use]
     pub fn letter(self, name: &str) -> Option<&'static Letter> {
         let own = self.formula()?.letters.iter();

@@ -34,7 +34,8 @@ fn records_without(layout: Layout, row: &Row) -> u64 {
     }
 }
 
-/// How many steps the opening holds when the records are read without the missing one; `None` when one of them is wrong.
+/// How many steps the opening holds when the records are read without the missing one; `None` when one of them is
+/// wrong.
 fn aligned_steps(scene: &Scene, layout: Layout, opening: &[Logged], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();

@@ -74,8 +74,8 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    /// The rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue. Empty when
-    /// that is less than half.
+    /// The rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue. Empty
+    /// when that is less than half.
     pub(super) fn best(&self) -> Vec<Score> {
         let complete = self.complete();
         if complete.is_empty() { self.partial() } else { complete }

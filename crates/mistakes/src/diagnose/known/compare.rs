@@ -1,8 +1,8 @@
 //! What one step logged, and when two such logs are the same but for round-off.
 //!
 //! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
-//! vectors relative to the size of the numbers around them. NaN equals nothing: whatever makes it makes it, so that it proves no
-//! mistake.
+//! vectors relative to the size of the numbers around them. NaN equals nothing: whatever makes it makes it, so that it
+//! proves no mistake.
 use crate::student::{Object, Record};
 use fosssim_model::{
     sim::State,
@@ -176,7 +176,8 @@ pub(super) fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by:
     ours.len() == theirs.len() && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| same_polynomial(ours, theirs, by))
 }
 
-/// Whether one polynomial is a positive multiple of the other (highest power first, small leading coefficients dropped).
+/// Whether one polynomial is a positive multiple of the other (highest power first, small leading coefficients
+/// dropped).
 pub(in crate::diagnose) fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
     if multiple(expected, actual, 1.0, by) {
         return true;

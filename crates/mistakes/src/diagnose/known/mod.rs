@@ -2,10 +2,11 @@
 //!
 //! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For some of
 //! them, chosen to be diverse, and for some right ones in which something happens, the second simulator
-//! ([`crate::student`]) starts from the submission's own state and makes one mistake. The mistake explains the submission when
-//! everything that the step logged comes out the same: polynomials up to a positive factor, contacts, the states in the
-//! middle and at the end. It never judges: a step that no mistake reproduces stays wrong all the same. Correct variants of
-//! the catalogue are tried, too, and where one of them reproduces the steps no mistake is named.
+//! ([`crate::student`]) starts from the submission's own state and makes one mistake. The mistake explains the
+//! submission when everything that the step logged comes out the same: polynomials up to a positive factor, contacts,
+//! the states in the middle and at the end. It never judges: a step that no mistake reproduces stays wrong all the
+//! same. Correct variants of the catalogue are tried, too, and where one of them reproduces the steps no mistake is
+//! named.
 //!
 //! The mathematics is that of the two simulators; the only tolerances are those of [`compare`].
 mod alignment;
@@ -40,10 +41,11 @@ use std::io::Read;
 /// Searches the catalogue for the mistake that explains this trace.
 ///
 /// The result is empty when all steps are right, when no mistake reproduces at least half of the wrong steps, or when a
-/// correct variant reproduces them as well. Else it holds one explanation, or those of up to three mistakes that reproduce the
-/// steps together, stages that are still empty besides; further mistakes that reproduce the same steps
-/// are in [`Explanation::same_as`]. Of those, the first one is a stage that was left empty, if there is one, else the earliest of the
-/// assignment's order: polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
+/// correct variant reproduces them as well. Else it holds one explanation, or those of up to three mistakes that
+/// reproduce the steps together, stages that are still empty besides; further mistakes that reproduce the same steps
+/// are in [`Explanation::same_as`]. Of those, the first one is a stage that was left empty, if there is one, else the
+/// earliest of the assignment's order: polynomials, contact vectors, decisions, responses, loops, zones, failsafe,
+/// trace.
 ///
 /// `samples` and `reproduced` count wrong steps; right ones that the mistake would make wrong exclude it. Traces of any
 /// content are accepted; what can't be read, what a damaged record holds, and what follows the first 64 MiB, is passed
@@ -93,8 +95,8 @@ pub(super) fn known_or_open(scene: &Scene, source: Source<'_>) -> Known {
     Known { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
-/// What the catalogue says, and whether that is all there is to say. May leave the steps as a program with the right approach
-/// sees them.
+/// What the catalogue says, and whether that is all there is to say. May leave the steps as a program with the right
+/// approach sees them.
 fn of_wrong_steps(scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
         return (Vec::new(), true);

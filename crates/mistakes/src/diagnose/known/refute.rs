@@ -15,9 +15,10 @@ use std::cell::Cell;
 /// Polynomials that may be computed; about a microsecond each.
 const WORK: u64 = 200_000;
 
-/// Whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which no judge
-/// takes for round-off. False also where looking for it would take too long, and where the course's library does that part of the
-/// work: in `simple` and `continuous-time` it responds, so that a program's own impulses are seen in `hybrid` only.
+/// Whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which no
+/// judge takes for round-off. False also where looking for it would take too long, and where the course's library does
+/// that part of the work: in `simple` and `continuous-time` it responds, so that a program's own impulses are seen in
+/// `hybrid` only.
 #[must_use]
 pub fn shows(scene: &Scene, key: &str) -> bool {
     let Some(row) = find(key).filter(|row| can_show(scene, row)) else { return false };

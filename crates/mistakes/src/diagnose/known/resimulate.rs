@@ -23,7 +23,8 @@ impl Correct {
     }
 }
 
-/// What a step costs besides its polynomials, in polynomials: forces between all pairs are many times cheaper than these.
+/// What a step costs besides its polynomials, in polynomials: forces between all pairs are many times cheaper than
+/// these.
 pub(super) fn step_work(scene: &Scene) -> u64 {
     10 + pairs(scene).count() as u64 / 128
 }

@@ -81,8 +81,8 @@ pub(in crate::diagnose) struct Scan {
 }
 
 impl Scan {
-    /// Sees the same steps as a program does whose particle-edge approach is mathematically right: many that were wrong are
-    /// right then. False when all are, or when the scene has no edge.
+    /// Sees the same steps as a program does whose particle-edge approach is mathematically right: many that were wrong
+    /// are right then. False when all are, or when the scene has no edge.
     pub(super) fn take_right_approach(&mut self, scene: &Scene) -> bool {
         if scene.edges.is_empty() {
             return false;
@@ -300,7 +300,8 @@ impl<'a, R: Read> Scanner<'a, R> {
         }
     }
 
-    /// Whether contacts were found and resolved rightly though only NaN is logged in their place, so that just the logging is wrong.
+    /// Whether contacts were found and resolved rightly though only NaN is logged in their place, so that just the
+    /// logging is wrong.
     fn logs_nan(&self) -> bool {
         let without_lists = |records: &StepRecords| {
             let bare = |logged: &Logged| Logged { state: logged.state.clone(), ..Logged::default() };

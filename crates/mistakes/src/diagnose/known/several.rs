@@ -1,7 +1,8 @@
 //! Several mistakes at once: stages that are still empty, and rows that are added one by one.
 //!
-//! A row is worth adding when it carries the simulation of the wrong steps further before it parts from what was logged.
-//! Only a set that reproduces everything, right steps included, and of which no row can be left out, explains anything.
+//! A row is worth adding when it carries the simulation of the wrong steps further before it parts from what was
+//! logged. Only a set that reproduces everything, right steps included, and of which no row can be left out, explains
+//! anything.
 use super::{
     compare::{Difference, ROUND_OFF, first_difference, same_polynomial},
     plausibility,
@@ -156,8 +157,8 @@ impl<'a> Search<'a> {
         Some(Several { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
 
-    /// Sets of empty stages to begin with: the one that carries furthest, and those detections without which the numbers of
-    /// polynomials are those of whole passes, should another mistake hide it.
+    /// Sets of empty stages to begin with: the one that carries furthest, and those detections without which the
+    /// numbers of polynomials are those of whole passes, should another mistake hide it.
     fn starts(&self) -> Vec<Vec<&'static Row>> {
         let mut starts = vec![self.empty_stages()];
         let counts: Vec<usize> = self.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();

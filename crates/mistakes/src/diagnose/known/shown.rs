@@ -5,8 +5,8 @@ use fosssim_model::{
     sim::{ByKind, pairs},
 };
 
-/// The rows that may explain a trace of this scene, in the order of the catalogue. Records that are missing are looked for
-/// elsewhere.
+/// The rows that may explain a trace of this scene, in the order of the catalogue. Records that are missing are looked
+/// for elsewhere.
 pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried =
         |row: &&Row| row.kind != RowKind::Hostile && !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
@@ -14,8 +14,8 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     CATALOGUE.iter().filter(is_tried).filter(move |row| shows(&scene.collision, &counts, row))
 }
 
-/// Whether a program with this row may leave another trace than one without. Only what the scene does not have speaks against it:
-/// stages of a step, and kinds of pairs.
+/// Whether a program with this row may leave another trace than one without. Only what the scene does not have speaks
+/// against it: stages of a step, and kinds of pairs.
 pub(super) fn can_show(scene: &Scene, row: &Row) -> bool {
     shows(&scene.collision, &pairs(scene).counts(), row)
 }

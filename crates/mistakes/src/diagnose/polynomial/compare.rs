@@ -1,7 +1,8 @@
 //! Whether a logged polynomial is a given one, up to a positive scale and round-off.
 //!
 //! What is right is decided by [`fosssim_judge::fair`]; this asks the same of wrong formulas, within the same bounds.
-//! Coefficients are aligned at the constant one. What the log lacks was dropped by the course's library for being small.
+//! Coefficients are aligned at the constant one. What the log lacks was dropped by the course's library for being
+//! small.
 use fosssim_judge::fair::compare::compare;
 use fosssim_num::{
     bounded::{Bounded, UNIT_ROUNDOFF},

@@ -3,9 +3,10 @@
 //! Pure functions over samples: the inputs of a detection and what the submission logged. A guess counts by how many
 //! samples it reproduces to round-off, right ones included. Guesses are, from simple to intricate: the whole list of
 //! coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (`inputs`: end positions, radii squared
-//! apart), misunderstandings with a formula of their own (`specials`), one letter of a formula (`slips`), and the terms of single coefficients (`terms`: sparse least squares over
-//! the products of dot products, with weights that are multiples of 1/4). Correct polynomials are those of
-//! collisions.md 2, up to a positive factor each; the quintic may be the supplied one or the mathematically right one.
+//! apart), misunderstandings with a formula of their own (`specials`), one letter of a formula (`slips`), and the terms
+//! of single coefficients (`terms`: sparse least squares over the products of dot products, with weights that are
+//! multiples of 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each; the quintic may
+//! be the supplied one or the mathematically right one.
 //!
 //! It reads no trace, judges nothing and never looks at decisions or responses.
 mod compare;
@@ -51,9 +52,10 @@ const NEARLY: f64 = 1e-10;
 /// Guesses that are this much less likely than the best (see [`Candidate::cost`]) are not told beside it.
 const AS_LIKELY: f64 = 1.6;
 
-/// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if none
-/// is wrong; what is not reproduced everywhere comes last. A mistake that several polynomials share is told once. Counts are of polynomials. A polynomial for which
-/// nothing is found gets an explanation with the key `unexplained` that reproduces nothing.
+/// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if
+/// none is wrong; what is not reproduced everywhere comes last. A mistake that several polynomials share is told once.
+/// Counts are of polynomials. A polynomial for which nothing is found gets an explanation with the key `unexplained`
+/// that reproduces nothing.
 ///
 /// Some hundred samples of each kind are enough, of different steps and pairs, right ones among them; samples whose
 /// formulas overflow are left out. The samples of one kind should hold all of its polynomials.
@@ -113,7 +115,8 @@ impl Suspect<'_> {
         self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
     }
 
-    /// All that would make it as it is: these guesses, and known mistakes. A word without a guess, where there is nothing.
+    /// All that would make it as it is: these guesses, and known mistakes. A word without a guess, where there is
+    /// nothing.
     fn claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
         let subject = self.study.subject;
         let guesses = guesses.map(|guess| claim(subject, guess)).take(MOST_CLAIMS);
@@ -145,8 +148,8 @@ impl Suspect<'_> {
     }
 }
 
-/// What a guess says of a polynomial, in one word ([`Explanation::claims`]). The digest is of what the program does, without what it
-/// should do.
+/// What a guess says of a polynomial, in one word ([`Explanation::claims`]). The digest is of what the program does,
+/// without what it should do.
 fn claim(subject: Subject, candidate: &Candidate) -> String {
     let guess = candidate.guess.word();
     if candidate.guess.is_general() {
@@ -166,7 +169,8 @@ fn claim(subject: Subject, candidate: &Candidate) -> String {
     format!("{subject:?}/{guess}/{:016x}", digest(&format!("{:?} {form:.5?}", candidate.guess)))
 }
 
-/// The known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was logged, in all samples.
+/// The known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was logged, in
+/// all samples.
 fn known_makers(study: &Study<'_>) -> Vec<String> {
     let kind = study.subject.kind();
     let Some(number) = Subject::of(kind).iter().position(|&other| other == study.subject) else { return Vec::new() };

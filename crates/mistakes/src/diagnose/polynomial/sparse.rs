@@ -63,8 +63,8 @@ impl Columns {
         Self { indices, unit, norms, gram, likely: likely_count }
     }
 
-    /// Proposals for `target`, grouped by size: the caller takes the first group that holds a verified one. At each call
-    /// of `accept` it gets one proposal and says whether it holds. Returns the accepted ones of the smallest size.
+    /// Proposals for `target`, grouped by size: the caller takes the first group that holds a verified one. At each
+    /// call of `accept` it gets one proposal and says whether it holds. Returns the accepted ones of the smallest size.
     pub fn supports(&self, target: &[f64], mut accept: impl FnMut(&Support) -> bool) -> Vec<Support> {
         let square = dot(target, target);
         if !(square > 0.0 && square.is_finite()) {
@@ -188,7 +188,8 @@ struct Problem<'a> {
     square: f64,
 }
 
-/// A started choice: its columns, Cholesky's factor row by row, the forward-substituted target, and the square explained.
+/// A started choice: its columns, Cholesky's factor row by row, the forward-substituted target, and the square
+/// explained.
 #[derive(Default)]
 struct Partial {
     chosen: Vec<usize>,

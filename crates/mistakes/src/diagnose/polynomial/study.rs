@@ -60,8 +60,8 @@ pub(super) struct Candidate {
     pub guess: Guess,
     /// Its exact form.
     pub details: Vec<PolynomialDetail>,
-    /// How unlikely it is: 1 to 3 for a change of the whole list, about 3 for one factor or sign, 4 for one wrong input, 5 and more
-    /// for wrong letters and foreign terms; edits add up.
+    /// How unlikely it is: 1 to 3 for a change of the whole list, about 3 for one factor or sign, 4 for one wrong
+    /// input, 5 and more for wrong letters and foreign terms; edits add up.
     pub cost: f64,
     /// How many samples it reproduces.
     pub reproduced: usize,
@@ -105,8 +105,9 @@ impl<'a> Study<'a> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
-    /// How many samples a predicted polynomial reproduces, with the submission's usual scale or none, and with any positive one;
-    /// `None` if it reproduces fewer than half of the wrong samples. The flag says that it needed another scale.
+    /// How many samples a predicted polynomial reproduces, with the submission's usual scale or none, and with any
+    /// positive one; `None` if it reproduces fewer than half of the wrong samples. The flag says that it needed another
+    /// scale.
     pub fn count(&self, predict: impl Fn(&Case) -> Vec<Bounded>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
@@ -121,8 +122,8 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// In how many samples a property holds; `None` if it holds in fewer than half of the wrong ones, not in the first of
-    /// them, or only in some wrong ones and not in the right ones: what these speak against explains nothing.
+    /// In how many samples a property holds; `None` if it holds in fewer than half of the wrong ones, not in the first
+    /// of them, or only in some wrong ones and not in the right ones: what these speak against explains nothing.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
         if self.cases.iter().find(|case| !case.right).is_some_and(|first| !holds(first)) {
             return None;
@@ -143,8 +144,8 @@ impl<'a> Study<'a> {
         self.is_supported(wrong, right).then_some(wrong + right)
     }
 
-    /// Whether so many wrong and right samples are enough. What reproduces all wrong ones may be done under a condition, so that
-    /// right samples don't speak against it.
+    /// Whether so many wrong and right samples are enough. What reproduces all wrong ones may be done under a
+    /// condition, so that right samples don't speak against it.
     pub fn is_supported(&self, wrong: usize, right: usize) -> bool {
         let all_right = self.cases.len() - self.wrong;
         wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED)
@@ -209,7 +210,8 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The powers whose coefficients have the same ratio to what they should be as the given one, in nearly all samples.
+    /// The powers whose coefficients have the same ratio to what they should be as the given one, in nearly all
+    /// samples.
     fn agreeing_powers(&self, ratios: &[Option<f64>]) -> Vec<usize> {
         let agrees = |case: &Case, anchor: Option<f64>, power: usize| {
             let (anchor, other) = (anchor?, ratio(case, power)?);
@@ -229,8 +231,8 @@ impl<'a> Study<'a> {
             .collect()
     }
 
-    /// How many logged coefficients are as expected with these scales. Dropped ones say nothing: with a small scale all of
-    /// them could be right.
+    /// How many logged coefficients are as expected with these scales. Dropped ones say nothing: with a small scale all
+    /// of them could be right.
     fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let agreeing = |(index, case): (usize, &Case)| {
             (0..case.expected.len())
@@ -243,7 +245,8 @@ impl<'a> Study<'a> {
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }
 
-    /// In how many samples each coefficient differs, one line per coefficient that does, with this name of the polynomial.
+    /// In how many samples each coefficient differs, one line per coefficient that does, with this name of the
+    /// polynomial.
     pub fn differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
         let differs = |case: &&Case, power: usize| {
             !coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), case.scale)

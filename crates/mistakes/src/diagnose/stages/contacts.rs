@@ -1,5 +1,5 @@
-//! What the impulse lists of `continuous-time` say: contacts too many or too few, their vectors and times. And the order in
-//! which pairs are looked at.
+//! What the impulse lists of `continuous-time` say: contacts too many or too few, their vectors and times. And the
+//! order in which pairs are looked at.
 use super::{
     ALIKE, Explanation, ROUND_OFF, common_value,
     events::{Facts, Hit},
@@ -20,8 +20,8 @@ pub(super) fn order(facts: &[Facts]) -> Option<Explanation> {
         .then(|| observation(StageFault::Order, vec![StageDetail::Order], permuted))
 }
 
-/// Whether nearly all pairs of the first pass are found as wholes, some of them out of their order. What a contact before
-/// them in the pass has moved is not found.
+/// Whether nearly all pairs of the first pass are found as wholes, some of them out of their order. What a contact
+/// before them in the pass has moved is not found.
 fn is_permuted(facts: &Facts) -> bool {
     let size = facts.pass_size();
     let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);

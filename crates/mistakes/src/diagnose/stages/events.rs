@@ -154,8 +154,8 @@ impl Facts {
         })
     }
 
-    /// How many passes the submission logged before the middle of the step, and how many behind it; none where these are no
-    /// whole passes.
+    /// How many passes the submission logged before the middle of the step, and how many behind it; none where these
+    /// are no whole passes.
     pub(super) fn logged_passes(&self) -> Option<(usize, usize)> {
         let (size, (_, middle)) = (self.pass_size(), self.middles()?);
         let (first, all) = (middle.polynomials.len(), self.actual.end.polynomials.len());
@@ -163,8 +163,8 @@ impl Facts {
         is_whole.then(|| (first / size, (all - first) / size))
     }
 
-    /// Whether a pass that the submission logged (from 0) is about the motion from the start of the step to these positions, as
-    /// far as these pairs show, named by their places in the order of a pass.
+    /// Whether a pass that the submission logged (from 0) is about the motion from the start of the step to these
+    /// positions, as far as these pairs show, named by their places in the order of a pass.
     pub(super) fn detects(&self, scene: &Scene, pass: usize, end: &[f64], is_asked: impl Fn(Pair) -> bool) -> bool {
         let (logged, size) = (&self.actual.end.polynomials, self.pass_size());
         if (pass + 1) * size > logged.len() {
@@ -264,8 +264,8 @@ fn take_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[
 }
 
 impl Facts {
-    /// How many polynomials depend on nothing but the state before the step: those of the first pass, in `continuous-time` up to
-    /// the first contact's own.
+    /// How many polynomials depend on nothing but the state before the step: those of the first pass, in
+    /// `continuous-time` up to the first contact's own.
     pub(super) fn certain_polynomials(&self) -> usize {
         let all = self.pass_size();
         match self.passes.first().map(|pass| pass.stage) {

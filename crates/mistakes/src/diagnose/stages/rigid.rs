@@ -1,7 +1,7 @@
 //! Impact zones and the rigid failsafe: steps whose first part is right.
 //!
-//! What is wrong with zones is told where other zones, moved as they should be, lead where the particles are. What is wrong with
-//! the failsafe is told of zones that are right: of one contact, or whose particles move as one body.
+//! What is wrong with zones is told where other zones, moved as they should be, lead where the particles are. What is
+//! wrong with the failsafe is told of zones that are right: of one contact, or whose particles move as one body.
 use super::{
     ALIKE, Explanation, common_value,
     events::Facts,
@@ -43,8 +43,8 @@ pub(super) fn explain(scene: &Scene, facts: &[Facts]) -> Option<Explanation> {
     moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| rounds(scene, &wrong))
 }
 
-/// Whether the first geometric pass differs, and is right of where the rounds left the bodies, which is right within round-off: small
-/// coefficients hang on that.
+/// Whether the first geometric pass differs, and is right of where the rounds left the bodies, which is right within
+/// round-off: small coefficients hang on that.
 fn hangs_on_round_off(scene: &Scene, facts: &Facts) -> bool {
     let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = behind(facts, 0) / facts.pass_size();
@@ -345,8 +345,9 @@ fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     f64::atan2(across, along)
 }
 
-/// The angle by which the failsafe turns a zone, radians: its angular momentum over its moment of inertia, both of the motion from the
-/// start of the step to what the rounds left (simulation of rigid bodies: the assignment's section 3.7).
+/// The angle by which the failsafe turns a zone, radians: its angular momentum over its moment of inertia, both of the
+/// motion from the start of the step to what the rounds left (simulation of rigid bodies: the assignment's section
+/// 3.7).
 fn spin(scene: &Scene, zone: &Group, start: &State, middle: &State) -> f64 {
     let (from, to) = (centre(scene, zone, start), centre(scene, zone, middle));
     let (mut momentum, mut inertia) = (0.0, 0.0);

@@ -1,5 +1,5 @@
-//! What became of one impact zone in the first round of the geometric part: which particles were moved as one body shows which
-//! zones there were.
+//! What became of one impact zone in the first round of the geometric part: which particles were moved as one body
+//! shows which zones there were.
 use super::events::Facts;
 use fosssim_model::{
     scene::Scene,
@@ -152,8 +152,8 @@ impl<'a> FirstRound<'a> {
         }
     }
 
-    /// Whether the contacts of a zone, moved one after the other in every round, or not all together, lead where its particles
-    /// are.
+    /// Whether the contacts of a zone, moved one after the other in every round, or not all together, lead where its
+    /// particles are.
     pub(super) fn is_split(&self, zone: &Group) -> bool {
         self.partitions(zone).into_iter().any(|groups| {
             let groups: Vec<&Group> = groups.iter().collect();

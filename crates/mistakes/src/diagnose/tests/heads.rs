@@ -124,7 +124,8 @@ fn what_most_traces_speak_against_is_not_told() {
     assert_eq!((likely[0].reproduced, likely[0].samples), (5, 35), "the others are counted");
 }
 
-/// Where traces see the same mistake in forms of their own, the head says what these have in common, and each trace keeps its form.
+/// Where traces see the same mistake in forms of their own, the head says what these have in common, and each trace
+/// keeps its form.
 #[test]
 fn forms_that_differ_have_their_polynomial_in_common() {
     let forms = ["a", "b", "c"].map(|form| letter(Subject::HalfPlaneOverlap, form));

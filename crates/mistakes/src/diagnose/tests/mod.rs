@@ -112,8 +112,8 @@ fn does_the_same(program: &[&Row], told: &[Explanation]) -> bool {
     traces(&rows) == traces(program)
 }
 
-/// Two or three mistakes of different parts of the assignment: nothing is named that the program does not do, and in eight of
-/// ten all of them are, by name or by what is wrong.
+/// Two or three mistakes of different parts of the assignment: nothing is named that the program does not do, and in
+/// eight of ten all of them are, by name or by what is wrong.
 #[test]
 fn of_several_mistakes_some_are_named_and_no_other() {
     let said: Vec<(Said, String)> = programs().par_iter().map(|program| said_of(program)).collect();
@@ -155,7 +155,8 @@ fn beside_an_unknown_mistake_nothing_else_is_told() {
     assert!(wrong.is_empty(), "{} of {}: {wrong:#?}", wrong.len(), programs.len());
 }
 
-/// What is found in all polynomials and what reproduces the steps that no other mistake touches is one mistake, not two.
+/// What is found in all polynomials and what reproduces the steps that no other mistake touches is one mistake, not
+/// two.
 #[test]
 fn a_mistake_beside_another_is_told_once() {
     let rows = ["pe-radii-squared-apart", "failsafe-empty"].map(|id| student::find(id).expect("it is known"));

@@ -1,5 +1,5 @@
-//! Holds what is said of stages to the facts: an independent reader of traces, which asks of each sentence whether some step is as it
-//! says. For tests and the lab.
+//! Holds what is said of stages to the facts: an independent reader of traces, which asks of each sentence whether some
+//! step is as it says. For tests and the lab.
 mod says;
 mod step;
 

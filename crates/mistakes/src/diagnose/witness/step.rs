@@ -1,5 +1,5 @@
-//! A step as its records tell it, beside what the reference makes of the same beginning. Shares nothing with the code that
-//! explains: reads records by itself, and compares plainly.
+//! A step as its records tell it, beside what the reference makes of the same beginning. Shares nothing with the code
+//! that explains: reads records by itself, and compares plainly.
 use fosssim_model::{
     scene::Scene,
     sim::{Decision, Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, Stage, State, Time, Zone},

@@ -12,8 +12,9 @@ use fosssim_model::{assignments::Assignment, scene::Collision, sim::Stage};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Sorts of sentences that must be seen; of motions, each of the words. Left out are those that only some pairs of mistakes
-/// make, which the lab tries: another number of rounds, positions of no known origin, zones wrong in several ways.
+/// Sorts of sentences that must be seen; of motions, each of the words. Left out are those that only some pairs of
+/// mistakes make, which the lab tries: another number of rounds, positions of no known origin, zones wrong in several
+/// ways.
 const SORTS: &[&str] = &[
     "AfterRounds",
     "BehindFirstRound",
@@ -111,8 +112,9 @@ fn what_is_said_of_stages_is_true() {
     assert!(unseen.is_empty(), "{unseen:?}; seen: {seen:#?}");
 }
 
-/// What a report says first and what it calls the likely mistake are of one story: where the judge finds the first difference
-/// before the middle of a step, no zone is accused, and no zone that grows where it finds one behind the first failsafe.
+/// What a report says first and what it calls the likely mistake are of one story: where the judge finds the first
+/// difference before the middle of a step, no zone is accused, and no zone that grows where it finds one behind the
+/// first failsafe.
 #[test]
 fn what_is_said_of_stages_does_not_lie_behind_the_first_divergence() {
     let scenes: Vec<_> = probe_scenes(Assignment::T2M2)

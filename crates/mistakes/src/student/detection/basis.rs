@@ -25,8 +25,8 @@ fn sign(exponent: usize) -> f64 {
     if exponent.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// The coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` times that divide
-/// the step evenly, by Newton's divided differences.
+/// The coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` times that
+/// divide the step evenly, by Newton's divided differences.
 fn interpolated(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
     let times: Vec<f64> = (0..=degree).map(|k| k as f64 / degree as f64).collect();

@@ -12,8 +12,8 @@ const HERE: &[Area] = &[Area::Handover];
 /// Where the coordinates of a program are those of the scene after moving the origin here.
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
 
-/// Cosine and sine of the angle by which a program turns its coordinates: 3-4-5 would be too good, its products are often
-/// exact.
+/// Cosine and sine of the angle by which a program turns its coordinates: 3-4-5 would be too good, its products are
+/// often exact.
 const TURN: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 
 /// A program's coordinates.

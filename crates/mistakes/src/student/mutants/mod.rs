@@ -1,7 +1,7 @@
 //! Mistakes that the catalogue does not have, for measuring what explanations say of what they can't know.
 //!
-//! Explanations never try these: a row here must not become a row of the catalogue, or the measure is gone. Each changes one
-//! thing at one of the `Change`s.
+//! Explanations never try these: a row here must not become a row of the catalogue, or the measure is gone. Each
+//! changes one thing at one of the `Change`s.
 mod coefficients;
 mod contacts;
 mod motions;
@@ -26,8 +26,8 @@ pub struct Mutant {
     pub kind: &'static str,
     /// What is wrong.
     pub what: &'static str,
-    /// What an explanation has to say at least in order to be right: one of these words stands in its sentence, its key, or its
-    /// exact form.
+    /// What an explanation has to say at least in order to be right: one of these words stands in its sentence, its
+    /// key, or its exact form.
     pub told_by: &'static [&'static str],
     pub(super) change: Change,
 }

@@ -7,8 +7,8 @@ use super::Operator::{
 
 /// Something that stands in the program.
 ///
-/// `Kind` is that of a pair, 0 for two particles, 1 for a particle and an edge, 2 for a particle and a half-plane; `Role` is 0 for the
-/// particle, 1 for the other one or the first end of the edge, 2 for its second end.
+/// `Kind` is that of a pair, 0 for two particles, 1 for a particle and an edge, 2 for a particle and a half-plane;
+/// `Role` is 0 for the particle, 1 for the other one or the first end of the edge, 2 for its second end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "each has its line in the table below")]
 pub enum Place {

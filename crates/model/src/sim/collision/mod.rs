@@ -1,8 +1,8 @@
 //! Collision handling: detection per pair type, responses, impact zones (collisions.md).
 //!
-//! One file per pair type holds its detection and its responses; `pass` runs over all pairs, `blocks` over many at a time; `simple`,
-//! `continuous_time` and `hybrid` are the three handlers, of which `hybrid` uses `zones` and `failsafe`. Nothing is
-//! pruned: every pair is looked at in every pass, also two fixed particles (collisions.md 1).
+//! One file per pair type holds its detection and its responses; `pass` runs over all pairs, `blocks` over many at a
+//! time; `simple`, `continuous_time` and `hybrid` are the three handlers, of which `hybrid` uses `zones` and
+//! `failsafe`. Nothing is pruned: every pair is looked at in every pass, also two fixed particles (collisions.md 1).
 mod blocks;
 mod continuous_time;
 mod failsafe;
@@ -18,8 +18,8 @@ mod simple;
 mod two;
 mod zones;
 
-/// The coefficients of the detection polynomials (collisions.md 2), once for all: over one number as a pass computes them, over
-/// [lanes](fosssim_num::lanes), and over numbers with bounds. Highest power first, nothing dropped.
+/// The coefficients of the detection polynomials (collisions.md 2), once for all: over one number as a pass computes
+/// them, over [lanes](fosssim_num::lanes), and over numbers with bounds. Highest power first, nothing dropped.
 pub mod formulas {
     pub use super::{
         particle_edge::{
@@ -70,7 +70,8 @@ impl Handler {
         }
     }
 
-    /// Handles the collisions of step `step`, which began at positions `q_start` and whose integration ended in `state`.
+    /// Handles the collisions of step `step`, which began at positions `q_start` and whose integration ended in
+    /// `state`.
     ///
     /// # Errors
     /// [`StepError::RootSearch`] and [`StepError::Work`]; the state is unspecified then.

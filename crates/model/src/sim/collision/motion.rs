@@ -127,8 +127,8 @@ impl PairMotion {
         }
     }
 
-    /// The contact normal at `time`, from the first object to the second, not normalised. `None` where it is zero between
-    /// a particle and an edge, which is no hit.
+    /// The contact normal at `time`, from the first object to the second, not normalised. `None` where it is zero
+    /// between a particle and an edge, which is no hit.
     #[must_use]
     pub fn normal(&self, time: f64) -> Option<Vec2> {
         match *self {

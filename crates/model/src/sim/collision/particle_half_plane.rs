@@ -10,8 +10,8 @@ use fosssim_num::{
 };
 use std::ops::Mul;
 
-/// The two polynomials, untrimmed, of a disc that starts at `x` and moves by `d` in the step: "closer than `radius`" and
-/// "approaching". `squared` is `dot(normal, normal)`.
+/// The two polynomials, untrimmed, of a disc that starts at `x` and moves by `d` in the step: "closer than `radius`"
+/// and "approaching". `squared` is `dot(normal, normal)`.
 #[inline]
 pub(super) fn polynomials(x: Vec2, d: Vec2, radius: f64, point: Vec2, normal: Vec2, squared: f64) -> [Polynomial; 2] {
     let [x, d, point, normal] = [x, d, point, normal].map(Plane::from);

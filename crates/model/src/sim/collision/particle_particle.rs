@@ -8,8 +8,8 @@ use fosssim_num::{
 };
 use std::ops::Mul;
 
-/// The two polynomials, untrimmed, of discs that start at `x` and move by `d` in the step: "closer than `radii`" and "approaching".
-/// Time is a fraction of the step.
+/// The two polynomials, untrimmed, of discs that start at `x` and move by `d` in the step: "closer than `radii`" and
+/// "approaching". Time is a fraction of the step.
 #[inline]
 pub(super) fn polynomials(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, radii: f64) -> [Polynomial; 2] {
     let [x1, d1, x2, d2] = [x1, d1, x2, d2].map(Plane::from);

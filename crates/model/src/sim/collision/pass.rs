@@ -1,8 +1,8 @@
 //! One detection pass of continuous-time detection over all pairs (collisions.md 1, 2).
 //!
 //! The pass computes the polynomials of every pair, tells them to the observer, and searches their roots where no
-//! certificate excludes an impact within the step. Where the observer wants to hear of no single call, [`super::blocks`] does
-//! the same with several pairs at a time.
+//! certificate excludes an impact within the step. Where the observer wants to hear of no single call,
+//! [`super::blocks`] does the same with several pairs at a time.
 use super::{
     super::{
         bodies::Bodies,
@@ -291,8 +291,8 @@ impl Detector {
         true
     }
 
-    /// Trims a pair's polynomials, decides about it, tells the observer and has a hit answered; `normal` gives the contact normal at a time, or
-    /// none when it is zero.
+    /// Trims a pair's polynomials, decides about it, tells the observer and has a hit answered; `normal` gives the
+    /// contact normal at a time, or none when it is zero.
     #[inline]
     fn look<O: Observer, R>(
         &mut self,

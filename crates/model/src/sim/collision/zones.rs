@@ -1,7 +1,8 @@
 //! Impact zones: connected collisions (collisions.md 5).
 //!
-//! The original merges lists of sets until no two share a particle, each set joining the first that it meets. The result is the
-//! connected components, in the order of the first list entry of each; here a union-find computes it in nearly linear time.
+//! The original merges lists of sets until no two share a particle, each set joining the first that it meets. The
+//! result is the connected components, in the order of the first list entry of each; here a union-find computes it in
+//! nearly linear time.
 use super::super::{
     bodies::Bodies,
     observer::{Impulse, Zone},

@@ -1,7 +1,7 @@
 //! Polynomials with integer coefficients: what the exact decision needs of them.
 //!
-//! Greatest common divisors use primitive pseudo-remainders (Knuth, *The Art of Computer Programming* 2, 4.6.1). They are
-//! nearly always constant, which one run modulo a prime shows for a fraction of the price.
+//! Greatest common divisors use primitive pseudo-remainders (Knuth, *The Art of Computer Programming* 2, 4.6.1). They
+//! are nearly always constant, which one run modulo a prime shows for a fraction of the price.
 use super::{super::short::split, dyadic::Dyadic};
 use num_bigint::{BigInt, Sign};
 

@@ -1,7 +1,7 @@
 //! Isolation of the real zeros of a square-free polynomial within the step.
 //!
-//! Descartes' rule of signs in the variable `1/(1+t)` counts the zeros in `(0, 1)` up to an even number and is exact for
-//! none and one; halving the interval gets there (Collins and Akritas, 1976; it ends because zeros are simple).
+//! Descartes' rule of signs in the variable `1/(1+t)` counts the zeros in `(0, 1)` up to an even number and is exact
+//! for none and one; halving the interval gets there (Collins and Akritas, 1976; it ends because zeros are simple).
 use super::{dyadic::Dyadic, integer::Integer};
 use num_bigint::{BigInt, Sign};
 
@@ -64,8 +64,8 @@ impl Root {
 /// may share an end, but no end of an interval is a zero.
 pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
     let mut roots = Vec::new();
-    // Intervals to look at, the leftmost last: the polynomial stretched so that the interval becomes (0, 1), and the interval
-    // as numerator and exponent.
+    // Intervals to look at, the leftmost last: the polynomial stretched so that the interval becomes (0, 1), and the
+    // interval as numerator and exponent.
     let mut pending = vec![Pending::Interval(polynomial.clone(), BigInt::ZERO, 0)];
     while let Some(next) = pending.pop() {
         let (stretched, start, exponent) = match next {

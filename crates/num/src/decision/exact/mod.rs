@@ -1,11 +1,12 @@
-//! The exact decision: integers instead of rounding. L3 of [`super::decide`], and the reference that tests compare with.
+//! The exact decision: integers instead of rounding. L3 of [`super::decide`], and the reference that tests compare
+//! with.
 //!
-//! Doubles are integers times powers of two, so each polynomial is one with integer coefficients times a positive factor,
-//! which no sign depends on. The zeros of all of them are those of one square-free polynomial; they are isolated between
-//! dyadic fractions (`isolate`), and signs at one time per gap say everything about the positive sets.
+//! Doubles are integers times powers of two, so each polynomial is one with integer coefficients times a positive
+//! factor, which no sign depends on. The zeros of all of them are those of one square-free polynomial; they are
+//! isolated between dyadic fractions (`isolate`), and signs at one time per gap say everything about the positive sets.
 //!
-//! Never rounds, except the enclosure of the time outwards at the end. Allocates, takes microseconds to a millisecond, and
-//! more for coefficients whose exponents are far apart.
+//! Never rounds, except the enclosure of the time outwards at the end. Allocates, takes microseconds to a millisecond,
+//! and more for coefficients whose exponents are far apart.
 mod dyadic;
 mod integer;
 mod isolate;
@@ -35,9 +36,10 @@ pub enum ExactAnswer {
 /// Decides whether `tau <= 1`, exactly: whether the closures of the sets where each polynomial is positive meet in
 /// `(0, 1]`. Coefficients come highest power first, untrimmed and of any number.
 ///
-/// * A zero at which a polynomial does not change its sign from above leaves no hole: `t^2 - t + 1/4` is positive always.
-/// * A set that ends at exactly 0 does not count, one that starts at exactly 1 does; `tau` is 0 if all are positive right
-///   after 0.
+/// * A zero at which a polynomial does not change its sign from above leaves no hole: `t^2 - t + 1/4` is positive
+///   always.
+/// * A set that ends at exactly 0 does not count, one that starts at exactly 1 does; `tau` is 0 if all are positive
+///   right after 0.
 /// * No polynomials, an empty one, or one that vanishes identically: [`ExactAnswer::Never`].
 /// * `c t^m` is what it is; the original takes it as nowhere positive (root-finder.md 17.1).
 #[must_use]
@@ -59,8 +61,8 @@ pub fn exact_first(polynomials: &[&[f64]]) -> ExactAnswer {
     first_time(&polynomials, &zeros, &mut roots)
 }
 
-/// Walks through the gaps between the roots: the first one, or the first root beside which every polynomial is positive on
-/// one side at least.
+/// Walks through the gaps between the roots: the first one, or the first root beside which every polynomial is positive
+/// on one side at least.
 fn first_time(polynomials: &[Integer], zeros: &Integer, roots: &mut [Root]) -> ExactAnswer {
     let mut before = signs_at(polynomials, &first_sample(roots));
     if before.iter().all(|&positive| positive) {

@@ -1,5 +1,5 @@
-//! The scenes of a submission, group by group: what is accepted is counted, what is not is told, and what is told of many
-//! scenes in the same words is told once.
+//! The scenes of a submission, group by group: what is accepted is counted, what is not is told, and what is told of
+//! many scenes in the same words is told once.
 use super::{Text, TextDetail, look, output};
 use crate::{
     explain,

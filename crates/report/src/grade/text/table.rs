@@ -12,8 +12,8 @@ struct Column {
     right: bool,
 }
 
-/// One row per submission: points, worst verdict, scenes per group, time. Columns that the width has no room for are left
-/// out: first the time, then the groups, in whose place all scenes are counted together.
+/// One row per submission: points, worst verdict, scenes per group, time. Columns that the width has no room for are
+/// left out: first the time, then the groups, in whose place all scenes are counted together.
 #[must_use]
 pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {

@@ -1,8 +1,9 @@
 //! What the letters of a formula mean, said where the formula stands.
 use fosssim_model::sim::PairKind;
 
-/// The sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion, that occur in
-/// these lines; `None` where none does. `R` is the sum of the radii in polynomials, and the rotation where zones move. The kinds are those of the pairs that the lines speak of, as far as they are known.
+/// The sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion, that
+/// occur in these lines; `None` where none does. `R` is the sum of the radii in polynomials, and the rotation where
+/// zones move. The kinds are those of the pairs that the lines speak of, as far as they are known.
 pub(super) fn of(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| difference(line, |_| true));
     let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);

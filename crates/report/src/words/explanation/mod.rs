@@ -1,7 +1,7 @@
 //! What explanations say, in sentences. They travel as values up to here.
 //!
-//! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) stand with its data, found by
-//! their keys; all others are made here.
+//! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) stand with its data,
+//! found by their keys; all others are made here.
 mod letters;
 mod not_finite;
 mod places;

@@ -278,7 +278,8 @@ fn every_finding_has_its_sentence() {
     insta::assert_snapshot!("lines", lines.join("\n"));
 }
 
-/// A known mistake is told by its row: the sentence, its exact form, and where to look, with the letters' meaning between.
+/// A known mistake is told by its row: the sentence, its exact form, and where to look, with the letters' meaning
+/// between.
 #[test]
 fn a_known_mistake_is_told_by_its_row() {
     let row = find("pe-square-no-eh").expect("a row");

@@ -95,8 +95,8 @@ pub(in crate::web) async fn receive_suite(
     staff.set_suite(assignment, &received.file).await
 }
 
-/// Whether an archive holds a suite that keeps to itself: its scenes lie in the archive, or come with the program. A worker
-/// would read any other file of its machine for it.
+/// Whether an archive holds a suite that keeps to itself: its scenes lie in the archive, or come with the program. A
+/// worker would read any other file of its machine for it.
 fn check_suite(archive: &Path, incoming: &Path) -> Result<(), Problem> {
     let folder = tempfile::tempdir_in(incoming)?;
     archive::unpack(archive, folder.path(), Limits::USUAL).map_err(|error| Problem::unusable(error.to_string()))?;

@@ -110,8 +110,8 @@ pub(super) async fn history(
     Ok(Json(member.history(id).await?))
 }
 
-/// Its state as server-sent events: one at once, one whenever it changes; the stream ends with the grade. Each event is the
-/// whole state, so that nothing is lost with a connection.
+/// Its state as server-sent events: one at once, one whenever it changes; the stream ends with the grade. Each event is
+/// the whole state, so that nothing is lost with a connection.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/events", tag = "submissions",
     params(("course" = String, Path), ("id" = i64, Path)),
     responses((status = 200, description = "text/event-stream of submissions"), (status = "default", body = Problem, content_type = "application/problem+json")))]

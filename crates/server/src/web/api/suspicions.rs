@@ -6,7 +6,8 @@ use crate::{
 };
 use axum::{Json, http::StatusCode};
 
-/// Scenes in which more than a third of the students who are right otherwise answer the same, and not what the reference does.
+/// Scenes in which more than a third of the students who are right otherwise answer the same, and not what the
+/// reference does.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/suspicions", tag = "assignments",
     params(("course" = String, Path), ("assignment" = String, Path)),
     responses((status = 200, body = Vec<Suspicion>), (status = "default", body = Problem, content_type = "application/problem+json")))]

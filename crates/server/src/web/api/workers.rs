@@ -1,5 +1,5 @@
-//! What workers on other machines ask: claim, renew, finish, and the files of the jobs that they hold. A lease is shown in
-//! the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
+//! What workers on other machines ask: claim, renew, finish, and the files of the jobs that they hold. A lease is shown
+//! in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
 use super::super::{
     input::{Body, Params},
     upload,

@@ -102,8 +102,8 @@ pub(super) struct NewPlatform {
     hosts: String,
 }
 
-/// The browser's word while it comes from a platform: sent with what another site makes it send, which is what the platform's
-/// answer is. In a frame many browsers keep it apart, or drop it; so nobody comes in by a frame.
+/// The browser's word while it comes from a platform: sent with what another site makes it send, which is what the
+/// platform's answer is. In a frame many browsers keep it apart, or drop it; so nobody comes in by a frame.
 fn browser_word(house: &House, word: &str) -> String {
     let secure = house.is_secure();
     let rest = if secure { "SameSite=None; Secure; Partitioned" } else { "SameSite=Lax" };
@@ -157,7 +157,8 @@ async fn begin(visitor: &Visitor, headers: &HeaderMap, login: Login) -> Result<R
         for (name, value) in fields {
             value.map(|value| query.append_pair(name, &value));
         }
-        // A link and no form: where a form may lead is asked of all redirections, too, and this one goes on to the platform.
+        // A link and no form: where a form may lead is asked of all redirections, too, and this one goes on to the
+        // platform.
         let address = format!("/lti/login?{}", query.finish());
         let page = show(&WindowPage { frame: Frame::nobody(), address })?.into_response();
         let origins = platform.origins(house.is_lti_over_http());

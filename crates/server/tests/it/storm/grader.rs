@@ -1,5 +1,5 @@
-//! A grader for storms: a script in the place of `fosssim-oracle` that does as its submission says. The real worker runs
-//! it as its child, so that everything around it is real.
+//! A grader for storms: a script in the place of `fosssim-oracle` that does as its submission says. The real worker
+//! runs it as its child, so that everything around it is real.
 use std::{
     fs,
     os::unix::fs::PermissionsExt,
@@ -8,8 +8,8 @@ use std::{
 
 /// Submissions are a line: what to do, the verdict's code, the points, and how long to take.
 ///
-/// `poison` kills the worker that runs it, every time. `crash` kills the grader. `freeze` stops its worker the first time,
-/// and whoever watches over the storm wakes it much later.
+/// `poison` kills the worker that runs it, every time. `crash` kills the grader. `freeze` stops its worker the first
+/// time, and whoever watches over the storm wakes it much later.
 const SCRIPT: &str = r#"#!/bin/sh
 [ "$1" = grade ] || exit 2
 program=$2

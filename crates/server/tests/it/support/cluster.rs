@@ -1,7 +1,7 @@
 //! PostgreSQL for tests: from the system's packages, in a temporary folder, reached by a socket in it.
 //!
-//! [`Cluster`] is a server of one's own, for tests that kill it. [`Shared`] is one for all test processes: the first starts
-//! it, and a small shell that watches over it ends it when nobody has used it for a while.
+//! [`Cluster`] is a server of one's own, for tests that kill it. [`Shared`] is one for all test processes: the first
+//! starts it, and a small shell that watches over it ends it when nobody has used it for a while.
 use fosssim_server::db::Address;
 use fosssim_testing::{Need, skip};
 use std::{

@@ -11,8 +11,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Grades as the submission says: `#!grade CODE POINTS [SCENE RIGHT-STEPS]`, of two scenes. Beside `grade.json` it writes a report with what a hostile program
-/// would like to have there.
+/// Grades as the submission says: `#!grade CODE POINTS [SCENE RIGHT-STEPS]`, of two scenes. Beside `grade.json` it
+/// writes a report with what a hostile program would like to have there.
 const GRADER: &str = r#"#!/bin/sh
 if [ "$1" = demo ]; then
     printf '#!grade WA 40\n' > "$3"

@@ -156,7 +156,8 @@ enum Role {
     Worker,
 }
 
-/// The path to the submission of `owner`; what else it names is not there, so that a request that gets in changes nothing.
+/// The path to the submission of `owner`; what else it names is not there, so that a request that gets in changes
+/// nothing.
 fn fill(path: &str, submission: i64) -> String {
     let id = if path.contains("submissions/{id}") || path.contains("/s/{id}") { submission } else { 999_999 };
     path.replace("{course}", "physics")

@@ -49,7 +49,8 @@ async fn nothing_is_stored_of_a_refused_upload(fresh: Fresh) {
     ada.send("POST", SUBMISSIONS, key, &program("AC", 1)).expect(200);
 }
 
-/// On a disk that was full and has room again the server writes again, without being started again. Its log lies there, too.
+/// On a disk that was full and has room again the server writes again, without being started again. Its log lies there,
+/// too.
 #[test]
 fn a_full_disk_heals() {
     run(async {

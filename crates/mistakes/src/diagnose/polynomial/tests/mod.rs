@@ -108,7 +108,8 @@ fn quartic(l: &Letters) -> Vec<f64> {
     ]
 }
 
-/// The supplied quintic; with `slip` false the mathematically right one. `d` is an argument because one student confuses it.
+/// The supplied quintic; with `slip` false the mathematically right one. `d` is an argument because one student
+/// confuses it.
 fn quintic(l: &Letters, d: f64, slip: bool) -> Vec<f64> {
     let (a, b, c, e, f, g, h) = (l.g, l.h, l.i, l.e, l.a, l.b, l.c);
     let (i, j) = (-g, -h);
@@ -164,7 +165,8 @@ fn right_lists(motion: &PairMotion) -> Lists {
     }
 }
 
-/// The only explanation of what this student does; it has to reproduce everything and to have this key and such a detail.
+/// The only explanation of what this student does; it has to reproduce everything and to have this key and such a
+/// detail.
 fn only(
     kind: PairKind,
     key: &str,

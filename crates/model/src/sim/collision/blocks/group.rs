@@ -1,5 +1,5 @@
-//! The pairs of some particles in a row, one per lane, with every edge and every half-plane, and of one particle with some
-//! others: coefficients, and what the closed forms of the certificate say about them.
+//! The pairs of some particles in a row, one per lane, with every edge and every half-plane, and of one particle with
+//! some others: coefficients, and what the closed forms of the certificate say about them.
 use super::{
     super::{particle_edge, particle_half_plane, particle_particle},
     lists::Lists,
@@ -20,8 +20,8 @@ pub(super) const EDGE_ROW: usize = 20;
 /// Where what is known about it stands.
 pub(super) const EDGE_KNOWN: usize = 17;
 
-/// Numbers of a pair of particles, or with a half-plane: the parabola's coefficients, what is known, the line's, and room. A
-/// polynomial is read soon after it is stored, which is fast where both are done at once.
+/// Numbers of a pair of particles, or with a half-plane: the parabola's coefficients, what is known, the line's, and
+/// room. A polynomial is read soon after it is stored, which is fast where both are done at once.
 pub(super) const TWO_ROW: usize = 8;
 
 /// Where what is known about it stands.
@@ -30,12 +30,13 @@ pub(super) const TWO_KNOWN: usize = 3;
 /// Where the line begins.
 pub(super) const LINE: usize = 4;
 
-/// So many numbers behind a row may be read, too, whatever they are: as many as a polynomial has coefficients, and two more.
+/// So many numbers behind a row may be read, too, whatever they are: as many as a polynomial has coefficients, and two
+/// more.
 pub(super) const BEHIND: usize = 8;
 
-/// What is known about a pair, in the bits of a number: the lowest one is this where the certificate has to be asked whether there
-/// is an impact; the next ones say which of its coefficients are so small that they are dropped when they lead; the highest
-/// ones say nothing.
+/// What is known about a pair, in the bits of a number: the lowest one is this where the certificate has to be asked
+/// whether there is an impact; the next ones say which of its coefficients are so small that they are dropped when they
+/// lead; the highest ones say nothing.
 pub(super) const OPEN: u64 = 1;
 
 /// The lowest bits of this number plus a sum of small powers of two are that sum.

@@ -1,4 +1,5 @@
-//! What a pass computes with: one list per number of all particles, for lanes to be loaded from, and the motions of edges.
+//! What a pass computes with: one list per number of all particles, for lanes to be loaded from, and the motions of
+//! edges.
 use super::{super::particle_edge::EdgeMotions, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
@@ -10,8 +11,8 @@ use fosssim_num::{
 /// The lists of a pass.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lists {
-    /// Positions at the start of the step (x, y), displacements (x, y) and radii of particles, with as many entries behind
-    /// the last one as lanes may reach; these repeat it.
+    /// Positions at the start of the step (x, y), displacements (x, y) and radii of particles, with as many entries
+    /// behind the last one as lanes may reach; these repeat it.
     particles: [Vec<f64>; 5],
     /// The motions of edges.
     pub edges: Vec<EdgeMotions<f64>>,

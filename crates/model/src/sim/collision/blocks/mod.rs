@@ -1,11 +1,11 @@
 //! A detection pass whose polynomials only have to be logged: several pairs of one kind at a time, in lanes.
 //!
-//! Every formula is the pair's own, evaluated in the same order, and every lane rounds like a single number; so polynomials,
-//! decisions and counts are those of [`super::pass`] bit for bit, however pairs are put together. Where inputs are so large
-//! that a NaN could arise, or are one, there are no blocks.
+//! Every formula is the pair's own, evaluated in the same order, and every lane rounds like a single number; so
+//! polynomials, decisions and counts are those of [`super::pass`] bit for bit, however pairs are put together. Where
+//! inputs are so large that a NaN could arise, or are one, there are no blocks.
 //!
-//! `lists` holds what lanes are loaded from, `group` computes blocks of pairs, `rows` goes through them in the order of the
-//! trace, `settle` decides about single ones and writes them.
+//! `lists` holds what lanes are loaded from, `group` computes blocks of pairs, `rows` goes through them in the order of
+//! the trace, `settle` decides about single ones and writes them.
 mod group;
 mod lists;
 mod rows;

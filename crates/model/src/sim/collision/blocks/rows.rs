@@ -67,8 +67,8 @@ impl Work for Pairs<'_> {
 }
 
 impl Pairs<'_> {
-    /// What is left of the pairs of one particle. Whether something was found, which the output holds; at a hit the place is the
-    /// next pair's.
+    /// What is left of the pairs of one particle. Whether something was found, which the output holds; at a hit the
+    /// place is the next pair's.
     #[inline(always)]
     fn row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut Output<'_>) -> bool {
         let first = self.place.first;
@@ -152,8 +152,8 @@ impl Pairs<'_> {
     }
 }
 
-/// Decides about a pair with an edge, where that is open, and writes its polynomials. Whether something was found, which the
-/// output holds.
+/// Decides about a pair with an edge, where that is open, and writes its polynomials. Whether something was found,
+/// which the output holds.
 #[inline(always)]
 fn of_edge(
     pair: Pair,

@@ -68,8 +68,8 @@ impl<'a> Output<'a> {
         self.takes(found, pair, place)
     }
 
-    /// Takes what was found of a pair. Whether this is a hit, behind which the place is then, or a search without end, which
-    /// is not logged.
+    /// Takes what was found of a pair. Whether this is a hit, behind which the place is then, or a search without end,
+    /// which is not logged.
     #[inline(always)]
     fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut Place) -> bool {
         if matches!(found, Ok(None)) {
@@ -83,7 +83,8 @@ impl<'a> Output<'a> {
         true
     }
 
-    /// Writes the polynomials of a pair with an edge without their small leading coefficients, which `small` tells in bits.
+    /// Writes the polynomials of a pair with an edge without their small leading coefficients, which `small` tells in
+    /// bits.
     #[inline(always)]
     pub fn write_edge(&mut self, row: &[f64; EDGE_ROW + BEHIND], small: u64) {
         let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<EDGE_BYTES>) else { return };

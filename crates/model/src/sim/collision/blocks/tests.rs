@@ -97,7 +97,8 @@ fn lanes_change_no_bit_and_no_count() {
     assert!(pairs > 100_000, "{pairs}");
 }
 
-/// Beyond what lanes are trusted with, and where numbers are none, pairs are computed one by one; a response may lead there.
+/// Beyond what lanes are trusted with, and where numbers are none, pairs are computed one by one; a response may lead
+/// there.
 #[test]
 fn what_is_too_large_for_lanes_is_the_same_as_well() {
     let mut numbers = Numbers(13);

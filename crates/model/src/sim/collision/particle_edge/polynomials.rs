@@ -94,8 +94,8 @@ impl Coefficients<Two> {
     }
 }
 
-/// The coefficients for each of several edges with a disc that starts at `x1` and moves by `d1` in the step, and whose radius
-/// and the edge's add up to `radii`. Letters are those of collisions.md 2.
+/// The coefficients for each of several edges with a disc that starts at `x1` and moves by `d1` in the step, and whose
+/// radius and the edge's add up to `radii`. Letters are those of collisions.md 2.
 ///
 /// The t^3 coefficient of the last one is mathematically wrong (`g` where `h` belongs); it is the formula that every
 /// student was given.
@@ -107,7 +107,8 @@ where
     coefficients_and_right_cubic(x1, d1, edges, radii).0
 }
 
-/// The [`coefficients`], and what the definition gives for the t^3 coefficient of the last polynomial (numerics.md 1.1).
+/// The [`coefficients`], and what the definition gives for the t^3 coefficient of the last polynomial
+/// (numerics.md 1.1).
 #[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
 pub fn coefficients_and_right_cubic<N: Number>(
