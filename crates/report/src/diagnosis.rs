@@ -62,9 +62,19 @@ impl Diagnosis {
             let heading = style.paint(Look::Strong, "Where it fails");
             let _ = writeln!(text, "{heading}\n  {}\n", one_line(&located(found)));
         }
-        for (number, common) in self.common.iter().enumerate() {
+        let mut likely = 0;
+        for common in &self.common {
             let explained = self.cases.iter().filter(|case| common.is_named_in(&case.explanations)).count();
-            let most = if number == 0 { "What explains most" } else { "What explains more" };
+            let most = if common.is_not_finite() {
+                "Where numbers end"
+            } else {
+                likely += 1;
+                match (likely, common.is_unexplained()) {
+                    (_, true) => "What is wrong in most",
+                    (1, _) => "What explains most",
+                    _ => "What explains more",
+                }
+            };
             let heading = format!("{most} ({explained} of {wrong} wrong traces)");
             let _ = writeln!(text, "{}", style.paint(Look::Strong, &heading));
             text += &indented(std::slice::from_ref(common));

@@ -213,7 +213,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
             open.iter_mut().for_each(|list| list.retain(|one| one.said() != said));
         }
     }
-    if let Some(head) = wrong_polynomials(&wrong, found.first()) {
+    if let Some(head) = wrong_polynomials(&wrong, &found) {
         // What a wrong formula leads to is wrong behind it.
         found.retain(|one| !one.is_of_stage());
         found.insert(0, head);
@@ -243,7 +243,7 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
 
 /// The polynomials that are wrong in most traces, where no exact form holds in most and what comes first says nothing
 /// of them: their place, and what most traces say of them without an exact form.
-fn wrong_polynomials(traces: &[Vec<Explanation>], first: Option<&Explanation>) -> Option<Explanation> {
+fn wrong_polynomials(traces: &[Vec<Explanation>], found: &[Explanation]) -> Option<Explanation> {
     let mut wrong: BTreeMap<Subject, usize> = BTreeMap::new();
     for list in traces {
         let of_polynomials = list.iter().filter(|one| matches!(one.about, About::Polynomials { .. }));
@@ -252,9 +252,10 @@ fn wrong_polynomials(traces: &[Vec<Explanation>], first: Option<&Explanation>) -
     }
     let most = wrong.values().copied().max()?;
     let named_in = |one: &Explanation| traces.iter().filter(|list| one.is_named_in(list)).count();
-    let is_told = |first: &Explanation| !first.subjects().is_empty() || named_in(first) >= most;
+    let is_told = found.iter().any(|one| !one.subjects().is_empty())
+        || found.first().is_some_and(|first| named_in(first) >= most);
     // What few traces show may follow from something else.
-    if first.is_some_and(is_told) || most * 2 <= traces.len() {
+    if is_told || most * 2 <= traces.len() {
         return None;
     }
     let subjects: Vec<Subject> = wrong.into_iter().filter(|(_, count)| *count == most).map(|(one, _)| one).collect();

@@ -141,6 +141,17 @@ fn forms_that_differ_have_their_polynomial_in_common() {
     assert_eq!(settled(&traces[1], &likely).explanations[0].said(), forms[1].said());
 }
 
+/// Polynomials that are told beside something else are not told again.
+#[test]
+fn what_is_told_second_is_not_told_once_more() {
+    let (empty, cut) = (row("failsafe-empty", &[]), letter(Subject::EdgeOverlap, "a"));
+    let mut traces = vec![vec![empty]; 6];
+    traces.extend(vec![vec![cut.clone()]; 7]);
+    let told = heads(&traces);
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told.contains(&(cut.said(), 7)), "{told:?}");
+}
+
 /// One trace in which a stage looks wrong follows from the formula that the others name.
 #[test]
 fn a_stage_of_one_trace_is_no_second_mistake() {
