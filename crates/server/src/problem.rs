@@ -73,6 +73,13 @@ impl Problem {
         Self::new(StatusCode::FORBIDDEN, "not-allowed", "Not allowed", detail, remedy)
     }
 
+    /// Known, but it is not certain that it is the person.
+    #[must_use]
+    pub fn sign_in_again(detail: impl Into<String>) -> Self {
+        let remedy = "sign in again on this server's pages, and do it there";
+        Self::new(StatusCode::FORBIDDEN, "sign-in-again", "Sign in again", detail, remedy)
+    }
+
     /// A request that another site may have made a browser send.
     #[must_use]
     pub fn cross_site() -> Self {

@@ -2,7 +2,7 @@
 use super::{
     House, NewSecret, TokenInfo,
     account::Account,
-    identity,
+    identity::{self, Way},
     person::token_info,
     view::{self, Course, Deed, Event, Queue},
 };
@@ -97,9 +97,9 @@ impl Admin {
             .await?;
         let account = row.int("id")?;
         if was.is_some_and(|was| was.is_admin != is_admin) {
-            identity::end_all(&mut transaction, account, true).await?;
+            identity::end_all(&mut transaction, account).await?;
         }
-        let link = identity::new_link(&mut transaction, account, Some(self.account.id)).await?;
+        let link = identity::new_link(&mut transaction, account, Some(self.account.id), Way::Own).await?;
         let text = format!("{login}{}; a link to sign in", if is_admin { " is an administrator" } else { "" });
         self.note(&mut transaction, "account", &text).await?;
         transaction.commit().await?;
@@ -122,7 +122,7 @@ impl Admin {
             )
             .await?;
         let Some(row) = row else { return Err(Problem::not_found("account")) };
-        identity::end_all(&mut transaction, row.int("id")?, true).await?;
+        identity::end_all(&mut transaction, row.int("id")?).await?;
         self.note(&mut transaction, "account", &format!("{login} is shut")).await?;
         transaction.commit().await?;
         Ok(())
@@ -150,7 +150,7 @@ impl Admin {
     pub async fn new_worker_token(&self, name: &str) -> Result<(TokenInfo, NewSecret), Problem> {
         identity::check_slug("a worker's name", name)?;
         let mut transaction = self.house.0.database.begin().await?;
-        let (id, secret) = identity::new_token(&mut transaction, None, name, Some(self.account.id)).await?;
+        let (id, secret) = identity::new_token(&mut transaction, None, name, Some(self.account.id), Way::Own).await?;
         let row: Row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
         let info = token_info(&row)?;
         self.note(&mut transaction, "worker token", &format!("{name} ({id})")).await?;
@@ -233,7 +233,7 @@ impl House {
             .one("SELECT id FROM account WHERE login = 'admin' AND is_admin = 1", values![])
             .await?
             .int("id")?;
-        let link = identity::new_link(&mut transaction, account, None).await?;
+        let link = identity::new_link(&mut transaction, account, None, Way::Own).await?;
         transaction.commit().await?;
         Ok(Some(link))
     }
@@ -248,7 +248,7 @@ impl House {
             .row("SELECT id FROM account WHERE login = ? AND is_admin = 1 AND disabled_at IS NULL", values![login])
             .await?;
         let Some(row) = row else { return Err(Problem::not_found("administrator")) };
-        let link = identity::new_link(&mut transaction, row.int("id")?, None).await?;
+        let link = identity::new_link(&mut transaction, row.int("id")?, None, Way::Own).await?;
         transaction.commit().await?;
         Ok(link)
     }

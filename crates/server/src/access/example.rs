@@ -1,5 +1,8 @@
 //! A course to try the service with: made on a fresh server when whoever starts it asks for it.
-use super::{House, NewSecret, Settings, identity};
+use super::{
+    House, NewSecret, Settings,
+    identity::{self, Way},
+};
 use crate::{problem::Problem, values};
 
 /// What is made; a course of this name is taken for it.
@@ -42,9 +45,9 @@ impl House {
                 .await?;
             let made = transaction
                 .row(
-                    "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
+                    "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
                      ON CONFLICT (login) DO NOTHING RETURNING id",
-                    values![STUDENT.0, STUDENT.1],
+                    values![STUDENT.0, STUDENT.1, course],
                 )
                 .await?;
             let Some(student) = made else {
@@ -70,7 +73,7 @@ impl House {
             )
             .await?;
         let link = match student {
-            Some(student) => Some(identity::new_link(&mut transaction, student.int("id")?, None).await?),
+            Some(student) => Some(identity::new_link(&mut transaction, student.int("id")?, None, Way::Own).await?),
             None => None,
         };
         transaction.commit().await?;

@@ -16,6 +16,9 @@ const SESSION: i64 = 14 * 24 * 3600 * 1000;
 /// How long a link that signs in is good for.
 const LINK: i64 = 7 * 24 * 3600 * 1000;
 
+/// How long after its beginning a session may make further ways in: tokens, passwords, memberships.
+const RECENT: i64 = 12 * 3600 * 1000;
+
 /// A session that was not seen for so long is noted again.
 const SEEN_EVERY: i64 = 3600 * 1000;
 
@@ -61,43 +64,79 @@ impl Session {
     }
 }
 
+/// How somebody came in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Way {
+    /// By their password, a learning platform, or a link that the server or an administrator made.
+    Own,
+    /// By a link that a course's staff made, who may have used it themselves.
+    Vouched,
+    /// By this token: the session ends with it.
+    Token(i64),
+}
+
+/// A session as a request shows it.
+#[derive(Debug, Clone)]
+pub(super) struct Seen {
+    /// The digest that it is kept by.
+    pub(super) digest: String,
+    /// Whether it was begun by a link that a course's staff made.
+    pub(super) is_vouched: bool,
+    /// Whether it was begun by a token.
+    pub(super) is_by_token: bool,
+    /// Whether it was begun lately.
+    pub(super) is_recent: bool,
+    /// Whether it is to be noted as seen.
+    pub(super) is_stale: bool,
+}
+
 /// What the database keeps of a secret. Random as it is, nobody finds it by trying.
 pub(super) fn digest(secret: &str) -> String {
     hex(&Sha256::digest(secret))
 }
 
-/// Whose token it is.
-pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str) -> Result<Account, Problem> {
+/// Whose token it is, and its number.
+pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str) -> Result<(Account, i64), Problem> {
     let row = transaction
         .row(
-            "SELECT account.id, account.login, account.name, account.is_admin FROM token
+            "SELECT account.id, account.login, account.name, account.is_admin, token.id AS token FROM token
              JOIN account ON account.id = token.account
              WHERE token.digest = ? AND token.revoked_at IS NULL AND account.disabled_at IS NULL",
             values![digest(token)],
         )
         .await?;
     match row {
-        Some(row) => Ok(Account::read(&row)?),
+        Some(row) => Ok((Account::read(&row)?, row.int("token")?)),
         None => Err(Problem::unknown_secret("token")),
     }
 }
 
-/// Whose session it is, and whether it is to be noted as seen.
+/// Whose session it is. One that a token began ends with the token.
 pub(super) async fn account_of_session(
     transaction: &mut Transaction,
     session: &str,
-) -> Result<Option<(Account, bool)>, Problem> {
+) -> Result<Option<(Account, Seen)>, Problem> {
     let row = transaction
         .row(
-            "SELECT account.id, account.login, account.name, account.is_admin, session.seen_at, {now} AS now
+            "SELECT account.id, account.login, account.name, account.is_admin, session.digest, session.vouched,
+                session.token, session.created_at, session.seen_at, {now} AS now
              FROM session JOIN account ON account.id = session.account
-             WHERE session.digest = ? AND session.expires_at > {now} AND account.disabled_at IS NULL",
+             LEFT JOIN token ON token.id = session.token
+             WHERE session.digest = ? AND session.expires_at > {now} AND account.disabled_at IS NULL
+                AND token.revoked_at IS NULL",
             values![digest(session)],
         )
         .await?;
     let Some(row) = row else { return Ok(None) };
-    let stale = row.int("now")? - row.int("seen_at")? > SEEN_EVERY;
-    Ok(Some((Account::read(&row)?, stale)))
+    let now = row.int("now")?;
+    let seen = Seen {
+        digest: row.text("digest")?,
+        is_vouched: row.flag("vouched")?,
+        is_by_token: row.maybe_int("token")?.is_some(),
+        is_recent: now - row.int("created_at")? < RECENT,
+        is_stale: now - row.int("seen_at")? > SEEN_EVERY,
+    };
+    Ok(Some((Account::read(&row)?, seen)))
 }
 
 /// Lets a session last from now on.
@@ -112,14 +151,15 @@ pub(super) async fn session_seen(transaction: &mut Transaction, session: &str) -
 }
 
 /// Begins a session.
-pub(super) async fn begin_session(transaction: &mut Transaction, account: i64) -> Result<Session, DbError> {
+pub(super) async fn begin_session(transaction: &mut Transaction, account: i64, way: Way) -> Result<Session, DbError> {
     let secret = NewSecret::new("");
+    let token = if let Way::Token(token) = way { Some(token) } else { None };
     transaction.execute("DELETE FROM session WHERE expires_at < {now}", values![]).await?;
     transaction
         .execute(
-            "INSERT INTO session (digest, account, created_at, seen_at, expires_at)
-             VALUES (?, ?, {now}, {now}, {now} + ?)",
-            values![secret.digest(), account, SESSION],
+            "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
+             VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)",
+            values![secret.digest(), account, SESSION, way == Way::Vouched, token],
         )
         .await?;
     Ok(Session(secret))
@@ -131,19 +171,21 @@ pub(super) async fn end_session(transaction: &mut Transaction, session: &str) ->
     Ok(())
 }
 
-/// Makes a link that signs in once; earlier ones of the account that were not used are void.
+/// Makes a link that signs in once; earlier ones of the account that were not used are void. Whether it is vouched for by
+/// a course's staff only, `way` says.
 pub(super) async fn new_link(
     transaction: &mut Transaction,
     account: i64,
     by: Option<i64>,
+    way: Way,
 ) -> Result<NewSecret, DbError> {
     let secret = NewSecret::new("");
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
     transaction
         .execute(
-            "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at)
-             VALUES (?, ?, ?, {now}, {now} + ?)",
-            values![secret.digest(), account, by, LINK],
+            "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
+             VALUES (?, ?, ?, {now}, {now} + ?, ?)",
+            values![secret.digest(), account, by, LINK, way == Way::Vouched],
         )
         .await?;
     Ok(secret)
@@ -160,22 +202,22 @@ pub(super) async fn is_link(transaction: &mut Transaction, link: &str) -> Result
     Ok(row.is_some())
 }
 
-/// Uses up a link, and says whose it was.
-pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Result<Option<i64>, DbError> {
+/// Uses up a link, and says whose it was, and how they come in.
+pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Result<Option<(i64, Way)>, DbError> {
     let row = transaction
         .row(
             "UPDATE sign_in_link SET used_at = {now} WHERE digest = ? AND used_at IS NULL AND expires_at > {now}
-             RETURNING account",
+             RETURNING account, vouched",
             values![digest(link)],
         )
         .await?;
     let Some(row) = row else { return Ok(None) };
-    let account = row.int("account")?;
+    let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
     // Who needs a link has forgotten the password: the next one is set without it.
     let able = transaction
         .row("UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id", values![account])
         .await?;
-    Ok(able.map(|_| account))
+    Ok(able.map(|_| (account, way)))
 }
 
 /// Ends all sessions of an account.
@@ -184,16 +226,38 @@ pub(super) async fn end_sessions(transaction: &mut Transaction, account: i64) ->
     Ok(())
 }
 
-/// Somebody may do more from now on: whoever signed in for them before, or set a password, is to do so again.
-pub(super) async fn end_all(transaction: &mut Transaction, account: i64, tokens: bool) -> Result<(), DbError> {
+/// Ends every way into an account: it may do more from now on, or nothing at all.
+pub(super) async fn end_all(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     end_sessions(transaction, account).await?;
-    transaction.execute("UPDATE account SET password = NULL WHERE id = ?", values![account]).await?;
+    transaction.execute("UPDATE account SET password = NULL, managed_by = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
-    if tokens {
-        transaction
-            .execute("UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL", values![account])
-            .await?;
+    transaction
+        .execute("UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL", values![account])
+        .await?;
+    Ok(())
+}
+
+/// The account is its person's own from now on. What was begun or made by links of a course's staff ends, who may have
+/// used these links themselves; but for the session that proves to be the person's.
+pub(super) async fn end_vouched(
+    transaction: &mut Transaction,
+    account: i64,
+    keep: Option<&str>,
+) -> Result<(), DbError> {
+    transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
+    if let Some(keep) = keep {
+        transaction.execute("UPDATE session SET vouched = 0 WHERE digest = ?", values![keep]).await?;
     }
+    transaction.execute("DELETE FROM session WHERE account = ? AND vouched = 1", values![account]).await?;
+    transaction
+        .execute("DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL", values![account])
+        .await?;
+    transaction
+        .execute(
+            "UPDATE token SET revoked_at = {now} WHERE account = ? AND vouched = 1 AND revoked_at IS NULL",
+            values![account],
+        )
+        .await?;
     Ok(())
 }
 
@@ -216,12 +280,14 @@ pub(super) async fn new_token(
     account: Option<i64>,
     name: &str,
     by: Option<i64>,
+    way: Way,
 ) -> Result<(i64, NewSecret), DbError> {
     let secret = NewSecret::new(if account.is_some() { PERSON } else { WORKER });
     let row = transaction
         .one(
-            "INSERT INTO token (account, name, digest, created_by, created_at) VALUES (?, ?, ?, ?, {now}) RETURNING id",
-            values![account, name, secret.digest(), by],
+            "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
+             VALUES (?, ?, ?, ?, {now}, ?) RETURNING id",
+            values![account, name, secret.digest(), by, way == Way::Vouched],
         )
         .await?;
     Ok((row.int("id")?, secret))

@@ -1,6 +1,9 @@
 //! Coming from a learning platform: the platform is asked who it is (SEC 5.1.1), answers once, and they are signed in
 //! as who they are here, in the course that belongs to theirs there.
-use super::{House, NewSecret, Session, Visitor, identity};
+use super::{
+    House, NewSecret, Session, Visitor,
+    identity::{self, Way},
+};
 use crate::{
     db::{DbError, Row, Transaction},
     lti::{Arrival, Message, Platform, Refused, Role, score},
@@ -248,7 +251,7 @@ async fn arrive(
             if !staff {
                 score::arrived(transaction, link, account).await?;
             }
-            let session = identity::begin_session(transaction, account).await?;
+            let session = identity::begin_session(transaction, account, Way::Own).await?;
             Ok(Launched { session, to: format!("/c/{slug}/a/{assignment}") })
         }
         None if staff => choose(transaction, platform, arrival, account).await,
@@ -317,9 +320,9 @@ async fn choose(
         .await?;
     // What is chosen may make a student's account that of staff.
     if !identity::is_trusted(transaction, account).await? {
-        identity::end_all(transaction, account, true).await?;
+        identity::end_all(transaction, account).await?;
     }
-    let session = identity::begin_session(transaction, account).await?;
+    let session = identity::begin_session(transaction, account, Way::Own).await?;
     Ok(Launched { session, to: format!("/lti/choose/{}", secret.reveal()) })
 }
 
@@ -438,8 +441,10 @@ pub(super) async fn enrol(
         return Ok(());
     }
     // A link or session from before must not do more than it could.
-    if !identity::is_trusted(transaction, account).await? {
-        identity::end_all(transaction, account, role == Role::Staff).await?;
+    if role == Role::Staff && !identity::is_trusted(transaction, account).await? {
+        identity::end_all(transaction, account).await?;
+    } else {
+        identity::end_vouched(transaction, account, None).await?;
     }
     transaction
         .execute(

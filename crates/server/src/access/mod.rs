@@ -9,6 +9,7 @@ mod choice;
 mod example;
 mod file_name;
 mod identity;
+mod invitation;
 mod launch;
 mod member;
 mod password;
@@ -31,6 +32,7 @@ pub use admin::Admin;
 pub use choice::{Choice, Chosen};
 pub use file_name::is_file_name;
 pub use identity::{NewSecret, Session};
+pub use invitation::Invitation;
 pub use launch::{Launched, LoginAnswer, LoginRequest};
 pub use member::Member;
 pub use password::Passwords;
@@ -38,9 +40,9 @@ pub use person::{CourseOf, Person, TokenInfo};
 pub use platform::{RosterRead, ScoreInfo};
 pub use regrade::{Change, Regrade, RegradeState};
 pub use remote::{Claimed, Remote};
-pub use request::{Secrets, browser_cookie, cookie_name};
+pub use request::{Renewed, Secrets, browser_cookie, cookie_name};
 pub use settings::Settings;
-pub use staff::{MemberInfo, Staff, Standing};
+pub use staff::{Added, MemberInfo, Staff, Standing};
 pub use submit::{Accepted, Upload};
 pub use suites::Suites;
 pub use suspicion::Suspicion;
@@ -107,6 +109,18 @@ impl House {
     #[must_use]
     pub fn public(&self) -> &str {
         &self.0.public
+    }
+
+    /// A link that signs in once, as people open it.
+    #[must_use]
+    pub fn welcome_address(&self, secret: &NewSecret) -> String {
+        format!("{}/welcome/{}", self.public(), secret.reveal())
+    }
+
+    /// A link to an invitation.
+    #[must_use]
+    pub fn invitation_address(&self, secret: &NewSecret) -> String {
+        format!("{}/invitation/{}", self.public(), secret.reveal())
     }
 
     /// The suites that come with the grader.

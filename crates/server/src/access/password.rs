@@ -2,8 +2,12 @@
 //!
 //! They are kept as Argon2id digests with the parameters that OWASP recommends (Password Storage Cheat Sheet: 19 MiB,
 //! two passes, one lane). Each check costs that memory and some hundredths of a second of a core, so that only a few
-//! run at one time, and each account is tried a few times a minute only.
-use super::{House, Person, Session, Visitor, identity};
+//! run at one time. Wrong ones slow down the address that they come from, and never the person: from another address
+//! the right one goes on working.
+use super::{
+    House, Person, Session, Visitor,
+    identity::{self, Way},
+};
 use crate::{
     problem::Problem,
     secret::{hex, random_hex},
@@ -12,6 +16,7 @@ use crate::{
 use argon2::{Algorithm, Argon2, Params, Version};
 use std::{
     hash::{DefaultHasher, Hash, Hasher},
+    net::{IpAddr, Ipv6Addr},
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -26,8 +31,11 @@ const AT_ONE_TIME: usize = 2;
 /// How long somebody waits for their turn.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Tries in a minute, for each login that somebody claims to have.
+/// Wrong passwords in a minute from one address, for one login.
 const TRIES: u32 = 10;
+
+/// Wrong passwords in a minute from one address, for whatever logins. A lecture hall may be one address.
+const TRIES_OF_ADDRESS: u32 = 60;
 
 /// How long a password may be.
 const LENGTH: std::ops::RangeInclusive<usize> = 10..=200;
@@ -84,14 +92,44 @@ impl Passwords {
         done.await.map_err(|_| Problem::fault())?
     }
 
-    /// Counts a try to be somebody, also somebody who does not exist.
-    fn count(&self, login: &str) -> Result<(), Problem> {
-        let mut hasher = DefaultHasher::new();
-        login.hash(&mut hasher);
-        match self.tries.pass(hasher.finish().cast_signed(), TRIES, Instant::now()) {
-            true => Ok(()),
-            false => Err(Problem::too_many("too many passwords were tried for this login")),
+    /// Counts a try to be somebody, also somebody who does not exist, until it turns out to be right.
+    fn try_of(&self, address: Option<IpAddr>, login: &str) -> Result<Try<'_>, Problem> {
+        let network = address.map(network);
+        let bucket = |word: &str| {
+            let mut hasher = DefaultHasher::new();
+            (network, word).hash(&mut hasher);
+            hasher.finish().cast_signed()
+        };
+        // No login is empty.
+        let buckets = [(bucket(""), TRIES_OF_ADDRESS), (bucket(login), TRIES)];
+        let now = Instant::now();
+        for (place, (bucket, most)) in buckets.into_iter().enumerate() {
+            if !self.tries.pass(bucket, most, now) {
+                buckets[..place].iter().for_each(|(bucket, _)| self.tries.put_back(*bucket));
+                return Err(Problem::too_many("too many wrong passwords came from your address"));
+            }
         }
+        Ok(Try { passwords: self, buckets: buckets.map(|(bucket, _)| bucket) })
+    }
+}
+
+/// A try that counts as wrong unless it turns out to be right.
+struct Try<'a> {
+    passwords: &'a Passwords,
+    buckets: [i64; 2],
+}
+
+impl Try<'_> {
+    fn was_right(&self) {
+        self.buckets.iter().for_each(|bucket| self.passwords.tries.put_back(*bucket));
+    }
+}
+
+/// What belongs to one customer: of the newer addresses everybody has 2^64.
+fn network(address: IpAddr) -> IpAddr {
+    match address.to_canonical() {
+        IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
+        address @ IpAddr::V4(_) => address,
     }
 }
 
@@ -116,7 +154,7 @@ impl Visitor {
     /// nobody learns.
     pub async fn sign_in_by_password(&self, login: &str, password: &str) -> Result<Session, Problem> {
         let passwords = self.house.passwords()?;
-        passwords.count(login)?;
+        let attempt = passwords.try_of(self.address, login)?;
         let mut transaction = self.house.0.database.read().await?;
         let row = transaction
             .row("SELECT id, password FROM account WHERE login = ? AND disabled_at IS NULL", values![login])
@@ -129,6 +167,7 @@ impl Visitor {
         let (given, of_account) = (password.to_owned(), kept.clone());
         let right = passwords.work(move || is_kept(&given, of_account.as_deref())).await?;
         let (true, Some(row)) = (right, row) else { return Err(Problem::wrong_password()) };
+        attempt.was_right();
         let account = row.int("id")?;
         let mut transaction = self.house.0.database.begin().await?;
         // It may have been changed, or the account shut, while the digest was computed.
@@ -141,7 +180,7 @@ impl Visitor {
         if still.is_none() {
             return Err(Problem::wrong_password());
         }
-        let session = identity::begin_session(&mut transaction, account).await?;
+        let session = identity::begin_session(&mut transaction, account, Way::Own).await?;
         transaction.commit().await?;
         Ok(session)
     }
@@ -149,20 +188,24 @@ impl Visitor {
 
 impl Person {
     /// Sets one's own password, or changes it; whoever has one shows it. All sessions end, so that whoever signed in by
-    /// the old one is out.
+    /// the old one is out, and so does what was made by links of a course's staff: the account is this person's own.
     ///
     /// # Errors
-    /// When the old one is wrong, or the new one too short.
+    /// When the old one is wrong, the new one too short, or they did not sign in lately.
     pub async fn set_password(&self, old: &str, new: &str) -> Result<(), Problem> {
         let passwords = self.house.passwords()?;
         if !LENGTH.contains(&new.chars().count()) || new == self.account.login || new.chars().any(char::is_control) {
             return Err(Problem::invalid("a password is 10 to 200 characters long, and not the login"));
         }
-        passwords.count(&self.account.login)?;
+        self.at_browser()?;
         let mut transaction = self.house.0.database.read().await?;
         let row = transaction.one("SELECT password FROM account WHERE id = ?", values![self.account.id]).await?;
         drop(transaction);
         let kept = row.maybe_text("password")?;
+        if kept.is_none() {
+            self.lately_at_browser()?;
+        }
+        let attempt = passwords.try_of(self.address, &self.account.login)?;
         let (old, new, of_account) = (old.to_owned(), new.to_owned(), kept.clone());
         let digest = passwords
             .work(move || match of_account {
@@ -170,6 +213,7 @@ impl Person {
                 _ => digest(&new, &random_hex()),
             })
             .await?;
+        attempt.was_right();
         let mut transaction = self.house.0.database.begin().await?;
         let changed = transaction
             .execute(
@@ -181,6 +225,7 @@ impl Person {
             return Err(Problem::conflict("the password was changed meanwhile", "sign in again"));
         }
         identity::end_sessions(&mut transaction, self.account.id).await?;
+        identity::end_vouched(&mut transaction, self.account.id, None).await?;
         transaction.commit().await?;
         Ok(())
     }

@@ -1,11 +1,17 @@
 //! Somebody who is signed in.
-use super::{House, NewSecret, account::Account, identity, view::Course};
+use super::{
+    House, NewSecret,
+    account::Account,
+    identity::{self, Seen, Way},
+    view::Course,
+};
 use crate::{
     db::{DbError, Row},
     problem::Problem,
     values,
 };
 use serde::Serialize;
+use std::net::IpAddr;
 use utoipa::ToSchema;
 
 /// A course, and what somebody is in it.
@@ -32,6 +38,9 @@ pub struct TokenInfo {
 /// Somebody who is signed in.
 pub struct Person {
     pub(super) account: Account,
+    /// The browser's session; nothing where a token asks.
+    pub(super) session: Option<Seen>,
+    pub(super) address: Option<IpAddr>,
     pub(super) house: House,
 }
 
@@ -46,6 +55,21 @@ impl Person {
     #[must_use]
     pub fn house(&self) -> &House {
         &self.house
+    }
+
+    /// The session, where it is the person at a browser: what a token can do, ends with the token.
+    pub(super) fn at_browser(&self) -> Result<&Seen, Problem> {
+        let session = self.session.as_ref().filter(|session| !session.is_by_token);
+        session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session that was begun by one"))
+    }
+
+    /// The same, where they signed in lately: whoever finds an open browser makes no further ways in.
+    pub(super) fn lately_at_browser(&self) -> Result<&Seen, Problem> {
+        let session = self.at_browser()?;
+        match session.is_recent {
+            true => Ok(session),
+            false => Err(Problem::sign_in_again("you signed in more than twelve hours ago")),
+        }
     }
 
     /// The courses that they may see.
@@ -88,9 +112,10 @@ impl Person {
     /// Makes a token.
     ///
     /// # Errors
-    /// When its name is none, or there are too many.
+    /// When its name is none, there are too many, or they did not sign in lately.
     pub async fn new_token(&self, name: &str) -> Result<(TokenInfo, NewSecret), Problem> {
         identity::check_title("a token's name", name)?;
+        let way = if self.lately_at_browser()?.is_vouched { Way::Vouched } else { Way::Own };
         let mut transaction = self.house.0.database.begin().await?;
         let count = transaction
             .one("SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL", values![self.account.id])
@@ -99,7 +124,7 @@ impl Person {
             return Err(Problem::conflict("an account has at most 50 tokens", "revoke those that nobody uses"));
         }
         let (id, secret) =
-            identity::new_token(&mut transaction, Some(self.account.id), name, Some(self.account.id)).await?;
+            identity::new_token(&mut transaction, Some(self.account.id), name, Some(self.account.id), way).await?;
         let row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
         let info = token_info(&row)?;
         transaction.commit().await?;

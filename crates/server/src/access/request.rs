@@ -1,11 +1,36 @@
 //! Who asks, told from a request.
-use super::{Admin, House, Member, Person, Remote, Staff, Visitor, account::Account, identity};
+use super::{
+    Admin, House, Member, Person, Remote, Staff, Visitor,
+    account::Account,
+    identity::{self, Seen},
+};
 use crate::{problem::Problem, values};
 use axum::{
-    extract::{FromRequestParts, RawPathParams},
+    extract::{ConnectInfo, FromRequestParts, RawPathParams},
     http::{HeaderMap, header, request::Parts},
 };
-use std::time::Instant;
+use std::{
+    net::{IpAddr, SocketAddr},
+    sync::{Arc, OnceLock},
+    time::Instant,
+};
+
+/// Where a request's session is noted when it lasts longer from now on: the browser is to keep its cookie as long.
+#[derive(Debug, Clone, Default)]
+pub struct Renewed(Arc<OnceLock<String>>);
+
+impl Renewed {
+    /// What the cookie holds, if it is to be sent again.
+    #[must_use]
+    pub fn session(&self) -> Option<&str> {
+        self.0.get().map(String::as_str)
+    }
+}
+
+/// Where a request comes from.
+fn address(parts: &Parts) -> Option<IpAddr> {
+    parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(address)| address.ip())
+}
 
 /// What a request shows.
 #[derive(Clone, Default)]
@@ -55,23 +80,23 @@ impl Secrets {
 
 impl House {
     /// Who shows these secrets.
-    async fn account(&self, secrets: &Secrets) -> Result<Account, Problem> {
-        let account = match secrets {
+    async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<Seen>), Problem> {
+        let (account, seen) = match secrets {
             Secrets { bearer: Some(token), .. } => {
                 let mut transaction = self.0.database.read().await?;
-                identity::account_of_token(&mut transaction, token).await?
+                (identity::account_of_token(&mut transaction, token).await?.0, None)
             }
             Secrets { session: Some(session), .. } => {
                 let mut transaction = self.0.database.read().await?;
                 let found = identity::account_of_session(&mut transaction, session).await?;
                 drop(transaction);
-                let (account, stale) = found.ok_or_else(|| Problem::unknown_secret("session"))?;
-                if stale {
+                let (account, seen) = found.ok_or_else(|| Problem::unknown_secret("session"))?;
+                if seen.is_stale {
                     let mut transaction = self.0.database.begin().await?;
                     identity::session_seen(&mut transaction, session).await?;
                     transaction.commit().await?;
                 }
-                account
+                (account, Some(seen))
             }
             _ => return Err(Problem::not_signed_in()),
         };
@@ -79,7 +104,7 @@ impl House {
             let most = self.0.requests_per_minute;
             return Err(Problem::too_many(format!("an account may send {most} requests in a minute")));
         }
-        Ok(account)
+        Ok((account, seen))
     }
 }
 
@@ -88,7 +113,8 @@ impl FromRequestParts<House> for Visitor {
 
     async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
         let secrets = Secrets::of(&parts.headers, house.is_secure());
-        Ok(Self { house: house.clone(), session: secrets.session, browser: secrets.browser })
+        let address = address(parts);
+        Ok(Self { house: house.clone(), session: secrets.session, browser: secrets.browser, address })
     }
 }
 
@@ -97,7 +123,14 @@ impl FromRequestParts<House> for Person {
 
     async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
         let secrets = Secrets::of(&parts.headers, house.is_secure());
-        Ok(Self { account: house.account(&secrets).await?, house: house.clone() })
+        let (account, session) = house.account(&secrets).await?;
+        if let (Some(true), Some(secret), Some(renewed)) =
+            (session.as_ref().map(|seen| seen.is_stale), secrets.session, parts.extensions.get::<Renewed>())
+        {
+            // Another part of the same request may have noted it.
+            drop(renewed.0.set(secret));
+        }
+        Ok(Self { account, session, address: address(parts), house: house.clone() })
     }
 }
 

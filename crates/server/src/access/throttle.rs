@@ -30,6 +30,14 @@ impl Throttle {
         *bucket = (if passes { left - 1.0 } else { left }, now);
         passes
     }
+
+    /// Puts a token back: what it was taken for is not to count.
+    pub(super) fn put_back(&self, account: i64) {
+        let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((level, _)) = buckets.get_mut(&account) {
+            *level += 1.0;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -47,5 +55,7 @@ mod tests {
         assert!(!throttle.pass(1, 12, start + Duration::from_secs(4)));
         assert!(throttle.pass(1, 12, start + Duration::from_secs(9)));
         assert!(!throttle.pass(1, 12, start + Duration::from_secs(9)));
+        throttle.put_back(1);
+        assert!(throttle.pass(1, 12, start + Duration::from_secs(9)));
     }
 }

@@ -1,12 +1,17 @@
 //! Anybody.
-use super::{House, Session, identity};
+use super::{
+    House, Session,
+    identity::{self, Way},
+};
 use crate::{db, problem::Problem, queue::Lane, values};
+use std::net::IpAddr;
 
 /// Somebody who need not be signed in.
 pub struct Visitor {
     pub(super) house: House,
     pub(super) session: Option<String>,
     pub(super) browser: Option<String>,
+    pub(super) address: Option<IpAddr>,
 }
 
 /// What may be counted without knowing anybody.
@@ -55,24 +60,24 @@ impl Visitor {
         }
         drop(transaction);
         let mut transaction = self.house.0.database.begin().await?;
-        let Some(account) = identity::use_link(&mut transaction, link).await? else {
+        let Some((account, way)) = identity::use_link(&mut transaction, link).await? else {
             return Err(Problem::unknown_secret("link"));
         };
-        let session = identity::begin_session(&mut transaction, account).await?;
+        let session = identity::begin_session(&mut transaction, account, way).await?;
         transaction.commit().await?;
         Ok(session)
     }
 
-    /// Signs in by a token of a person.
+    /// Signs in by a token of a person, until it is revoked.
     ///
     /// # Errors
     /// When it is unknown or revoked.
     pub async fn sign_in_by_token(&self, token: &str) -> Result<Session, Problem> {
         let mut transaction = self.house.0.database.read().await?;
-        let account = identity::account_of_token(&mut transaction, token).await?;
+        let (account, token) = identity::account_of_token(&mut transaction, token).await?;
         drop(transaction);
         let mut transaction = self.house.0.database.begin().await?;
-        let session = identity::begin_session(&mut transaction, account.id).await?;
+        let session = identity::begin_session(&mut transaction, account.id, Way::Token(token)).await?;
         transaction.commit().await?;
         Ok(session)
     }

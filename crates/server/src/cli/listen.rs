@@ -1,6 +1,11 @@
 //! Taking connections: each has to say what it wants in time, and none is cut off in the middle when the server ends.
-use axum::Router;
-use hyper::server::conn::http1;
+use axum::{Router, extract::ConnectInfo};
+use hyper::{
+    Request,
+    body::Incoming,
+    server::conn::http1,
+    service::{Service, service_fn},
+};
 use hyper_util::{
     rt::{TokioIo, TokioTimer},
     server::graceful::GracefulShutdown,
@@ -28,8 +33,8 @@ pub(super) async fn serve(listener: TcpListener, router: Router, patience: Durat
                 (place, listener.accept().await)
             } => accepted,
         };
-        let (place, stream) = match accepted {
-            (place, Ok((stream, _))) => (place, stream),
+        let (place, (stream, address)) = match accepted {
+            (place, Ok((stream, address))) => (place, (stream, address)),
             (_, Err(error)) => {
                 // Out of file descriptors, or the other side is gone already.
                 tracing::warn!(%error, "a connection could not be taken");
@@ -38,11 +43,16 @@ pub(super) async fn serve(listener: TcpListener, router: Router, patience: Durat
             }
         };
         drop(stream.set_nodelay(true));
+        let inner = TowerToHyperService::new(router.clone());
+        let service = service_fn(move |mut request: Request<Incoming>| {
+            request.extensions_mut().insert(ConnectInfo(address));
+            inner.call(request)
+        });
         let connection = http1::Builder::new()
             .timer(TokioTimer::new())
             .header_read_timeout(patience)
             .max_buf_size(64 * 1024)
-            .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router.clone()));
+            .serve_connection(TokioIo::new(stream), service);
         let connection = graceful.watch(connection);
         tokio::spawn(async move {
             if let Err(error) = connection.await {

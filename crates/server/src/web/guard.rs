@@ -1,6 +1,6 @@
 //! What holds for every request: where it may come from, what answers say to browsers, and what is logged.
 use crate::{
-    access::{House, Secrets},
+    access::{House, Renewed, Secrets, cookie_name},
     problem::Problem,
 };
 use axum::{
@@ -30,7 +30,32 @@ pub(super) async fn same_site(State(house): State<House>, request: Request, next
     {
         return next.run(request).await;
     }
+    // A program that forgot its token: nobody asks, whatever the site.
+    if request.uri().path().starts_with("/api/") && Secrets::of(request.headers(), house.is_secure()).session.is_none()
+    {
+        return Problem::not_signed_in().into_response();
+    }
     Problem::cross_site().into_response()
+}
+
+/// Sends a session's cookie again when it lasts longer from now on.
+pub(super) async fn renew(State(house): State<House>, mut request: Request, next: Next) -> Response {
+    let renewed = Renewed::default();
+    request.extensions_mut().insert(renewed.clone());
+    let mut response = next.run(request).await;
+    if let Some(session) = renewed.session()
+        && !response.headers().contains_key(header::SET_COOKIE)
+        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&house, session))
+    {
+        response.headers_mut().append(header::SET_COOKIE, cookie);
+    }
+    response
+}
+
+/// A session's cookie, which lasts as long as the session does.
+pub(super) fn session_cookie(house: &House, session: &str) -> String {
+    let (name, secure) = (cookie_name(house.is_secure()), if house.is_secure() { "; Secure" } else { "" });
+    format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age=1209600{secure}")
 }
 
 fn is_harmless(method: &Method) -> bool {

@@ -67,6 +67,7 @@ pub fn router(house: House) -> Router {
         // Whoever reads a body counts it: what is allowed differs.
         .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(house.clone(), guard::same_site))
+        .layer(middleware::from_fn_with_state(house.clone(), guard::renew))
         .layer(middleware::from_fn_with_state(house.clone(), guard::headers))
         .layer(middleware::from_fn(guard::log))
         .with_state(house)

@@ -59,7 +59,7 @@ pub(super) struct Before {
 
 /// A link as people open it.
 pub(super) fn link(house: &crate::access::House, secret: Option<NewSecret>) -> Link {
-    Link { link: secret.map(|secret| format!("{}/welcome/{}", house.public(), secret.reveal())) }
+    Link { link: secret.map(|secret| house.welcome_address(&secret)) }
 }
 
 /// Who asks.

@@ -8,7 +8,7 @@ use crate::{
     problem::Problem,
 };
 use axum::{Json, http::StatusCode};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// A course as it is to be.
@@ -27,6 +27,15 @@ pub(super) struct MemberWish {
     name: String,
     /// `student` or `staff`.
     role: String,
+}
+
+/// What is to be handed on to a new member.
+#[derive(Serialize, ToSchema)]
+pub(super) struct MemberLinks {
+    /// A link that signs in once, good for a week; nothing where the account was there before.
+    link: Option<String>,
+    /// A link to accept by, for whoever has an account of their own: they open it, signed in as ever.
+    invitation: Option<String>,
 }
 
 /// The courses that one is in.
@@ -53,17 +62,20 @@ pub(super) async fn members(staff: Staff) -> Result<Json<Vec<MemberInfo>>, Probl
     Ok(Json(staff.members().await?))
 }
 
-/// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once.
+/// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once. Whoever
+/// has an account of their own is invited, and nothing changes until they accept.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/members/{login}", tag = "courses",
     params(("course" = String, Path), ("login" = String, Path)), request_body = MemberWish,
-    responses((status = 200, body = Link), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = MemberLinks), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn set_member(
     staff: Staff,
     Params((_, login)): Params<(String, String)>,
     Body(wish): Body<MemberWish>,
-) -> Result<Json<Link>, Problem> {
-    let secret = staff.set_member(&login, &wish.name, &wish.role).await?;
-    Ok(Json(link(staff.member().house(), secret)))
+) -> Result<Json<MemberLinks>, Problem> {
+    let added = staff.set_member(&login, &wish.name, &wish.role).await?;
+    let house = staff.member().house();
+    let invitation = added.invitation.map(|secret| house.invitation_address(&secret));
+    Ok(Json(MemberLinks { link: link(house, added.link).link, invitation }))
 }
 
 /// Takes somebody out of the course; what they handed in stays.

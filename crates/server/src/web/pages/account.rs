@@ -4,7 +4,7 @@ use super::{
     Frame, see, show, text,
 };
 use crate::{
-    access::{CourseOf, Person, TokenInfo},
+    access::{CourseOf, Invitation, Person, TokenInfo},
     problem::Problem,
 };
 use askama::Template;
@@ -17,6 +17,15 @@ struct Home {
     frame: Frame,
     name: String,
     courses: Vec<CourseOf>,
+    invitations: Vec<Invitation>,
+}
+
+#[derive(Template)]
+#[template(path = "invitation.html")]
+struct InvitationPage {
+    frame: Frame,
+    secret: String,
+    invitation: Invitation,
 }
 
 #[derive(Template)]
@@ -42,7 +51,29 @@ pub(super) struct Name {
 
 pub(super) async fn home(person: Person) -> Result<Html<String>, Problem> {
     let account = person.account();
-    show(&Home { frame: Frame::of(account), name: account.name.clone(), courses: person.courses().await? })
+    let (courses, invitations) = (person.courses().await?, person.invitations().await?);
+    show(&Home { frame: Frame::of(account), name: account.name.clone(), courses, invitations })
+}
+
+/// Opening the link does nothing yet.
+pub(super) async fn invitation(person: Person, Params(secret): Params<String>) -> Result<Html<String>, Problem> {
+    let invitation = person.invitation(&secret).await?;
+    show(&InvitationPage { frame: Frame::of(person.account()), secret, invitation })
+}
+
+pub(super) async fn accept_by_link(person: Person, Params(secret): Params<String>) -> Result<Redirect, Problem> {
+    let course = person.accept_by_link(&secret).await?;
+    Ok(see(&format!("/c/{}", course.slug)))
+}
+
+pub(super) async fn accept(person: Person, Params(course): Params<String>) -> Result<Redirect, Problem> {
+    person.answer_invitation(&course, true).await?;
+    Ok(see(&format!("/c/{course}")))
+}
+
+pub(super) async fn decline(person: Person, Params(course): Params<String>) -> Result<Redirect, Problem> {
+    person.answer_invitation(&course, false).await?;
+    Ok(see("/"))
 }
 
 async fn page(person: &Person, new: Option<String>) -> Result<Html<String>, Problem> {

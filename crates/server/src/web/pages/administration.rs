@@ -70,7 +70,7 @@ pub(super) async fn new_course(admin: Admin, Fields(form): Fields<NewCourse>) ->
 
 pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Result<Html<String>, Problem> {
     let secret = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?;
-    let link = format!("{}/welcome/{}", admin.house().public(), secret.reveal());
+    let link = admin.house().welcome_address(&secret);
     make(&admin, Some(link), None).await
 }
 

@@ -34,7 +34,8 @@ struct MembersPage {
     slug: String,
     members: Vec<MemberInfo>,
     platforms: Vec<String>,
-    link: Option<(String, String)>,
+    /// What is to be handed on: to whom, what it is, and the link.
+    link: Option<(String, &'static str, String)>,
 }
 
 #[derive(Template)]
@@ -61,6 +62,9 @@ struct SettingsPage {
     settings: String,
     suites: String,
 }
+
+const SIGNS_IN: &str = "a link that signs in once, good for a week";
+const INVITES: &str = "an invitation: they have an account, and accept by this link, signed in as ever";
 
 #[derive(Deserialize)]
 pub(super) struct NewAssignment {
@@ -107,7 +111,7 @@ pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignm
     Ok(see(&format!("/c/{}/a/{slug}/settings", staff.member().course().slug)))
 }
 
-async fn members_page(staff: &Staff, link: Option<(String, String)>) -> Result<Html<String>, Problem> {
+async fn members_page(staff: &Staff, link: Option<(String, &'static str, String)>) -> Result<Html<String>, Problem> {
     let slug = staff.member().course().slug;
     let frame = Frame::course(staff.member()).then(format!("/c/{slug}/members"), "Members");
     show(&MembersPage {
@@ -125,9 +129,13 @@ pub(super) async fn members(staff: Staff) -> Result<Html<String>, Problem> {
 
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Result<Html<String>, Problem> {
     let login = form.login.trim();
-    let secret = staff.set_member(login, form.name.trim(), &form.role).await?;
-    let public = staff.member().house().public();
-    let link = secret.map(|secret| (login.to_owned(), format!("{public}/welcome/{}", secret.reveal())));
+    let added = staff.set_member(login, form.name.trim(), &form.role).await?;
+    let house = staff.member().house();
+    let link = match (added.link, added.invitation) {
+        (Some(secret), _) => Some((login.to_owned(), SIGNS_IN, house.welcome_address(&secret))),
+        (None, Some(secret)) => Some((login.to_owned(), INVITES, house.invitation_address(&secret))),
+        (None, None) => None,
+    };
     members_page(&staff, link).await
 }
 
@@ -136,8 +144,8 @@ pub(super) async fn member_link(
     Params((_, login)): Params<(String, String)>,
 ) -> Result<Html<String>, Problem> {
     let secret = staff.new_link(&login).await?;
-    let link = format!("{}/welcome/{}", staff.member().house().public(), secret.reveal());
-    members_page(&staff, Some((login, link))).await
+    let link = staff.member().house().welcome_address(&secret);
+    members_page(&staff, Some((login, SIGNS_IN, link))).await
 }
 
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Html<String>, Problem> {

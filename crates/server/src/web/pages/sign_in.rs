@@ -1,6 +1,9 @@
 //! Signing in and out.
 use super::{
-    super::input::{Fields, Params},
+    super::{
+        guard::session_cookie,
+        input::{Fields, Params},
+    },
     Frame, see, show,
 };
 use crate::{
@@ -40,14 +43,7 @@ pub(super) struct Password {
 
 /// A new session's cookie, and the way on.
 pub(super) fn enter(house: &House, session: &Session, to: &str) -> Response {
-    let secure = house.is_secure();
-    let cookie = format!(
-        "{}={}; Path=/; HttpOnly; SameSite=Lax; Max-Age=1209600{}",
-        cookie_name(secure),
-        session.secret(),
-        if secure { "; Secure" } else { "" }
-    );
-    with_cookie(&cookie, to)
+    with_cookie(&session_cookie(house, session.secret()), to)
 }
 
 pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {

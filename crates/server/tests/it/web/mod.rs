@@ -5,6 +5,7 @@ mod flows;
 mod hidden;
 mod hostile;
 mod passwords;
+mod people;
 mod platforms;
 mod replay;
 mod roles;

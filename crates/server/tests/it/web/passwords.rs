@@ -15,6 +15,13 @@ fn set(person: &Client, old: &str, new: &str) -> u16 {
     person.send("PUT", "/api/v1/password", JSON, wish.as_bytes()).status
 }
 
+/// A member with a browser.
+fn member(server: &Server, admin: &Client, login: &str) -> Client {
+    let wish = br#"{"name": "X", "role": "student"}"#;
+    let made = admin.send("PUT", &format!("/api/v1/courses/physics/members/{login}"), JSON, wish).expect(200).json();
+    server.visitor().welcome(made["link"].as_str().expect("a link").rsplit('/').next().expect("a secret"))
+}
+
 fn sign_in(server: &Server, login: &str, password: &str) -> crate::support::server::Answer {
     server.visitor().post_form("/sign-in/password", &format!("login={login}&password={password}"))
 }
@@ -23,7 +30,7 @@ async fn a_password_signs_in_until_it_is_changed(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "0", "--passwords"]);
     let admin = server.admin();
     server.course(&admin, "physics");
-    let ada = server.member(&admin, "physics", "ada", "student");
+    let ada = member(&server, &admin, "ada");
     assert!(server.visitor().get("/sign-in").expect(200).text().contains("With a password"));
     assert!(ada.get("/account").expect(200).text().contains("New password"));
     for bad in ["short", "123456789", &"x".repeat(201)] {
@@ -33,17 +40,19 @@ async fn a_password_signs_in_until_it_is_changed(fresh: Fresh) {
     let cookie =
         sign_in(&server, "ada", "correct+horse").expect(303).header("set-cookie").expect("a cookie").to_owned();
     let cookie = cookie.split(';').next().expect("a value").to_owned();
-    let session = Client { url: server.url.clone(), headers: vec![("Cookie".to_owned(), cookie)] };
+    let headers = [("Cookie".to_owned(), cookie), ("Sec-Fetch-Site".to_owned(), "same-origin".to_owned())];
+    let session = Client { url: server.url.clone(), headers: headers.into() };
     session.get("/api/v1/me").expect(200);
     // Whoever changes it shows the old one, and who signed in by that is out.
-    assert_eq!(set(&ada, "wrong horse!", "another horse"), 401);
-    assert_eq!(set(&ada, "correct horse", "another horse"), 204);
+    assert_eq!(set(&ada, "correct horse", "another horse"), 401, "she is out, too");
+    assert_eq!(set(&session, "wrong horse!", "another horse"), 401);
+    assert_eq!(set(&session, "correct horse", "another horse"), 204);
     session.get("/api/v1/me").expect(401);
     sign_in(&server, "ada", "correct+horse").expect(401);
     sign_in(&server, "ada", "another+horse").expect(303);
     // A link makes it void: who needs one has forgotten it.
     let link = admin.post_json("/api/v1/courses/physics/members/ada/link", "{}").expect(200).json();
-    server.visitor().welcome(link["link"].as_str().expect("a link").rsplit('/').next().expect("a secret"));
+    let ada = server.visitor().welcome(link["link"].as_str().expect("a link").rsplit('/').next().expect("a secret"));
     sign_in(&server, "ada", "another+horse").expect(401);
     // So does becoming more than a student: whoever set it could sign in as staff.
     assert_eq!(set(&ada, "", "third horse !"), 204);
@@ -61,7 +70,8 @@ async fn nobody_signs_in_by_guessing(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "0", "--passwords"]);
     let admin = server.admin();
     server.course(&admin, "physics");
-    let ada = server.member(&admin, "physics", "ada", "student");
+    let ada = member(&server, &admin, "ada");
+    let eve = member(&server, &admin, "eve");
     assert_eq!(set(&ada, "", "correct horse"), 204);
     let mut transaction = fresh.database.read().await.expect("a transaction");
     let kept = transaction.one("SELECT password FROM account WHERE login = 'ada'", &[]).await.expect("a row");
@@ -70,6 +80,8 @@ async fn nobody_signs_in_by_guessing(fresh: Fresh) {
     // Who has no password, and who does not exist, are told alike.
     let (nobody, without) = (sign_in(&server, "nobody", "whatever+it"), sign_in(&server, "admin", "whatever+it"));
     assert_eq!((nobody.status, nobody.body), (401, without.body));
+    // Right ones are not counted, however many.
+    assert!((0..12).all(|_| sign_in(&server, "ada", "correct+horse").status == 303));
     let statuses: Vec<u16> = (0..14).map(|_| sign_in(&server, "ada", "wrong+horse+!").status).collect();
     assert!(statuses.starts_with(&[401]) && statuses.contains(&429), "{statuses:?}");
     // From another site nothing is even tried.
@@ -80,7 +92,23 @@ async fn nobody_signs_in_by_guessing(fresh: Fresh) {
         b"login=ada&password=correct+horse",
     );
     other.expect(403);
-    ada.get("/api/v1/me").expect(200);
+    eve.get("/api/v1/me").expect(200);
+    // Whoever guesses shuts their own address out, and nobody else: from another one the right password goes on working.
+    sign_in(&server, "ada", "correct+horse").expect(429);
+    let body = "login=ada&password=correct+horse";
+    let host = server.url.strip_prefix("http://").expect("an address");
+    let socket = tokio::net::TcpSocket::new_v4().expect("a socket");
+    socket.bind("127.0.0.2:0".parse().expect("an address")).expect("another address");
+    let mut stream = socket.connect(host.parse().expect("an address")).await.expect("a connection");
+    let request = format!(
+        "POST /sign-in/password HTTP/1.0\r\nHost: {host}\r\nContent-Type: application/x-www-form-urlencoded\r\n\
+         Sec-Fetch-Site: same-origin\r\nContent-Length: {}\r\n\r\n{body}",
+        body.len()
+    );
+    tokio::io::AsyncWriteExt::write_all(&mut stream, request.as_bytes()).await.expect("sent");
+    let mut answer = String::new();
+    tokio::io::AsyncReadExt::read_to_string(&mut stream, &mut answer).await.expect("an answer");
+    assert!(answer.starts_with("HTTP/1.0 303"), "{answer}");
 }
 
 async fn without_the_option_there_are_none(fresh: Fresh) {

@@ -32,6 +32,8 @@ fn the_database_is_copied_before_its_tables_change() {
             "ALTER TABLE result DROP COLUMN essence",
             "ALTER TABLE result DROP COLUMN nearly_right",
             "ALTER TABLE submission DROP COLUMN removed_at",
+            "DROP TABLE invitation",
+            "ALTER TABLE account DROP COLUMN managed_by",
             "DROP TABLE session",
             "DROP TABLE token",
             "DROP TABLE sign_in_link",

@@ -1,0 +1,180 @@
+//! Coming into a further course, or becoming its staff: its staff invites, the person accepts, and until then nothing of
+//! theirs changes.
+use super::{
+    NewSecret, Person, Staff, identity,
+    view::{self, Course, Deed},
+};
+use crate::{
+    db::{DbError, Row, Transaction},
+    problem::Problem,
+    values,
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// An invitation into a course.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Invitation {
+    /// The course.
+    #[serde(flatten)]
+    pub course: Course,
+    /// `student` or `staff`.
+    pub role: String,
+    /// Who invited.
+    pub by: String,
+}
+
+/// An invitation as it is kept.
+struct Kept {
+    course: i64,
+    invitation: Invitation,
+}
+
+impl Staff {
+    /// Invites somebody; an earlier invitation is void. The secret is for them alone.
+    pub(super) async fn invite(
+        &self,
+        transaction: &mut Transaction,
+        account: i64,
+        (login, name): (&str, &str),
+        role: &str,
+    ) -> Result<NewSecret, DbError> {
+        let secret = NewSecret::new("");
+        transaction
+            .execute(
+                "INSERT INTO invitation (course, account, name, role, digest, invited_by, created_at)
+                 VALUES (?, ?, ?, ?, ?, ?, {now})
+                 ON CONFLICT (course, account) DO UPDATE SET name = excluded.name, role = excluded.role,
+                    digest = excluded.digest, invited_by = excluded.invited_by, created_at = excluded.created_at",
+                values![self.member().course, account, name, role, secret.digest(), self.member().account.id],
+            )
+            .await?;
+        view::note(transaction, &self.deed("member", None, &format!("{login} is invited as {role}"))).await?;
+        Ok(secret)
+    }
+}
+
+impl Person {
+    /// The invitations that wait for an answer.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn invitations(&self) -> Result<Vec<Invitation>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let kept = self.kept(&mut transaction).await?;
+        Ok(kept.into_iter().map(|(_, kept)| kept.invitation).collect())
+    }
+
+    /// What a link invites to.
+    ///
+    /// # Errors
+    /// When there is no such invitation for this person.
+    pub async fn invitation(&self, secret: &str) -> Result<Invitation, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        Ok(self.by_secret(&mut transaction, secret).await?.invitation)
+    }
+
+    /// Accepts by the link that the course's staff handed over.
+    ///
+    /// # Errors
+    /// When there is no such invitation for this person, or a token asks.
+    pub async fn accept_by_link(&self, secret: &str) -> Result<Course, Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let kept = self.by_secret(&mut transaction, secret).await?;
+        let session = self.lately_at_browser()?.digest.clone();
+        self.join(transaction, kept, &session).await
+    }
+
+    /// Accepts without the link, or declines. Whoever came by a link of another course's staff, who may have used it
+    /// themselves, accepts by the invitation's own link only.
+    ///
+    /// # Errors
+    /// When there is no such invitation, or it is not certain that it is the person.
+    pub async fn answer_invitation(&self, course: &str, accept: bool) -> Result<(), Problem> {
+        let mut transaction = self.house.0.database.begin().await?;
+        let kept = self.kept(&mut transaction).await?.into_iter();
+        let found = kept.map(|(_, kept)| kept).find(|kept| kept.invitation.course.slug == course);
+        let Some(kept) = found else { return Err(Problem::not_found("invitation")) };
+        if accept {
+            let session = self.lately_at_browser()?;
+            if session.is_vouched {
+                let detail =
+                    "you signed in by a link of another course's staff: open the link of the invitation itself";
+                return Err(Problem::not_allowed(detail));
+            }
+            let session = session.digest.clone();
+            return self.join(transaction, kept, &session).await.map(drop);
+        }
+        self.at_browser()?;
+        self.forget(&mut transaction, &kept).await?;
+        self.note_answer(&mut transaction, &kept, "declined").await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    async fn join(&self, mut transaction: Transaction, kept: Kept, session: &str) -> Result<Course, Problem> {
+        self.forget(&mut transaction, &kept).await?;
+        enrol(&mut transaction, kept.course, self.account.id, &kept.invitation.role).await?;
+        identity::end_vouched(&mut transaction, self.account.id, Some(session)).await?;
+        self.note_answer(&mut transaction, &kept, "accepted").await?;
+        transaction.commit().await?;
+        Ok(kept.invitation.course)
+    }
+
+    async fn forget(&self, transaction: &mut Transaction, kept: &Kept) -> Result<(), DbError> {
+        transaction
+            .execute("DELETE FROM invitation WHERE course = ? AND account = ?", values![kept.course, self.account.id])
+            .await?;
+        Ok(())
+    }
+
+    async fn note_answer(&self, transaction: &mut Transaction, kept: &Kept, answer: &str) -> Result<(), DbError> {
+        let text = format!("{} {answer}: {}", self.account.login, kept.invitation.role);
+        let deed = Deed {
+            kind: "member",
+            actor: self.account.id,
+            course: Some(kept.course),
+            assignment: None,
+            submission: None,
+            text: &text,
+        };
+        view::note(transaction, &deed).await
+    }
+
+    async fn by_secret(&self, transaction: &mut Transaction, secret: &str) -> Result<Kept, Problem> {
+        let digest = identity::digest(secret);
+        let found = self.kept(transaction).await?.into_iter().find(|(kept, _)| *kept == digest);
+        found.map(|(_, kept)| kept).ok_or_else(|| Problem::not_found("invitation"))
+    }
+
+    /// Their invitations with the digests of the links.
+    async fn kept(&self, transaction: &mut Transaction) -> Result<Vec<(String, Kept)>, Problem> {
+        let rows = transaction
+            .rows(
+                "SELECT invitation.digest, invitation.course, invitation.role, course.slug, course.title, inviter.login
+                 FROM invitation JOIN course ON course.id = invitation.course
+                 JOIN account AS inviter ON inviter.id = invitation.invited_by
+                 WHERE invitation.account = ? ORDER BY course.slug",
+                values![self.account.id],
+            )
+            .await?;
+        let read = |row: &Row| {
+            let course = Course { slug: row.text("slug")?, title: row.text("title")? };
+            let invitation = Invitation { course, role: row.text("role")?, by: row.text("login")? };
+            Ok((row.text("digest")?, Kept { course: row.int("course")?, invitation }))
+        };
+        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+    }
+}
+
+/// Makes somebody a member, or changes what they are, by the word of people here.
+pub(super) async fn enrol(transaction: &mut Transaction, course: i64, account: i64, role: &str) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
+             ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL",
+            values![course, account, role],
+        )
+        .await?;
+    Ok(())
+}
