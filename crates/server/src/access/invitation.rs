@@ -1,7 +1,7 @@
 //! Coming into a further course, or becoming its staff: its staff invites, the person accepts, and until then nothing of
 //! theirs changes.
 use super::{
-    NewSecret, Person, Staff, identity,
+    Person, identity,
     view::{self, Course, Deed},
 };
 use crate::{
@@ -28,30 +28,6 @@ pub struct Invitation {
 struct Kept {
     course: i64,
     invitation: Invitation,
-}
-
-impl Staff {
-    /// Invites somebody; an earlier invitation is void. The secret is for them alone.
-    pub(super) async fn invite(
-        &self,
-        transaction: &mut Transaction,
-        account: i64,
-        (login, name): (&str, &str),
-        role: &str,
-    ) -> Result<NewSecret, DbError> {
-        let secret = NewSecret::new("");
-        transaction
-            .execute(
-                "INSERT INTO invitation (course, account, name, role, digest, invited_by, created_at)
-                 VALUES (?, ?, ?, ?, ?, ?, {now})
-                 ON CONFLICT (course, account) DO UPDATE SET name = excluded.name, role = excluded.role,
-                    digest = excluded.digest, invited_by = excluded.invited_by, created_at = excluded.created_at",
-                values![self.member().course, account, name, role, secret.digest(), self.member().account.id],
-            )
-            .await?;
-        view::note(transaction, &self.deed("member", None, &format!("{login} is invited as {role}"))).await?;
-        Ok(secret)
-    }
 }
 
 impl Person {

@@ -1,0 +1,209 @@
+//! Who is in a course: members, and who is invited.
+use super::{
+    NewSecret, Staff,
+    identity::{self, Way},
+    invitation, view,
+};
+use crate::{
+    db::{DbError, Row, Transaction},
+    problem::Problem,
+    values,
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// A member of a course.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct MemberInfo {
+    /// What their account is called.
+    pub login: String,
+    /// What they are called.
+    pub name: String,
+    /// `student` or `staff`.
+    pub role: String,
+    /// Whether they still have to accept.
+    pub is_invited: bool,
+}
+
+/// What whoever added a member hands on to them.
+#[derive(Debug, Clone, Default)]
+pub struct Added {
+    /// A link that signs in once: where the account is new, or has to be entered anew.
+    pub link: Option<NewSecret>,
+    /// A link to accept by, signed in as before: where nothing changes until then.
+    pub invitation: Option<NewSecret>,
+}
+
+impl Staff {
+    /// The course's members, and who is invited.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn members(&self) -> Result<Vec<MemberInfo>, Problem> {
+        let mut transaction = self.0.house.0.database.read().await?;
+        let rows = transaction
+            .rows(
+                "SELECT account.login, account.name, member.role, CAST(0 AS {int}) AS invited FROM member
+                 JOIN account ON account.id = member.account WHERE member.course = ?
+                 UNION ALL SELECT account.login, invitation.name, invitation.role, CAST(1 AS {int}) FROM invitation
+                 JOIN account ON account.id = invitation.account WHERE invitation.course = ?
+                 ORDER BY 1, 4",
+                values![self.0.course, self.0.course],
+            )
+            .await?;
+        let read = |row: &Row| {
+            Ok(MemberInfo {
+                login: row.text("login")?,
+                name: row.text("name")?,
+                role: row.text("role")?,
+                is_invited: row.flag("invited")?,
+            })
+        };
+        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Makes somebody a member, or changes what they are; makes the account when there is none, and a link for it that
+    /// signs in once. Whoever has an account that is not this course's alone, or is to be staff, is invited, and nothing
+    /// of theirs changes until they accept. An administrator's word needs no acceptance.
+    ///
+    /// # Errors
+    /// When a name is none.
+    pub async fn set_member(&self, login: &str, name: &str, role: &str) -> Result<Added, Problem> {
+        identity::check_slug("a login", login)?;
+        identity::check_title("a name", name)?;
+        if !matches!(role, "student" | "staff") {
+            return Err(Problem::invalid("a role is student or staff"));
+        }
+        let mut transaction = self.0.house.0.database.begin().await?;
+        let added = self.add(&mut transaction, login, name, role).await?;
+        transaction.commit().await?;
+        Ok(added)
+    }
+
+    async fn add(&self, transaction: &mut Transaction, login: &str, name: &str, role: &str) -> Result<Added, Problem> {
+        let (course, by) = (self.0.course, &self.0.account);
+        let found =
+            transaction.row("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
+        let mut added = Added::default();
+        let Some(found) = found else {
+            let account = transaction
+                .one(
+                    "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now}) RETURNING id",
+                    values![login, name, course],
+                )
+                .await?
+                .int("id")?;
+            added.link = Some(identity::new_link(transaction, account, Some(by.id), self.way()).await?);
+            self.enter(transaction, account, login, role).await?;
+            return Ok(added);
+        };
+        let (account, managed_by) = (found.int("id")?, found.maybe_int("managed_by")?);
+        let was = transaction
+            .row("SELECT role FROM member WHERE course = ? AND account = ?", values![course, account])
+            .await?;
+        let was = was.map(|row| row.text("role")).transpose()?;
+        if was.as_deref() == Some(role) {
+            return Ok(added);
+        }
+        let gains_nothing = role == "student" && (was.is_some() || managed_by == Some(course));
+        if !by.is_admin && !gains_nothing {
+            added.invitation = Some(self.invite(transaction, account, (login, name), role).await?);
+            return Ok(added);
+        }
+        if role == "staff" && !identity::is_trusted(transaction, account).await? {
+            identity::end_all(transaction, account).await?;
+            added.link = Some(identity::new_link(transaction, account, Some(by.id), Way::Own).await?);
+        } else if managed_by.is_some_and(|other| other != course) {
+            identity::end_vouched(transaction, account, None).await?;
+            added.link = Some(identity::new_link(transaction, account, Some(by.id), Way::Own).await?);
+        }
+        self.enter(transaction, account, login, role).await?;
+        Ok(added)
+    }
+
+    /// How whoever uses a link of this person's comes in.
+    fn way(&self) -> Way {
+        if self.0.account.is_admin { Way::Own } else { Way::Vouched }
+    }
+
+    async fn enter(&self, transaction: &mut Transaction, account: i64, login: &str, role: &str) -> Result<(), DbError> {
+        invitation::enrol(transaction, self.0.course, account, role).await?;
+        view::note(transaction, &self.deed("member", None, &format!("{login} is {role}"))).await
+    }
+
+    /// Takes somebody out of the course, or an invitation back; what they handed in stays.
+    ///
+    /// # Errors
+    /// When they are no member.
+    pub async fn remove_member(&self, login: &str) -> Result<(), Problem> {
+        let mut transaction = self.0.house.0.database.begin().await?;
+        let mut removed = transaction
+            .execute(
+                "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)",
+                values![self.0.course, login],
+            )
+            .await?;
+        removed += transaction
+            .execute(
+                "DELETE FROM invitation WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)",
+                values![self.0.course, login],
+            )
+            .await?;
+        if removed == 0 {
+            return Err(Problem::not_found("member"));
+        }
+        view::note(&mut transaction, &self.deed("member", None, &format!("{login} is out"))).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// A new link that signs a student in once. Staff makes it for accounts that are this course's alone: made here, in
+    /// no other course, without a password or a platform of their own. Whoever could sign in as somebody else could do
+    /// what they may do.
+    ///
+    /// # Errors
+    /// When the account is more than that, or no member.
+    pub async fn new_link(&self, login: &str) -> Result<NewSecret, Problem> {
+        let mut transaction = self.0.house.0.database.begin().await?;
+        let row = transaction
+            .row(
+                "SELECT account.id, account.is_admin, account.managed_by, member.role
+                 FROM account JOIN member ON member.account = account.id
+                 WHERE account.login = ? AND member.course = ? AND account.disabled_at IS NULL",
+                values![login, self.0.course],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::not_found("member")) };
+        let is_ours = row.maybe_int("managed_by")? == Some(self.0.course) && row.text("role")? == "student";
+        if row.flag("is_admin")? || !(is_ours || self.0.account.is_admin) {
+            let detail = "this account is its person's own: more than a student of this course, or with a password";
+            return Err(Problem::not_allowed(detail));
+        }
+        let link = identity::new_link(&mut transaction, row.int("id")?, Some(self.0.account.id), self.way()).await?;
+        view::note(&mut transaction, &self.deed("link", None, &format!("a new link for {login}"))).await?;
+        transaction.commit().await?;
+        Ok(link)
+    }
+
+    /// Invites somebody; an earlier invitation is void. The secret is for them alone.
+    async fn invite(
+        &self,
+        transaction: &mut Transaction,
+        account: i64,
+        (login, name): (&str, &str),
+        role: &str,
+    ) -> Result<NewSecret, DbError> {
+        let secret = NewSecret::new("");
+        transaction
+            .execute(
+                "INSERT INTO invitation (course, account, name, role, digest, invited_by, created_at)
+                 VALUES (?, ?, ?, ?, ?, ?, {now})
+                 ON CONFLICT (course, account) DO UPDATE SET name = excluded.name, role = excluded.role,
+                    digest = excluded.digest, invited_by = excluded.invited_by, created_at = excluded.created_at",
+                values![self.0.course, account, name, role, secret.digest(), self.0.account.id],
+            )
+            .await?;
+        view::note(transaction, &self.deed("member", None, &format!("{login} is invited as {role}"))).await?;
+        Ok(secret)
+    }
+}
