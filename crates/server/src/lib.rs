@@ -8,6 +8,7 @@ pub mod cli;
 pub mod db;
 pub mod ledger;
 pub mod lti;
+pub mod net;
 pub mod problem;
 pub mod queue;
 pub mod retention;

@@ -156,6 +156,21 @@ impl Problem {
         Self::new(StatusCode::INSUFFICIENT_STORAGE, "no-room", "No room", detail, remedy)
     }
 
+    /// As many bytes are kept as may be.
+    #[must_use]
+    pub fn quota(detail: impl Into<String>) -> Self {
+        let remedy = "ask the course's staff: the server's administrator can give more room, or have old uploads removed; \
+                      nothing was stored";
+        Self::new(StatusCode::INSUFFICIENT_STORAGE, "quota", "No room for more uploads", detail, remedy)
+    }
+
+    /// A range of a file that does not reach so far.
+    #[must_use]
+    pub fn beyond(size: u64) -> Self {
+        let detail = format!("the file has {size} bytes, and none in this range");
+        Self::new(StatusCode::RANGE_NOT_SATISFIABLE, "range", "Not that long", detail, "ask for an earlier range")
+    }
+
     /// The body came too slowly.
     #[must_use]
     pub fn too_slow() -> Self {

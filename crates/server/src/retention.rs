@@ -1,15 +1,18 @@
 //! How long uploads and reports are kept. Grades and their history stay for ever; bytes that nothing names any more go
-//! away.
+//! away. All of it goes in batches: memory is the same for ten submissions and for a million, and nobody waits for long.
 use crate::{
     db::{Database, DbError, Transaction},
-    store::{Store, StoreError},
+    store::{Digest, Names, Store, StoreError},
     values,
 };
-use std::{collections::BTreeSet, time::Duration};
+use std::{collections::HashSet, time::Duration};
 use thiserror::Error;
 
 /// Younger artefacts are left alone: they may be on their way to be named.
 pub const LEAST_AGE: Duration = Duration::from_secs(24 * 3600);
+
+/// Submissions that are given up in one transaction.
+const BATCH: i64 = 500;
 
 /// Why nothing was given up, or not all.
 #[derive(Debug, Error)]
@@ -31,76 +34,122 @@ pub struct GivenUp {
     pub artefacts: usize,
 }
 
-/// Gives up uploads and reports of submissions that are older than `keep`, and artefacts older than `least` that
-/// nothing names. Submissions that are being graded or regraded stay.
+/// Gives up uploads and reports of submissions that are older than `keep`, where that is said, and artefacts older than
+/// `least` that nothing names. Submissions that are being graded or regraded stay.
 ///
 /// # Errors
 /// What database or store say; the rest is given up the next time.
 pub async fn give_up(
     database: &Database,
     store: &Store,
-    keep: Duration,
+    keep: Option<Duration>,
     least: Duration,
 ) -> Result<GivenUp, RetentionError> {
-    let keep = i64::try_from(keep.as_millis()).unwrap_or(i64::MAX);
-    let mut transaction = database.begin().await?;
-    let submissions = transaction
-        .execute(
-            "UPDATE submission SET removed_at = {now}
-             WHERE removed_at IS NULL AND created_at <= {now} - ?
-                AND NOT EXISTS (SELECT 1 FROM job
-                    WHERE job.submission = submission.id AND job.state IN ('waiting', 'running'))
-                AND NOT EXISTS (SELECT 1 FROM campaign
-                    WHERE campaign.assignment = submission.assignment AND campaign.state = 'open')",
-            values![keep],
-        )
-        .await?;
+    let submissions = match keep {
+        Some(keep) => give_up_submissions(database, i64::try_from(keep.as_millis()).unwrap_or(i64::MAX)).await?,
+        None => 0,
+    };
+    let artefacts = store.give_up(least, &mut Named { database }).await?;
+    Ok(GivenUp { submissions, artefacts })
+}
+
+async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbError> {
+    let (mut after, mut id) = (i64::MIN, 0);
+    let mut submissions = 0;
+    loop {
+        // Found outside of the transaction that writes, which keeps others from writing.
+        let mut transaction = database.read().await?;
+        let found = transaction
+            .rows(
+                "SELECT id, created_at FROM submission
+                 WHERE removed_at IS NULL AND created_at <= {now} - ? AND (created_at, id) > (?, ?)
+                 ORDER BY created_at, id LIMIT ?",
+                values![keep, after, id, BATCH],
+            )
+            .await?;
+        drop(transaction);
+        let Some(last) = found.last() else { break };
+        (after, id) = (last.int("created_at")?, last.int("id")?);
+        let ids = found.iter().map(|row| row.int("id")).collect::<Result<Vec<_>, _>>()?;
+        let mut transaction = database.begin().await?;
+        submissions += transaction
+            .execute(
+                "UPDATE submission SET removed_at = {now}
+                 WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each}) AND removed_at IS NULL
+                    AND NOT EXISTS (SELECT 1 FROM job
+                        WHERE job.submission = submission.id AND job.state IN ('waiting', 'running'))
+                    AND NOT EXISTS (SELECT 1 FROM campaign
+                        WHERE campaign.assignment = submission.assignment AND campaign.state = 'open')",
+                values![serde_json::to_string(&ids).unwrap_or_default()],
+            )
+            .await?;
+        transaction.commit().await?;
+    }
     if submissions > 0 {
+        let mut transaction = database.begin().await?;
         let text = format!("uploads and reports of {submissions} submissions are not kept any longer");
         transaction
             .execute("INSERT INTO event (happened_at, kind, text) VALUES ({now}, 'retention', ?)", values![text])
             .await?;
+        transaction.commit().await?;
     }
-    transaction.commit().await?;
-    let mut transaction = database.read().await?;
-    let named = named(&mut transaction).await?;
-    drop(transaction);
-    let artefacts = store.give_up(least, |digest| named.contains(digest)).await?;
-    Ok(GivenUp { submissions, artefacts })
+    Ok(submissions)
 }
 
-/// The digests that something names.
-async fn named(transaction: &mut Transaction) -> Result<BTreeSet<String>, DbError> {
-    let mut named = BTreeSet::new();
-    let digests = transaction
-        .rows(
-            "SELECT digest FROM submission WHERE removed_at IS NULL
-             UNION SELECT result_file.digest FROM result_file
-                JOIN result ON result.id = result_file.result
-                JOIN submission ON submission.id = result.submission WHERE submission.removed_at IS NULL
-             UNION SELECT job_file.digest FROM job_file
-                JOIN job ON job.id = job_file.job WHERE job.state IN ('waiting', 'running')",
-            values![],
-        )
-        .await?;
-    for row in &digests {
-        named.insert(row.text("digest")?);
+/// What the database names.
+struct Named<'a> {
+    database: &'a Database,
+}
+
+impl Names for Named<'_> {
+    type Error = RetentionError;
+
+    async fn named(&mut self, digests: &[Digest]) -> Result<HashSet<Digest>, RetentionError> {
+        let mut transaction = self.database.read().await?;
+        let suites = suites(&mut transaction).await?;
+        let wanted = serde_json::to_string(digests).unwrap_or_default();
+        let rows = transaction
+            .rows(
+                "SELECT wanted.value AS digest FROM {each}
+                 WHERE EXISTS (SELECT 1 FROM submission
+                        WHERE submission.digest = wanted.value AND submission.removed_at IS NULL)
+                    OR EXISTS (SELECT 1 FROM result_file
+                        JOIN result ON result.id = result_file.result
+                        JOIN submission ON submission.id = result.submission
+                        WHERE result_file.digest = wanted.value AND submission.removed_at IS NULL)
+                    OR EXISTS (SELECT 1 FROM job_file JOIN job ON job.id = job_file.job
+                        WHERE job_file.digest = wanted.value AND job.state IN ('waiting', 'running'))
+                    OR EXISTS (SELECT 1 FROM result JOIN submission ON submission.id = result.submission
+                        WHERE {strpos}(result.task, '\"archive\":\"') > 0
+                            AND substr(result.task, {strpos}(result.task, '\"archive\":\"') + 11, 64) = wanted.value
+                            AND submission.removed_at IS NULL)",
+                values![wanted],
+            )
+            .await?;
+        let mut named: HashSet<Digest> =
+            digests.iter().filter(|digest| suites.contains(digest.as_str())).cloned().collect();
+        for row in &rows {
+            named.extend(row.text("digest")?.parse::<Digest>());
+        }
+        Ok(named)
     }
-    // Suites and uploads that are named within settings and tasks.
+}
+
+/// Archives of suites that settings name, or jobs that are still to be done.
+async fn suites(transaction: &mut Transaction) -> Result<HashSet<String>, DbError> {
     let texts = transaction
         .rows(
-            "SELECT settings AS words FROM assignment
-             UNION SELECT settings FROM campaign
-             UNION SELECT payload FROM job WHERE state IN ('waiting', 'running')
-             UNION SELECT task FROM result
-                JOIN submission ON submission.id = result.submission WHERE submission.removed_at IS NULL",
+            "SELECT settings AS words FROM assignment UNION SELECT settings FROM campaign
+             UNION SELECT substr(payload, {strpos}(payload, '\"archive\":\"') + 11, 64) FROM job
+                WHERE state IN ('waiting', 'running') AND {strpos}(payload, '\"archive\":\"') > 0",
             values![],
         )
         .await?;
+    let mut named = HashSet::new();
     for row in &texts {
         let words = row.text("words")?;
-        let is_hex = |word: &&str| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
-        named.extend(words.split(|c: char| !c.is_ascii_alphanumeric()).filter(is_hex).map(str::to_owned));
+        let is_digest = |word: &&str| word.parse::<Digest>().is_ok();
+        named.extend(words.split(|c: char| !c.is_ascii_alphanumeric()).filter(is_digest).map(str::to_owned));
     }
     Ok(named)
 }

@@ -3,8 +3,13 @@
 //! of S3, or of what speaks like it, for several servers.
 //!
 //! An artefact is safely stored before the database hears of it, so that what the database names is always there.
+mod read;
+mod sweep;
+
+pub use read::Opened;
+pub use sweep::Names;
+
 use crate::secret::hex;
-use futures_util::StreamExt;
 use object_store::{
     ObjectStore, ObjectStoreExt, PutPayload, WriteMultipart, local::LocalFileSystem, path::Path as Key,
 };
@@ -12,13 +17,13 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::{
     fmt, io,
-    path::Path,
+    path::{Path, PathBuf},
     str::FromStr,
     sync::Arc,
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 use thiserror::Error;
-use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::io::AsyncReadExt;
 use utoipa::ToSchema;
 
 /// How much is read at a time.
@@ -141,6 +146,8 @@ impl fmt::Display for Digest {
 #[derive(Debug, Clone)]
 pub struct Store {
     objects: Arc<dyn ObjectStore>,
+    /// Where it is a folder.
+    folder: Option<PathBuf>,
 }
 
 impl Store {
@@ -152,7 +159,7 @@ impl Store {
         std::fs::create_dir_all(folder)
             .map_err(|error| StoreError::Failed(format!("cannot make {}: {error}", folder.display())))?;
         let objects = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
-        Ok(Self { objects: Arc::new(objects) })
+        Ok(Self { objects: Arc::new(objects), folder: Some(folder.to_owned()) })
     }
 
     /// A bucket as a store: `s3://BUCKET` or `s3://BUCKET/PREFIX`, reached as the variables `AWS_...` say.
@@ -173,7 +180,8 @@ impl Store {
         // The second time it is there already, and is told so.
         drop(rustls::crypto::ring::default_provider().install_default());
         let objects = object_store::aws::AmazonS3Builder::from_env().with_bucket_name(bucket).build()?;
-        Ok(Self { objects: Arc::new(object_store::prefix::PrefixStore::new(objects, prefix)) })
+        let objects = object_store::prefix::PrefixStore::new(objects, prefix);
+        Ok(Self { objects: Arc::new(objects), folder: None })
     }
 
     #[cfg(not(feature = "s3"))]
@@ -255,120 +263,6 @@ impl Store {
             Err(object_store::Error::NotFound { .. }) => Ok(None),
             Err(error) => Err(error.into()),
         }
-    }
-
-    /// Gives up every artefact that is older than `least` and not `named`; how many these were.
-    ///
-    /// Whoever stores one of them at this very moment does not lose it: it is put aside first, where it is still read,
-    /// and looked at again there, at once and every time from then on. When it is named by then it comes back. It goes
-    /// only when it lay there unnamed and older than `least`: in a folder it keeps its age, in a bucket, where it is a
-    /// copy, it begins anew.
-    ///
-    /// # Errors
-    /// When the store fails. What was put aside is looked at again the next time.
-    pub async fn give_up(&self, least: Duration, named: impl Fn(&str) -> bool) -> Result<usize, StoreError> {
-        for (digest, age) in self.list(KEPT).await? {
-            if age < least || named(digest.as_str()) {
-                continue;
-            }
-            match self.objects.rename(&digest.key(), &digest.aside()).await {
-                // Another server was faster.
-                Ok(()) | Err(object_store::Error::NotFound { .. }) => {}
-                Err(error) => return Err(error.into()),
-            }
-        }
-        let mut given_up: usize = 0;
-        for (digest, age) in self.list(ASIDE).await? {
-            if named(digest.as_str()) {
-                match self.objects.rename(&digest.aside(), &digest.key()).await {
-                    Ok(()) | Err(object_store::Error::NotFound { .. }) => {}
-                    Err(error) => return Err(error.into()),
-                }
-            } else if age >= least {
-                match self.objects.delete(&digest.aside()).await {
-                    Ok(()) => given_up += 1,
-                    Err(object_store::Error::NotFound { .. }) => {}
-                    Err(error) => return Err(error.into()),
-                }
-            }
-        }
-        Ok(given_up)
-    }
-
-    /// The artefacts below a prefix, with their ages.
-    async fn list(&self, prefix: &str) -> Result<Vec<(Digest, Duration)>, StoreError> {
-        let mut found = Vec::new();
-        let mut listing = self.objects.list(Some(&Key::from(prefix)));
-        while let Some(meta) = listing.next().await {
-            let meta = meta?;
-            let parts: Vec<String> = meta.location.parts().map(|part| part.as_ref().to_owned()).collect();
-            // Anything else there is none of ours.
-            if let [_, first, rest] = parts.as_slice()
-                && let Ok(digest) = format!("{first}{rest}").parse()
-            {
-                found.push((digest, age(&meta)));
-            }
-        }
-        Ok(found)
-    }
-
-    /// The bytes of an artefact that is at most `most` bytes large.
-    ///
-    /// # Errors
-    /// When there is none, it is larger or damaged, or the store fails.
-    pub async fn bytes(&self, digest: &Digest, most: u64) -> Result<Vec<u8>, StoreError> {
-        let mut bytes = Vec::new();
-        self.copy(digest, most, &mut bytes).await?;
-        Ok(bytes)
-    }
-
-    /// Writes an artefact into a new file.
-    ///
-    /// # Errors
-    /// When there is none or it is damaged (no file is left then), the file can't be written, or the store fails.
-    pub async fn fetch(&self, digest: &Digest, file: &Path) -> Result<(), StoreError> {
-        let mut output = tokio::fs::File::create_new(file).await?;
-        let copied = self.copy(digest, u64::MAX, &mut output).await;
-        if copied.is_err() {
-            drop(tokio::fs::remove_file(file).await);
-        }
-        output.flush().await?;
-        copied
-    }
-
-    async fn copy(
-        &self,
-        digest: &Digest,
-        most: u64,
-        output: &mut (impl tokio::io::AsyncWrite + Unpin),
-    ) -> Result<(), StoreError> {
-        let mut found = self.objects.get(&digest.key()).await;
-        // What is put aside may be named since, and comes back.
-        if matches!(found, Err(object_store::Error::NotFound { .. })) {
-            found = self.objects.get(&digest.aside()).await;
-        }
-        let found = match found {
-            Err(object_store::Error::NotFound { .. }) => return Err(StoreError::Missing(digest.clone())),
-            found => found?,
-        };
-        if found.meta.size > most {
-            return Err(StoreError::TooLarge(most));
-        }
-        let mut hasher = Sha256::new();
-        let mut input = tokio_util::io::StreamReader::new(found.into_stream());
-        let mut chunk = vec![0; CHUNK];
-        loop {
-            let read = input.read(&mut chunk).await?;
-            if read == 0 {
-                break;
-            }
-            hasher.update(&chunk[..read]);
-            output.write_all(&chunk[..read]).await?;
-        }
-        if hex(&hasher.finalize()) != digest.0 {
-            return Err(StoreError::Damaged(digest.clone()));
-        }
-        Ok(())
     }
 }
 

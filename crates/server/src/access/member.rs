@@ -7,10 +7,12 @@ use super::{
 use crate::{
     db::{DbError, Transaction},
     problem::Problem,
-    store::{Artefact, Digest},
+    store::{Artefact, Digest, Opened},
     task::OutputFile,
     values, worker,
 };
+use futures_util::StreamExt;
+use std::ops::Range;
 
 /// The report that holds no group that its suite hides from students.
 const SHOWN: &str = "report.html";
@@ -136,21 +138,19 @@ impl Member {
         Ok((submission, view::events_of(&mut transaction, id, after).await?))
     }
 
-    /// One of the reports on it.
+    /// One of the reports on it, to be opened.
     ///
     /// # Errors
     /// When there is none of this name.
-    pub async fn report(&self, id: i64, name: &str) -> Result<(OutputFile, Vec<u8>), Problem> {
+    pub async fn report(&self, id: i64, name: &str) -> Result<OutputFile, Problem> {
         let submission = self.kept(id).await?;
         if name != SHOWN && self.hides(&submission).await? {
             return Err(Problem::not_found("report"));
         }
-        let file = submission
+        submission
             .grade
             .and_then(|grade| grade.outcome.files.into_iter().find(|file| file.name == name))
-            .ok_or_else(|| Problem::not_found("report"))?;
-        let bytes = self.house.bytes(&file.artefact).await?;
-        Ok((file, bytes))
+            .ok_or_else(|| Problem::not_found("report"))
     }
 
     /// Whether a submission's reports tell of groups that its suite hides from whoever asks. Then there is only the
@@ -163,20 +163,22 @@ impl Member {
         let Some(file) = grade.and_then(|grade| grade.files.iter().find(|file| file.name == "grade.json")) else {
             return Ok(false);
         };
-        Ok(worker::hides_groups(&self.house.bytes(&file.artefact).await?))
+        let opened = self.open(&file.artefact, None).await?;
+        let pieces = tokio_util::io::StreamReader::new(opened.pieces.map(|piece| piece.map_err(std::io::Error::other)));
+        let reading = move || worker::hides_groups(tokio_util::io::SyncIoBridge::new(Box::pin(pieces)));
+        tokio::task::spawn_blocking(reading).await.map_err(|_| Problem::fault())
     }
 
-    /// What was handed in.
+    /// What was handed in, to be opened.
     ///
     /// # Errors
     /// When they may see none of this number.
-    pub async fn upload(&self, id: i64) -> Result<(Submission, Vec<u8>), Problem> {
+    pub async fn upload(&self, id: i64) -> Result<(Submission, Artefact), Problem> {
         let submission = self.kept(id).await?;
         let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is none")));
         let digest: Digest = submission.digest.parse().map_err(|_| wrong("digest"))?;
         let size = u64::try_from(submission.size).map_err(|_| wrong("size"))?;
-        let bytes = self.house.bytes(&Artefact { digest, size }).await?;
-        Ok((submission, bytes))
+        Ok((submission, Artefact { digest, size }))
     }
 
     /// A submission whose bytes are still there.
@@ -184,11 +186,26 @@ impl Member {
         let submission = self.submission(id).await?;
         if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
     }
-}
 
-impl House {
-    /// The bytes of an artefact that the database names.
-    async fn bytes(&self, artefact: &Artefact) -> Result<Vec<u8>, Problem> {
-        Ok(self.0.store.bytes(&artefact.digest, artefact.size).await?)
+    /// Opens an artefact that they may see, or a range of it.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub async fn open(&self, artefact: &Artefact, range: Option<Range<u64>>) -> Result<Opened, Problem> {
+        Ok(self.house.0.store.open(&artefact.digest, range).await?)
+    }
+
+    /// The first bytes of an artefact that they may see.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub async fn beginning(&self, artefact: &Artefact, most: u64) -> Result<Vec<u8>, Problem> {
+        let range = (artefact.size > most).then_some(0..most);
+        let mut pieces = self.open(artefact, range).await?.pieces;
+        let mut bytes = Vec::new();
+        while let Some(piece) = pieces.next().await {
+            bytes.extend_from_slice(&piece?);
+        }
+        Ok(bytes)
     }
 }

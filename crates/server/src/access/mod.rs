@@ -11,6 +11,7 @@ mod file_name;
 mod identity;
 mod invitation;
 mod launch;
+mod limits;
 mod member;
 mod members;
 mod password;
@@ -35,6 +36,7 @@ pub use file_name::is_file_name;
 pub use identity::{NewSecret, Session};
 pub use invitation::Invitation;
 pub use launch::{Launched, LoginAnswer, LoginRequest};
+pub use limits::{Limits, Transfer};
 pub use member::Member;
 pub use members::{Added, MemberInfo};
 pub use password::Passwords;
@@ -42,7 +44,7 @@ pub use person::{CourseOf, Person, TokenInfo};
 pub use platform::{RosterRead, ScoreInfo};
 pub use regrade::{Change, Regrade, RegradeState};
 pub use remote::{Claimed, Remote};
-pub use request::{Renewed, Secrets, browser_cookie, cookie_name};
+pub use request::{Renewed, Secrets, SignedIn, browser_cookie, cookie_name};
 pub use settings::Settings;
 pub use staff::{Staff, Standing};
 pub use submit::{Accepted, Upload};
@@ -90,6 +92,8 @@ pub struct Parts {
     pub requests_per_minute: u32,
     /// Counts these requests.
     pub throttle: Throttle,
+    /// Transfers at one time, and bytes that are kept.
+    pub limits: Limits,
     /// What signing in with passwords needs; nothing where that is not allowed.
     pub passwords: Option<Passwords>,
     /// Speaks with learning platforms.

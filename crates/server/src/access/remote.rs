@@ -4,8 +4,7 @@ use super::House;
 use crate::{
     problem::Problem,
     queue::Lease,
-    secret,
-    store::{Artefact, Digest},
+    store::{Artefact, Digest, Opened},
     task::{Outcome, Suite, Task},
     values,
     worker::{Answer, Desk, DeskError, LocalDesk, REPORTS},
@@ -200,19 +199,17 @@ impl Remote {
         serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
     }
 
-    /// An artefact of a job that it holds, as a file of the server's own.
+    /// An artefact of a job that it holds.
     ///
     /// # Errors
     /// When the job is not its own (any more), or the artefact is not the job's.
-    pub async fn artefact(&self, lease: &Lease, digest: &Digest) -> Result<tempfile::TempPath, Problem> {
+    pub async fn artefact(&self, lease: &Lease, digest: &Digest) -> Result<Opened, Problem> {
         let task = self.held(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
         if task.submission.artefact.digest != *digest && !suite {
             return Err(Problem::not_found("artefact of this job"));
         }
-        let file = self.house.0.incoming.join(secret::random_hex());
-        self.house.0.store.fetch(digest, &file).await?;
-        Ok(tempfile::TempPath::try_from_path(file)?)
+        Ok(self.house.0.store.open(digest, None).await?)
     }
 
     /// Stores a report of a job that it holds.

@@ -4,13 +4,13 @@ use super::{
     account::Account,
     identity::{self, Seen},
 };
-use crate::{problem::Problem, values};
+use crate::{net::ClientAddress, problem::Problem, values};
 use axum::{
-    extract::{ConnectInfo, FromRequestParts, RawPathParams},
+    extract::{FromRequestParts, RawPathParams},
     http::{HeaderMap, header, request::Parts},
 };
 use std::{
-    net::{IpAddr, SocketAddr},
+    net::IpAddr,
     sync::{Arc, OnceLock},
     time::Instant,
 };
@@ -29,8 +29,12 @@ impl Renewed {
 
 /// Where a request comes from.
 fn address(parts: &Parts) -> Option<IpAddr> {
-    parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(address)| address.ip())
+    parts.extensions.get::<ClientAddress>().map(|ClientAddress(address)| *address)
 }
+
+/// Stands in a request once it is known who asks: whoever reads its body may then read more of it.
+#[derive(Clone, Copy)]
+pub struct SignedIn;
 
 /// What a request shows.
 #[derive(Clone, Default)]
@@ -124,6 +128,7 @@ impl FromRequestParts<House> for Person {
     async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
         let secrets = Secrets::of(&parts.headers, house.is_secure());
         let (account, session) = house.account(&secrets).await?;
+        parts.extensions.insert(SignedIn);
         if let (Some(true), Some(secret), Some(renewed)) =
             (session.as_ref().map(|seen| seen.is_stale), secrets.session, parts.extensions.get::<Renewed>())
         {
@@ -209,6 +214,7 @@ impl FromRequestParts<House> for Remote {
             )
             .await?;
         let Some(row) = row else { return Err(Problem::unknown_secret("worker token")) };
+        parts.extensions.insert(SignedIn);
         let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
         Ok(Self::new(house.clone(), &row.text("name")?, name))
     }

@@ -109,31 +109,37 @@ impl Staff {
             let (login, name) = (row.text("login")?, row.text("name")?);
             standings.insert(login.clone(), empty(login, name));
         }
-        for submission in view::submissions_to(&mut transaction, assignment.id).await? {
-            let standing = standings
-                .entry(submission.login.clone())
-                .or_insert_with(|| empty(submission.login.clone(), submission.name.clone()));
-            standing.submissions += 1;
-            let points = |submission: &Submission| {
-                let points = submission.grade.as_ref()?.points.as_ref()?;
-                points.parse::<f64>().ok()
-            };
-            let best = standing.counts.as_ref().and_then(points);
-            if best.is_none() || points(&submission) >= best {
-                standing.counts = Some(submission);
+        let points = |submission: &Submission| {
+            let points = submission.grade.as_ref()?.points.as_ref()?;
+            points.parse::<f64>().ok()
+        };
+        let mut after = 0;
+        loop {
+            let page = view::submissions_after(&mut transaction, assignment.id, after).await?;
+            let Some(last) = page.last() else { break };
+            after = last.id;
+            for submission in page {
+                let standing = standings
+                    .entry(submission.login.clone())
+                    .or_insert_with(|| empty(submission.login.clone(), submission.name.clone()));
+                standing.submissions += 1;
+                let best = standing.counts.as_ref().and_then(points);
+                if best.is_none() || points(&submission) >= best {
+                    standing.counts = Some(submission);
+                }
             }
         }
         Ok(standings.into_values().collect())
     }
 
-    /// All submissions to an assignment, oldest first.
+    /// Submissions to an assignment of the course behind the one of this number, oldest first: a page of them, none
+    /// behind the last.
     ///
     /// # Errors
-    /// When there is no such assignment.
-    pub async fn all_submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
+    /// When the database does not answer.
+    pub async fn submissions_after(&self, assignment: i64, after: i64) -> Result<Vec<Submission>, Problem> {
         let mut transaction = self.0.house.0.database.read().await?;
-        let assignment = self.0.find_assignment(&mut transaction, assignment).await?;
-        Ok(view::submissions_to(&mut transaction, assignment.id).await?)
+        Ok(view::submissions_after(&mut transaction, assignment, after).await?)
     }
 
     /// What happened in the course before the event of this number, latest first; with `None` up to now.

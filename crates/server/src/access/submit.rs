@@ -50,6 +50,9 @@ impl Member {
         if !assignment.settings.takes(upload.form) {
             return Err(Problem::unusable(format!("this assignment takes {forms}")));
         }
+        // Whoever sends several at once has them looked at one after another, so that nothing is stored of one that the
+        // one before leaves no room for.
+        let _turn = self.house.0.limits.turn(self.account.id).await;
         // Nothing is stored of an upload that is refused, or was stored before.
         let artefact = digest_of_file(upload.file).await?;
         let mut transaction = self.house.0.database.read().await?;
@@ -71,6 +74,29 @@ impl Member {
         Ok(Accepted { submission: self.submission(submission).await?, repeated: false })
     }
 
+    /// Whether an upload may be handed in, by what is said of it, before its bytes come: what is refused later would
+    /// have come for nothing.
+    ///
+    /// # Errors
+    /// When it may not.
+    pub async fn check_announced(&self, assignment: &str, key: Option<&str>, size: Option<u64>) -> Result<(), Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, assignment).await?;
+        if let Some(key) = key {
+            let known = transaction
+                .row("SELECT word FROM upload_key WHERE account = ? AND word = ?", values![self.account.id, key])
+                .await?;
+            // It may have been handed in before.
+            if known.is_some() {
+                return Ok(());
+            }
+        }
+        if !self.is_staff {
+            self.check_limits(&mut transaction, &assignment).await?;
+        }
+        self.check_quota(&mut transaction, size.unwrap_or(0)).await
+    }
+
     /// The submission that this upload was before, or nothing where it may become one.
     async fn admit(
         &self,
@@ -87,6 +113,7 @@ impl Member {
         if !self.is_staff {
             self.check_limits(transaction, assignment).await?;
         }
+        self.check_quota(transaction, artefact.size).await?;
         Ok(None)
     }
 

@@ -262,9 +262,17 @@ pub(super) async fn submissions_of(
     read_all(transaction, statement, values![assignment, account]).await
 }
 
-/// All submissions to an assignment, oldest first.
-pub(super) async fn submissions_to(transaction: &mut Transaction, assignment: i64) -> Result<Vec<Submission>, DbError> {
-    read_all(transaction, submissions!("submission.assignment = ? ORDER BY submission.id"), values![assignment]).await
+/// How many submissions are read at a time.
+const PAGE: i64 = 500;
+
+/// The submissions to an assignment behind the one of this number, oldest first: a page of them, none behind the last.
+pub(super) async fn submissions_after(
+    transaction: &mut Transaction,
+    assignment: i64,
+    after: i64,
+) -> Result<Vec<Submission>, DbError> {
+    let statement = submissions!("submission.assignment = ? AND submission.id > ? ORDER BY submission.id LIMIT ?");
+    read_all(transaction, statement, values![assignment, after, PAGE]).await
 }
 
 /// A submission of a course with its place in the queue and its reports.

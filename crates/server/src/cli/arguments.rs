@@ -1,5 +1,5 @@
 //! The command line as typed.
-use crate::db::Address;
+use crate::{db::Address, net::Networks};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::{net::SocketAddr, num::NonZeroUsize, path::PathBuf};
 
@@ -89,6 +89,25 @@ pub(super) struct Serve {
     /// After so many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
+    /// Connections at one time; an address may have half of them. Who asks for nothing gives way to who comes.
+    #[arg(long, value_name = "N", default_value_t = 4000, value_parser = clap::value_parser!(u32).range(8..))]
+    pub(super) connections: u32,
+    /// Up- and downloads of an account at one time.
+    #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) transfers: u32,
+    /// Addresses and networks (10.0.0.0/8), with commas between them, of proxies in front: what they say of a client's
+    /// address (X-Forwarded-For, or Forwarded) counts, and limits by address hold for clients, not for them.
+    #[arg(long, value_name = "NETWORKS", default_value = "")]
+    pub(super) trusted_proxies: Networks,
+    /// MiB of uploads and reports that are kept of a person, in all courses; 0 for any number.
+    #[arg(long, value_name = "MIB", default_value_t = 4096)]
+    pub(super) keep_of_person: u64,
+    /// MiB of uploads and reports that are kept of a course; 0 for any number.
+    #[arg(long, value_name = "MIB", default_value_t = 200 * 1024)]
+    pub(super) keep_of_course: u64,
+    /// MiB of uploads and reports that are kept in all; 0 for as many as there is room for.
+    #[arg(long, value_name = "MIB", default_value_t = 0)]
+    pub(super) keep_in_all: u64,
     /// With fewer MiB than this free on the data folder's disk uploads are refused, so that what was accepted can be
     /// graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]

@@ -3,7 +3,6 @@
 mod arguments;
 mod config;
 mod folders;
-mod listen;
 mod logging;
 mod replay;
 mod serve;

@@ -2,13 +2,14 @@
 use super::{
     arguments::{AdminLink, Serve},
     folders::Folders,
-    listen, until_signalled,
+    until_signalled,
     worker::{Local, grader, policy},
 };
 use crate::{
-    access::{House, Parts, Passwords, Suites, Throttle},
+    access::{House, Limits, Parts, Passwords, Suites, Throttle},
     db::{self, Address, Database},
     lti::{self, Lti, PlatformWish},
+    net,
     queue::Bell,
     retention,
     storage::Storage,
@@ -70,6 +71,12 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         patience,
         requests_per_minute: arguments.requests_per_minute,
         throttle: Throttle::default(),
+        limits: Limits::new(
+            arguments.transfers as usize,
+            arguments.keep_of_person * MIB,
+            arguments.keep_of_course * MIB,
+            arguments.keep_in_all * MIB,
+        ),
         passwords: arguments.passwords.then(Passwords::default),
         lti: lti.clone(),
         closing: stop.clone(),
@@ -78,13 +85,8 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         register_platforms(&house, file).await?;
     }
     tokio::spawn(lti::send_scores(database.clone(), bell.clone(), policy, lti, stop.clone()));
-    if arguments.keep_days > 0 {
-        tokio::spawn(give_up(
-            database.clone(),
-            store.clone(),
-            Duration::from_secs(u64::from(arguments.keep_days) * DAY),
-        ));
-    }
+    let keep = (arguments.keep_days > 0).then(|| Duration::from_secs(u64::from(arguments.keep_days) * DAY));
+    tokio::spawn(give_up(database.clone(), store.clone(), keep));
     let slots = match arguments.workers {
         Some(workers) => NonZeroUsize::new(workers),
         None => Some(std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
@@ -117,7 +119,12 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         writeln!(output, "A program with a mistake, to hand in: {}", program.display())?;
     }
     output.flush()?;
-    let serving = listen::serve(listener, web::router(house), patience, stop.clone());
+    let manners = net::Manners {
+        patience,
+        connections: arguments.connections as usize,
+        proxies: arguments.trusted_proxies.clone(),
+    };
+    let serving = net::serve(listener, web::router(house), manners, stop.clone());
     match working {
         None => serving.await,
         Some(working) => {
@@ -141,8 +148,8 @@ async fn register_platforms(house: &House, file: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Gives up what is older than is kept, every now and then, for ever.
-async fn give_up(database: Database, store: Store, keep: Duration) {
+/// Gives up what is older than is kept, and what a server that was killed left behind, every now and then, for ever.
+async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
     loop {
         match retention::give_up(&database, &store, keep, retention::LEAST_AGE).await {
             Ok(found) if found == retention::GivenUp::default() => {}
@@ -229,6 +236,7 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
         patience: Duration::from_secs(30),
         requests_per_minute: 1,
         throttle: Throttle::default(),
+        limits: Limits::default(),
         passwords: None,
         lti: Arc::new(Lti::new(false)),
         closing: CancellationToken::new(),

@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// Every change, oldest first. The number of a change is its place in this list, from 1.
-const MIGRATIONS: [(&str, &str); 8] = [
+const MIGRATIONS: [(&str, &str); 9] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
     ("answers", include_str!("migrations/0003_answers.sql")),
@@ -15,6 +15,7 @@ const MIGRATIONS: [(&str, &str); 8] = [
     ("workers", include_str!("migrations/0006_workers.sql")),
     ("suite versions", include_str!("migrations/0007_suite_versions.sql")),
     ("people of their own", include_str!("migrations/0008_people_of_their_own.sql")),
+    ("kept bytes", include_str!("migrations/0009_kept_bytes.sql")),
 ];
 
 /// The version that this program works with.

@@ -1,11 +1,31 @@
 //! One text for both engines: the few words in which they differ stand in braces.
 use super::Dialect;
 
+/// The parts of a script that are for this engine: lines between `-- only sqlite` or `-- only postgres` and `-- end` are
+/// for one.
+pub(super) fn parts(script: &str, dialect: Dialect) -> String {
+    let other = match dialect {
+        Dialect::Sqlite => "-- only postgres",
+        Dialect::Postgres => "-- only sqlite",
+    };
+    let mut skips = false;
+    let mut kept = String::with_capacity(script.len());
+    for line in script.lines() {
+        skips = line == other || (skips && line != "-- end");
+        if !skips {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+    }
+    kept
+}
+
 /// The statement as the engine wants it: `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
-/// definitions, and PostgreSQL counts its placeholders. Statements hold no braces and no question marks of their own:
+/// definitions, `{each}` are the rows of a JSON array that is a value, `wanted.value`, `{strpos}` tells where a text
+/// stands in another, and PostgreSQL counts its placeholders. Statements hold no braces and no question marks of their own:
 /// values never stand in a statement's text.
 pub(super) fn text(statement: &str, dialect: Dialect) -> String {
-    let words: [(&str, &str); 7] = match dialect {
+    let words: [(&str, &str); 9] = match dialect {
         Dialect::Sqlite => [
             ("{now}", "CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER)"),
             ("{int}", "INTEGER"),
@@ -15,6 +35,8 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             // SQLite has one writer: nobody else can hold a row.
             ("{skip locked}", ""),
             ("{for update}", ""),
+            ("{each}", "json_each(?) AS wanted"),
+            ("{strpos}", "instr"),
         ],
         Dialect::Postgres => [
             // Not now(), which stands still within a transaction: a lease counts from when it is given.
@@ -28,6 +50,8 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             // NO KEY: rows that refer to this one may be written meanwhile. Otherwise whoever holds one of these, and
             // refers to this one next, and whoever holds this one, and changes those next, wait for each other.
             ("{for update}", "FOR NO KEY UPDATE"),
+            ("{each}", "json_array_elements_text(CAST(? AS json)) AS wanted (value)"),
+            ("{strpos}", "strpos"),
         ],
     };
     let mut text = statement.to_owned();

@@ -92,7 +92,8 @@ impl Transaction {
 
     /// Runs statements that are separated by semicolons and take no values: definitions of tables.
     pub(super) async fn script(&mut self, script: &str) -> Result<(), DbError> {
-        let text = AssertSqlSafe(statement::text(script, self.dialect()));
+        let script = statement::parts(script, self.dialect());
+        let text = AssertSqlSafe(statement::text(&script, self.dialect()));
         match &mut self.0 {
             Inner::Sqlite(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,
             Inner::Postgres(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,

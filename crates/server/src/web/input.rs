@@ -1,5 +1,8 @@
 //! Reading requests, with answers that say what is wrong.
-use crate::{access::House, problem::Problem};
+use crate::{
+    access::{House, SignedIn},
+    problem::Problem,
+};
 use axum::{
     extract::{FromRequest, FromRequestParts, Path, Query, Request},
     http::{HeaderMap, header, request::Parts},
@@ -24,14 +27,16 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
     value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted))
 }
 
+/// The bytes of a body: few, while nobody knows who sends them.
 async fn bytes(request: Request, house: &House) -> Result<Vec<u8>, Problem> {
+    let most = if request.extensions().get::<SignedIn>().is_some() { super::BODY } else { super::BODY_OF_NOBODY };
     let reading = async {
         let mut stream = request.into_body().into_data_stream();
         let mut bytes = Vec::new();
         while let Some(chunk) = stream.next().await {
             bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request broke off"))?);
-            if bytes.len() > super::BODY {
-                return Err(Problem::too_large(super::BODY as u64));
+            if bytes.len() > most {
+                return Err(Problem::too_large(most as u64));
             }
         }
         Ok(bytes)

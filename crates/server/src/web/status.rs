@@ -13,9 +13,10 @@ const LOOK_EVERY: Duration = Duration::from_secs(2);
 pub(super) async fn stream(member: Member, id: i64) -> Result<Response, Problem> {
     // Whoever may not see it learns so before any event.
     member.submission(id).await?;
+    let transfer = member.transfer()?;
     let ear = member.house().ear();
-    let state = (member, ear, String::new(), false);
-    let events = futures_util::stream::unfold(state, move |(member, mut ear, mut last, ended)| async move {
+    let state = (member, ear, String::new(), false, transfer);
+    let events = futures_util::stream::unfold(state, move |(member, mut ear, mut last, ended, transfer)| async move {
         if ended {
             return None;
         }
@@ -27,7 +28,7 @@ pub(super) async fn stream(member: Member, id: i64) -> Result<Response, Problem>
                         let ended = !matches!(submission.state.as_str(), "waiting" | "running");
                         let event = Event::default().event("submission").data(&text);
                         last = text;
-                        return Some((Ok::<_, Infallible>(event), (member, ear, last, ended)));
+                        return Some((Ok::<_, Infallible>(event), (member, ear, last, ended, transfer)));
                     }
                 }
                 // The browser asks again.

@@ -65,8 +65,29 @@ struct Place<'a> {
 
 /// Receives the body of a request: the file itself, or a form with a field `file`.
 pub(super) async fn receive(house: &House, request: Request, most: u64) -> Result<Received, Problem> {
-    house.has_room()?;
+    if let Err(problem) = house.has_room() {
+        return Err(refuse(house, request, most, problem).await);
+    }
     receive_at(&Place { incoming: house.incoming(), patience: house.patience() }, request, most).await
+}
+
+/// Refuses an upload before anything of it is stored. What comes all the same is read and forgotten: many a program looks
+/// for the answer only when it has sent everything, and finds a broken connection instead.
+pub(super) async fn refuse(house: &House, request: Request, most: u64, problem: Problem) -> Problem {
+    if request.headers().contains_key(header::EXPECT) {
+        return problem;
+    }
+    let until = tokio::time::Instant::now() + house.patience() * PAUSES;
+    let mut body = request.into_body().into_data_stream();
+    let mut size = 0;
+    while size <= most {
+        let pause = tokio::time::Instant::now() + house.patience();
+        match tokio::time::timeout_at(until.min(pause), body.next()).await {
+            Ok(Some(Ok(chunk))) => size += chunk.len() as u64,
+            _ => break,
+        }
+    }
+    problem
 }
 
 /// Receives a form that came in pieces of so many bytes, as fuzzers make them: the size of its file, and what it says
@@ -88,17 +109,21 @@ pub(super) async fn receive_form(
     Ok((size, [received.name, received.form, received.key]))
 }
 
+/// Whether the body of a request is a form.
+pub(super) fn is_form(request: &Request) -> bool {
+    let kind = request.headers().get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok());
+    kind.is_some_and(|value| value.trim_start().to_ascii_lowercase().starts_with("multipart/form-data"))
+}
+
+/// How large a request says that its body is.
+pub(super) fn announced(request: &Request) -> Option<u64> {
+    request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
+}
+
 async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Received, Problem> {
-    let multipart = request
-        .headers()
-        .get(header::CONTENT_TYPE)
-        .and_then(|value| value.to_str().ok())
-        .is_some_and(|value| value.trim_start().to_ascii_lowercase().starts_with("multipart/form-data"));
     let deadline = Instant::now() + place.patience * PAUSES;
-    if !multipart {
-        let announced =
-            request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse::<u64>().ok());
-        if announced.is_some_and(|announced| announced > most) {
+    if !is_form(&request) {
+        if announced(&request).is_some_and(|announced| announced > most) {
             return Err(Problem::too_large(most));
         }
         let body: Body = request.into_body();

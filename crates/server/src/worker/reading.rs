@@ -3,7 +3,7 @@ use super::Graded;
 use crate::{store::Digest, task::WrongScene};
 use serde::Deserialize;
 use serde_json::Value;
-use std::{fs, path::Path};
+use std::{fs, io, path::Path};
 
 /// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader
 /// may be older; what is read here was the same in both.
@@ -119,11 +119,26 @@ pub(crate) fn essence(grade: &[u8]) -> Result<String, serde_json::Error> {
     serde_json::to_string(&value)
 }
 
-/// Whether a `grade.json` tells of groups that students do not see at once; also when it can't be read.
-pub(crate) fn hides_groups(grade: &[u8]) -> bool {
-    let Ok(report) = serde_json::from_slice::<Value>(grade) else { return true };
-    let groups = report["grades"].as_array().into_iter().flatten().filter_map(|grade| grade["groups"].as_array());
-    groups.flatten().any(|group| group["visibility"].as_str().is_some_and(|visibility| visibility != "visible"))
+/// Whether a `grade.json` tells of groups that students do not see at once; also when it can't be read. Of what it says
+/// besides nothing is kept in memory.
+pub(crate) fn hides_groups(grade: impl io::Read) -> bool {
+    #[derive(Deserialize)]
+    struct Report {
+        #[serde(default)]
+        grades: Vec<Grade>,
+    }
+    #[derive(Deserialize)]
+    struct Grade {
+        #[serde(default)]
+        groups: Vec<Group>,
+    }
+    #[derive(Deserialize)]
+    struct Group {
+        visibility: Option<String>,
+    }
+    let Ok(report) = serde_json::from_reader::<_, Report>(io::BufReader::new(grade)) else { return true };
+    let mut groups = report.grades.iter().flat_map(|grade| &grade.groups);
+    groups.any(|group| group.visibility.as_deref().is_some_and(|visibility| visibility != "visible"))
 }
 
 /// Whether so many wrong scenes leave a submission nearly right: what it answers there may be worth a second look.

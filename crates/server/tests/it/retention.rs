@@ -5,12 +5,23 @@ use crate::support::{
 };
 use fosssim_server::{
     retention,
-    store::{Digest, Store},
+    store::{Digest, Names, Store, StoreError},
     values,
 };
-use std::time::Duration;
+use std::{collections::HashSet, time::Duration};
 
 on_both_engines!(old_uploads_go_and_grades_stay);
+
+/// What a test says is named.
+struct Named<F>(F);
+
+impl<F: FnMut(&Digest) -> bool + Send> Names for Named<F> {
+    type Error = StoreError;
+
+    async fn named(&mut self, digests: &[Digest]) -> Result<HashSet<Digest>, StoreError> {
+        Ok(digests.iter().filter(|digest| (self.0)(digest)).cloned().collect())
+    }
+}
 
 async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);
@@ -24,7 +35,7 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     let waiting = ada.submit("physics", b"#!grade HANG 0\n");
     let store = Store::folder(&server.folder.join("store")).expect("the store");
     let give_up = async |days: u64| {
-        retention::give_up(&fresh.database, &store, Duration::from_secs(days * 86400), Duration::ZERO)
+        retention::give_up(&fresh.database, &store, Some(Duration::from_secs(days * 86400)), Duration::ZERO)
             .await
             .expect("done")
     };
@@ -71,28 +82,36 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
         let store = Store::folder(folder.path()).expect("a store");
         let one = store.put(b"one".to_vec()).await.expect("stored").digest;
         let two = store.put(b"two".to_vec()).await.expect("stored").digest;
-        let age = |name: &Digest, hours: u64| {
-            let text = name.as_str();
-            let place = folder.path().join("sha256").join(&text[..2]).join(&text[2..]);
+        let place =
+            |kept: &str, name: &Digest| folder.path().join(kept).join(&name.as_str()[..2]).join(&name.as_str()[2..]);
+        let age = |file: &std::path::Path, hours: u64| {
             let then = std::time::SystemTime::now() - Duration::from_secs(hours * 3600);
-            let file = std::fs::File::options().write(true).open(place).expect("the file");
+            let file = std::fs::File::options().write(true).open(file).expect("the file");
             file.set_modified(then).expect("a time");
         };
-        age(&one, 48);
-        age(&two, 48);
+        age(&place("sha256", &one), 48);
+        age(&place("sha256", &two), 48);
         // Stored once more it is young again, and its name may be on its way to the database.
         store.put(b"two".to_vec()).await.expect("stored");
         let day = Duration::from_secs(24 * 3600);
-        assert_eq!(store.give_up(day, |_| false).await.expect("done"), 1);
+        // What a killed server left of an upload, and what another is just writing.
+        let part = |end: &str| place("sha256", &two).with_file_name(format!("{}#{end}", &two.as_str()[2..]));
+        for (end, hours) in [("1", 48), ("2", 1)] {
+            std::fs::write(part(end), b"tw").expect("written");
+            age(&part(end), hours);
+        }
+        assert_eq!(store.give_up(day, &mut Named(|_: &Digest| false)).await.expect("done"), 1, "the old part");
+        assert!(!part("1").exists() && part("2").exists());
+        // What is put aside lies there for a day, and is read meanwhile.
+        assert_eq!(store.bytes(&one, 10).await.expect("the bytes"), b"one");
+        age(&place("aside", &one), 25);
+        assert_eq!(store.give_up(day, &mut Named(|_: &Digest| false)).await.expect("done"), 1);
         assert!(!store.has(&one).await.expect("the store") && store.has(&two).await.expect("the store"));
         // What a server that died had put aside comes back when it is named.
-        age(&two, 48);
-        let text = two.as_str();
-        let aside = folder.path().join("aside").join(&text[..2]);
-        std::fs::create_dir_all(&aside).expect("a folder");
-        let place = folder.path().join("sha256").join(&text[..2]).join(&text[2..]);
-        std::fs::rename(place, aside.join(&text[2..])).expect("moved");
-        assert_eq!(store.give_up(day, |name| name == two.as_str()).await.expect("done"), 0);
+        age(&place("sha256", &two), 48);
+        std::fs::create_dir_all(place("aside", &two).parent().expect("a folder")).expect("a folder");
+        std::fs::rename(place("sha256", &two), place("aside", &two)).expect("moved");
+        assert_eq!(store.give_up(day, &mut Named(|name: &Digest| *name == two)).await.expect("done"), 0);
         assert_eq!(store.bytes(&two, 10).await.expect("the bytes"), b"two");
     });
 }
@@ -167,13 +186,15 @@ mod bucket {
                 store.bytes(&large_one, 1).await.is_err() && !store.has(&Digest::of(b"none")).await.expect("an answer")
             );
             let long = Duration::from_secs(3600);
-            assert_eq!(store.give_up(long, |_| false).await.expect("done"), 0, "too young");
+            assert_eq!(store.give_up(long, &mut Named(|_: &Digest| false)).await.expect("done"), 0, "too young");
             // Nothing names either of them for a moment: put aside, and read all the same.
             let aside = Duration::ZERO;
-            let count = std::sync::atomic::AtomicUsize::new(0);
-            let named_later =
-                |name: &str| name == small.as_str() && count.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 0;
-            assert_eq!(store.give_up(aside, named_later).await.expect("done"), 1, "the large one alone");
+            let mut count = 0;
+            let mut named_later = Named(|name: &Digest| {
+                count += usize::from(*name == small);
+                *name == small && count > 1
+            });
+            assert_eq!(store.give_up(aside, &mut named_later).await.expect("done"), 1, "the large one alone");
             assert!(!store.has(&large_one).await.expect("an answer"));
             assert_eq!(store.bytes(&small, 10).await.expect("it came back"), b"small");
         });

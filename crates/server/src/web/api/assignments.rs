@@ -10,6 +10,7 @@ use crate::{
 };
 use axum::{
     Json,
+    body::Body as HttpBody,
     extract::Request,
     http::header,
     response::{IntoResponse, Response},
@@ -136,17 +137,32 @@ pub(super) async fn export(
     Params((_, assignment)): Params<(String, String)>,
     Asked(asked): Asked<Format>,
 ) -> Result<Response, Problem> {
-    let (kind, text) = match asked.format.as_deref().unwrap_or("csv") {
-        "csv" => ("text/csv; charset=utf-8", super::export_csv(&staff.standings(&assignment).await?)?),
-        "jsonl" => {
-            let mut text = String::new();
-            for submission in staff.all_submissions(&assignment).await? {
-                text.push_str(&serde_json::to_string(&submission).map_err(|_| Problem::fault())?);
-                text.push('\n');
-            }
-            ("application/jsonl; charset=utf-8", text)
-        }
+    let (kind, body) = match asked.format.as_deref().unwrap_or("csv") {
+        "csv" => ("text/csv; charset=utf-8", HttpBody::from(super::export_csv(&staff.standings(&assignment).await?)?)),
+        "jsonl" => ("application/jsonl; charset=utf-8", lines(staff, &assignment).await?),
         _ => return Err(Problem::invalid("format is csv or jsonl")),
     };
-    Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, "attachment")], text).into_response())
+    Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, "attachment")], body).into_response())
+}
+
+/// All submissions, a line for each, read as they are sent.
+async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
+    let transfer = staff.member().transfer()?;
+    let assignment = staff.member().assignment(assignment).await?;
+    let pages = futures_util::stream::try_unfold((staff, 0), move |(staff, after)| {
+        let (assignment, _of_this_answer) = (assignment.id, &transfer);
+        async move {
+            let page = staff.submissions_after(assignment, after).await;
+            let page = page.map_err(|problem| std::io::Error::other(problem.detail))?;
+            let Some(last) = page.last() else { return Ok::<_, std::io::Error>(None) };
+            let after = last.id;
+            let mut text = String::new();
+            for submission in &page {
+                text.push_str(&serde_json::to_string(submission)?);
+                text.push('\n');
+            }
+            Ok(Some((text, (staff, after))))
+        }
+    });
+    Ok(HttpBody::from_stream(pages))
 }

@@ -1,12 +1,12 @@
 //! Submissions.
 use super::super::{
+    download,
     input::{Asked, Params},
     status, upload,
 };
 use crate::{
     access::{History, Member, Standing, Submission, Upload},
     problem::Problem,
-    task::OutputFile,
 };
 use axum::{
     Json,
@@ -71,7 +71,15 @@ pub(in crate::web) async fn receive(
     form: Option<&str>,
     key: Option<&str>,
 ) -> Result<(Submission, bool), Problem> {
+    let _transfer = member.transfer()?;
     let most = member.assignment(assignment).await?.settings.max_bytes;
+    // Of a form nobody knows yet whether it was sent before.
+    if !upload::is_form(&request) {
+        let checked = member.check_announced(assignment, key, upload::announced(&request)).await;
+        if let Err(problem) = checked {
+            return Err(upload::refuse(member.house(), request, most, problem).await);
+        }
+    }
     let received = upload::receive(member.house(), request, most).await?;
     let form = upload::examine(&received.file, received.form.as_deref().or(form)).await?;
     let name = upload::plain_name(received.name.as_deref().or(name).unwrap_or("submission"));
@@ -126,13 +134,19 @@ pub(super) async fn events(member: Member, Params((_, id)): Params<(String, i64)
 pub(super) async fn report(
     member: Member,
     Params((_, id, name)): Params<(String, i64, String)>,
+    headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (file, bytes) = member.report(id, &name).await?;
-    Ok(report_response(&file, bytes))
+    report_response(&member, id, &name, &headers).await
 }
 
 /// A report holds words of a stranger's program: a browser shows it as a page of nobody, without this site's cookies.
-pub(in crate::web) fn report_response(file: &OutputFile, bytes: Vec<u8>) -> Response {
+pub(in crate::web) async fn report_response(
+    member: &Member,
+    id: i64,
+    name: &str,
+    asked: &HeaderMap,
+) -> Result<Response, Problem> {
+    let file = member.report(id, name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
     let policy = if file.media_type.starts_with("text/html") {
         "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
@@ -140,20 +154,24 @@ pub(in crate::web) fn report_response(file: &OutputFile, bytes: Vec<u8>) -> Resp
         "sandbox; default-src 'none'"
     };
     let headers = [(header::CONTENT_TYPE, kind), (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(policy))];
-    (headers, bytes).into_response()
+    Ok((headers, download::send(member, asked, &file.artefact).await?).into_response())
 }
 
 /// What was handed in.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
     params(("course" = String, Path), ("id" = i64, Path)),
     responses((status = 200, description = "The file"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn upload(member: Member, Params((_, id)): Params<(String, i64)>) -> Result<Response, Problem> {
-    let (submission, bytes) = member.upload(id).await?;
-    Ok(upload_response(&submission, bytes))
+pub(super) async fn upload(
+    member: Member,
+    Params((_, id)): Params<(String, i64)>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    upload_response(&member, id, &headers).await
 }
 
 /// A stranger's file: to be kept, never to be shown.
-pub(in crate::web) fn upload_response(submission: &Submission, bytes: Vec<u8>) -> Response {
+pub(in crate::web) async fn upload_response(member: &Member, id: i64, asked: &HeaderMap) -> Result<Response, Problem> {
+    let (submission, artefact) = member.upload(id).await?;
     // The name was made harmless when it came.
     let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
     let headers = [
@@ -164,7 +182,7 @@ pub(in crate::web) fn upload_response(submission: &Submission, bytes: Vec<u8>) -
         ),
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static("sandbox; default-src 'none'")),
     ];
-    (headers, bytes).into_response()
+    Ok((headers, download::send(member, asked, &artefact).await?).into_response())
 }
 
 /// A class's grades as a table. What spreadsheets would take for a formula is marked as text.

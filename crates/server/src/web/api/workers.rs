@@ -1,6 +1,7 @@
 //! What workers on other machines ask: claim, renew, finish, and the files of the jobs that they hold. A lease is shown
 //! in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
 use super::super::{
+    download,
     input::{Body, Params},
     upload,
 };
@@ -13,13 +14,11 @@ use crate::{
 };
 use axum::{
     Json,
-    body::Body as HttpBody,
     extract::Request,
     http::{HeaderMap, StatusCode, header},
     response::{IntoResponse, Response},
 };
 use serde::{Deserialize, Serialize};
-use tokio::io::AsyncReadExt;
 use utoipa::ToSchema;
 
 /// A sign of life.
@@ -130,18 +129,9 @@ pub(super) async fn artefact(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
-    let path = remote.artefact(&lease(&headers)?, &digest).await?;
-    let file = tokio::fs::File::open(&path).await?;
-    // The file is open: its name is not needed any more.
-    drop(path);
-    let chunks = futures_util::stream::try_unfold(file, async |mut file| {
-        let mut chunk = vec![0; 64 * 1024];
-        let read = file.read(&mut chunk).await?;
-        chunk.truncate(read);
-        Ok::<_, std::io::Error>((read > 0).then_some((chunk, file)))
-    });
+    let opened = remote.artefact(&lease(&headers)?, &digest).await?;
     let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
-    Ok((kind, HttpBody::from_stream(chunks)).into_response())
+    Ok((kind, download::whole(opened, None)).into_response())
 }
 
 /// Stores a report of a job that the worker holds; the digest must be that of its bytes.

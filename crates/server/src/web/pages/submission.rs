@@ -11,11 +11,12 @@ use crate::{
 use askama::Template;
 use axum::{
     extract::Request,
+    http::HeaderMap,
     response::{Html, Redirect, Response},
 };
 
 /// How much of a report a page shows; the rest is behind its link.
-const SHOWN: usize = 200_000;
+const SHOWN: u64 = 200_000;
 
 #[derive(Template)]
 #[template(path = "assignment.html")]
@@ -78,8 +79,8 @@ pub(super) async fn submission(
     let has =
         |name: &str| submission.grade.as_ref().is_some_and(|grade| grade.files.iter().any(|file| file.name == name));
     let report = if has("report.txt") {
-        let (_, bytes) = member.report(id, "report.txt").await?;
-        Some(String::from_utf8_lossy(&bytes[..bytes.len().min(SHOWN)]).into_owned())
+        let file = member.report(id, "report.txt").await?;
+        Some(String::from_utf8_lossy(&member.beginning(&file.artefact, SHOWN).await?).into_owned())
     } else {
         None
     };
@@ -99,12 +100,15 @@ pub(super) async fn submission(
 pub(super) async fn report(
     member: Member,
     Params((_, id, name)): Params<(String, i64, String)>,
+    headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (file, bytes) = member.report(id, &name).await?;
-    Ok(api::report_response(&file, bytes))
+    api::report_response(&member, id, &name, &headers).await
 }
 
-pub(super) async fn upload(member: Member, Params((_, id)): Params<(String, i64)>) -> Result<Response, Problem> {
-    let (submission, bytes) = member.upload(id).await?;
-    Ok(api::upload_response(&submission, bytes))
+pub(super) async fn upload(
+    member: Member,
+    Params((_, id)): Params<(String, i64)>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    api::upload_response(&member, id, &headers).await
 }

@@ -1,4 +1,5 @@
-//! A file system that is soon full.
+//! A file system that is soon full, and what lies in a server's folders.
+use super::server::Server;
 use fosssim_testing::{Need, skip};
 use std::{path::Path, process::Command};
 
@@ -36,4 +37,13 @@ impl Drop for SmallDisk {
         // Lazily: a server that is just ending may still have a file open.
         drop(Command::new("umount").arg("--lazy").arg(self.0.path()).status());
     }
+}
+
+/// Files of a server's store, and of uploads that are on their way to it.
+pub(crate) fn stored(server: &Server) -> usize {
+    fn files(folder: &Path) -> usize {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.map(|entry| if entry.path().is_dir() { files(&entry.path()) } else { 1 }).sum()
+    }
+    files(&server.folder.join("store")) + files(&server.folder.join("incoming"))
 }

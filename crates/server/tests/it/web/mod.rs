@@ -4,6 +4,7 @@ mod example;
 mod flows;
 mod hidden;
 mod hostile;
+mod limits;
 mod passwords;
 mod people;
 mod platforms;

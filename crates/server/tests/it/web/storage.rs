@@ -1,23 +1,14 @@
 //! Disks that are full, and what is not to be kept.
 use crate::support::{
-    disk::SmallDisk,
+    disk::{SmallDisk, stored},
     engines::{Fresh, on_both_engines, run},
     server::{JSON, Server, program},
 };
-use std::{io::Write, path::Path, time::Instant};
+use std::{io::Write, time::Instant};
 
 on_both_engines!(uploads_need_room, nothing_is_stored_of_a_refused_upload);
 
 const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
-
-/// Files of the store.
-fn stored(server: &Server) -> usize {
-    fn files(folder: &Path) -> usize {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.map(|entry| if entry.path().is_dir() { files(&entry.path()) } else { 1 }).sum()
-    }
-    files(&server.folder.join("store")) + files(&server.folder.join("incoming"))
-}
 
 async fn uploads_need_room(fresh: Fresh) {
     // More than any disk has.

@@ -15,6 +15,16 @@ fn the_database_is_copied_before_its_tables_change() {
         // As the first version left it.
         let mut transaction = fresh.database.begin().await.expect("a transaction");
         for statement in [
+            "DROP TRIGGER submission_comes",
+            "DROP TRIGGER submission_is_given_up",
+            "DROP TRIGGER submission_goes",
+            "DROP TRIGGER report_comes",
+            "DROP TRIGGER report_goes",
+            "DROP TABLE kept_bytes",
+            "DROP INDEX submission_age",
+            "DROP INDEX submission_digest",
+            "DROP INDEX submission_assignment",
+            "DROP INDEX result_archive",
             "ALTER TABLE job DROP COLUMN failed_by",
             "DROP TABLE platform_score",
             "DROP TABLE platform_choice",

@@ -1,0 +1,120 @@
+//! Giving up what nobody names any more, in batches, so that memory is the same however many artefacts there are.
+use super::{ASIDE, Digest, KEPT, Key, Store, StoreError, age};
+use futures_util::{StreamExt, TryStreamExt};
+use object_store::ObjectStoreExt;
+use std::{
+    collections::HashSet,
+    fs,
+    path::Path,
+    time::{Duration, SystemTime},
+};
+
+/// Artefacts that are asked about at a time.
+const BATCH: usize = 500;
+
+/// Which of these artefacts something names.
+pub trait Names: Send {
+    /// What goes wrong when they are asked for.
+    type Error: From<StoreError>;
+
+    /// Those of these digests that are named.
+    fn named(&mut self, digests: &[Digest]) -> impl Future<Output = Result<HashSet<Digest>, Self::Error>> + Send;
+}
+
+impl Store {
+    /// Gives up every artefact that is older than `least` and not named; how many these were.
+    ///
+    /// Whoever stores one of them at this very moment does not lose it: it is put aside first, where it is still read,
+    /// and looked at again there, at once and every time from then on. When it is named by then it comes back. It goes
+    /// only when it lay there unnamed for `least`: so a server that was started on the wrong database by mistake has
+    /// taken nothing away when somebody notices within that time.
+    ///
+    /// # Errors
+    /// When the store fails, or nobody can say what is named. What was put aside is looked at again the next time.
+    pub async fn give_up<N: Names>(&self, least: Duration, names: &mut N) -> Result<usize, N::Error> {
+        let mut batches = self.list(KEPT).try_chunks(BATCH);
+        while let Some(batch) = batches.next().await {
+            let mut batch = batch.map_err(|error| error.1)?;
+            batch.retain(|(_, age)| *age >= least);
+            let digests: Vec<Digest> = batch.into_iter().map(|(digest, _)| digest).collect();
+            let named = names.named(&digests).await?;
+            for digest in digests.iter().filter(|digest| !named.contains(digest)) {
+                self.rename(&digest.key(), &digest.aside()).await?;
+                // In a bucket it is a copy, and new.
+                if let Some(folder) = &self.folder {
+                    renew(&folder.join(digest.aside().as_ref()));
+                }
+            }
+        }
+        let mut given_up = 0;
+        let mut batches = self.list(ASIDE).try_chunks(BATCH);
+        while let Some(batch) = batches.next().await {
+            let batch = batch.map_err(|error| error.1)?;
+            let digests: Vec<Digest> = batch.iter().map(|(digest, _)| digest.clone()).collect();
+            let named = names.named(&digests).await?;
+            for (digest, age) in batch {
+                if named.contains(&digest) {
+                    self.rename(&digest.aside(), &digest.key()).await?;
+                } else if age >= least {
+                    match self.objects.delete(&digest.aside()).await {
+                        Ok(()) => given_up += 1,
+                        Err(object_store::Error::NotFound { .. }) => {}
+                        Err(error) => return Err(StoreError::from(error).into()),
+                    }
+                }
+            }
+        }
+        if let Some(folder) = self.folder.clone() {
+            let swept = tokio::task::spawn_blocking(move || remove_parts(&folder, least)).await;
+            given_up += swept.map_err(|error| StoreError::Failed(error.to_string()))?;
+        }
+        Ok(given_up)
+    }
+
+    /// Moves an object, unless another server was faster.
+    async fn rename(&self, from: &Key, to: &Key) -> Result<(), StoreError> {
+        match self.objects.rename(from, to).await {
+            Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The artefacts below a prefix, with their ages.
+    fn list(&self, prefix: &str) -> impl futures_util::Stream<Item = Result<(Digest, Duration), StoreError>> + Unpin {
+        let listing = self.objects.list(Some(&Key::from(prefix))).map_err(StoreError::from);
+        let found = listing.try_filter_map(async |meta| {
+            let parts: Vec<String> = meta.location.parts().map(|part| part.as_ref().to_owned()).collect();
+            // Anything else there is none of ours.
+            let [_, first, rest] = parts.as_slice() else { return Ok(None) };
+            Ok(format!("{first}{rest}").parse().ok().map(|digest| (digest, age(&meta))))
+        });
+        found.boxed()
+    }
+}
+
+/// Has a file begin a new age; one that can't be touched keeps its own.
+fn renew(file: &Path) {
+    let touched = fs::File::options().write(true).open(file).and_then(|file| file.set_modified(SystemTime::now()));
+    if let Err(error) = touched {
+        tracing::debug!(%error, "a file that was put aside keeps its age");
+    }
+}
+
+/// Removes parts of artefacts that a server left behind when it was killed; how many there were. They are called
+/// `NAME#NUMBER` until they are whole, and listings leave them out.
+fn remove_parts(folder: &Path, least: Duration) -> usize {
+    let below = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();
+    let folders = [KEPT, ASIDE].into_iter().flat_map(|kept| below(&folder.join(kept)).map(|entry| entry.path()));
+    let mut removed = 0;
+    for entry in folders.filter(|path| path.is_dir()).flat_map(|path| below(&path)) {
+        let is_part = entry.file_name().to_str().is_some_and(|name| name.contains('#'));
+        let is_old = || {
+            let written = entry.metadata().and_then(|data| data.modified());
+            written.is_ok_and(|written| written.elapsed().is_ok_and(|age| age >= least))
+        };
+        if is_part && is_old() && fs::remove_file(entry.path()).is_ok() {
+            removed += 1;
+        }
+    }
+    removed
+}

@@ -1,0 +1,207 @@
+//! What one account, one address, and all together may use of the server.
+use crate::support::{
+    disk::stored,
+    engines::{Fresh, on_both_engines},
+    server::{Answer, Client, JSON, Server, program},
+};
+use fosssim_server::values;
+use std::{
+    io::{Read, Write},
+    net::TcpStream,
+    time::{Duration, Instant},
+};
+
+on_both_engines!(files_are_sent_in_pieces, quotas_count_what_is_kept, refused_at_the_same_time_leaves_nothing);
+
+const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
+
+/// A program of so many MiB, which no two calls make alike.
+fn large(mebibytes: usize, number: u8) -> Vec<u8> {
+    let mut bytes = program("AC", u32::from(number));
+    bytes.resize(mebibytes << 20, number);
+    bytes
+}
+
+/// Sends a request, and reads nothing.
+fn ask(client: &Client, path: &str) -> TcpStream {
+    let host = client.url.strip_prefix("http://").expect("an address");
+    let mut stream = TcpStream::connect(host).expect("a connection");
+    let (name, value) = client.headers.first().expect("a secret");
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: {host}\r\n{name}: {value}\r\n\r\n").expect("sent");
+    stream
+}
+
+async fn files_are_sent_in_pieces(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0", "--transfers", "12", "--patience", "2"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let bytes = large(64, 1);
+    let id = ada.submit("physics", &bytes);
+    let path = format!("/api/v1/courses/physics/submissions/{id}/upload");
+    let whole = ada.get(&path).expect(200);
+    assert!(whole.body == bytes);
+    assert_eq!(whole.header("content-length"), Some("67108864"));
+    let tag = whole.header("etag").expect("a tag").to_owned();
+    // Who has it already, or wants a part of it.
+    ada.send("GET", &path, &[("If-None-Match", &tag)], b"").expect(304);
+    let part = ada.send("GET", &path, &[("Range", "bytes=0-4"), ("If-Range", &tag)], b"").expect(206);
+    assert_eq!((part.body.as_slice(), part.header("content-range")), (&b"#!gra"[..], Some("bytes 0-4/67108864")));
+    ada.send("GET", &path, &[("Range", "bytes=67108864-")], b"").expect(416);
+    assert_eq!(
+        ada.send("GET", &path, &[("Range", "bytes=0-4"), ("If-Range", "\"other\"")], b"").expect(200).body.len(),
+        bytes.len()
+    );
+    // Readers that take nothing: each holds little, an account has so many and no more, and the rest is not disturbed.
+    let before = server.peak_memory();
+    let mut readers: Vec<TcpStream> = (0..12).map(|_| ask(&ada, &path)).collect();
+    for reader in &mut readers {
+        reader.read_exact(&mut [0; 15]).expect("the status");
+    }
+    let refused = ada.get(&path).expect(429).json();
+    assert!(refused["detail"].as_str().is_some_and(|detail| detail.contains("12 up- and downloads")), "{refused}");
+    ada.get(&format!("/c/physics/s/{id}")).expect(200);
+    assert!(admin.get(&path).expect(200).body == bytes, "another account has its own");
+    let held = server.peak_memory() - before;
+    assert!(held < 32 << 20, "{held} bytes for readers of {} each", bytes.len());
+    // Given up after the patience: then there is room again.
+    let start = Instant::now();
+    while ada.send("GET", &path, &[("Range", "bytes=0-4")], b"").status != 206 {
+        assert!(start.elapsed() < Duration::from_secs(100), "readers that take nothing are never given up");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    // A file that is not what it was breaks off, and does not pass for whole.
+    let digest = ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json()["digest"].clone();
+    let digest = digest.as_str().expect("a digest").to_owned();
+    let file = server.folder.join("store/sha256").join(&digest[..2]).join(&digest[2..]);
+    let mut damaged = bytes.clone();
+    damaged[1 << 20] ^= 1;
+    std::fs::write(file, damaged).expect("written");
+    assert!(ada.get(&path).body.len() < bytes.len());
+}
+
+async fn quotas_count_what_is_kept(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1", "--keep-of-person", "5", "--keep-of-course", "8"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let eve = server.member(&admin, "physics", "eve", "student");
+    let kept = async || {
+        let mut transaction = fresh.database.read().await.expect("a transaction");
+        let counted = "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS n FROM kept_bytes";
+        let there = "SELECT CAST((SELECT coalesce(sum(size), 0) FROM submission WHERE removed_at IS NULL)
+            + (SELECT coalesce(sum(result_file.size), 0) FROM result_file
+                JOIN result ON result.id = result_file.result
+                JOIN submission ON submission.id = result.submission WHERE removed_at IS NULL) AS {int}) AS n";
+        let counted = transaction.one(counted, values![]).await.expect("a row").int("n").expect("a number");
+        let there = transaction.one(there, values![]).await.expect("a row").int("n").expect("a number");
+        assert_eq!(counted, there, "what is counted is what is there");
+        counted
+    };
+    let first = ada.submit("physics", &large(2, 1));
+    ada.wait_for_grade("physics", first);
+    assert!(kept().await > 2 << 20, "reports count, too");
+    let second = ada.submit("physics", &large(2, 2));
+    ada.wait_for_grade("physics", second);
+    let before = stored(&server);
+    let answer = ada.send("POST", SUBMISSIONS, &[], &large(2, 3)).expect(507).json();
+    assert_eq!(answer["type"], "urn:fosssim:quota", "{answer}");
+    assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("5 of 5 MiB")), "{answer}");
+    // By a form, whose size nobody knows before it came.
+    let form = [
+        b"--x\r\nContent-Disposition: form-data; name=\"file\"; filename=\"F\"\r\n\r\n",
+        &large(2, 3)[..],
+        b"\r\n--x--\r\n",
+    ]
+    .concat();
+    ada.send("POST", SUBMISSIONS, &[("Content-Type", "multipart/form-data; boundary=x")], &form).expect(507);
+    assert_eq!(stored(&server), before);
+    let of_eve = eve.submit("physics", &large(2, 4));
+    eve.wait_for_grade("physics", of_eve);
+    let answer = eve.send("POST", SUBMISSIONS, &[], &large(2, 5)).expect(507).json();
+    assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("in this course")), "{answer}");
+    // What is given up makes room.
+    let mut transaction = fresh.database.begin().await.expect("a transaction");
+    let given_up = "UPDATE submission SET removed_at = {now} WHERE id IN (?, ?)";
+    transaction.execute(given_up, values![first, of_eve]).await.expect("a statement");
+    transaction.commit().await.expect("commit");
+    assert!(kept().await < 3 << 20);
+    let third = ada.submit("physics", &large(2, 3));
+    ada.wait_for_grade("physics", third);
+    // What is deleted, too.
+    let mut transaction = fresh.database.begin().await.expect("a transaction");
+    for deleted in [
+        "DELETE FROM grade_change WHERE submission = ?",
+        "DELETE FROM grade WHERE submission = ?",
+        "DELETE FROM result_file WHERE result IN (SELECT id FROM result WHERE submission = ?)",
+        "DELETE FROM job_file WHERE job IN (SELECT id FROM job WHERE submission = ?)",
+        "DELETE FROM result WHERE submission = ?",
+        "DELETE FROM job WHERE submission = ?",
+        "DELETE FROM submission WHERE id = ?",
+    ] {
+        transaction.execute(deleted, values![second]).await.expect("a statement");
+    }
+    transaction.commit().await.expect("commit");
+    assert!(kept().await < 3 << 20);
+    eve.submit("physics", &large(2, 5));
+    kept().await;
+}
+
+async fn refused_at_the_same_time_leaves_nothing(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let wish = r#"{"title": "M1", "visible": true, "settings": {"attempts": 1}}"#;
+    admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let answers: Vec<Answer> = std::thread::scope(|scope| {
+        let sending: Vec<_> = (0..8)
+            .map(|number| {
+                let ada = &ada;
+                scope.spawn(move || ada.send("POST", SUBMISSIONS, &[], &large(1, number)))
+            })
+            .collect();
+        sending.into_iter().map(|sending| sending.join().expect("an answer")).collect()
+    });
+    let accepted = answers.iter().filter(|answer| answer.status == 201).count();
+    assert_eq!((accepted, answers.iter().filter(|answer| answer.status == 409).count()), (1, 7));
+    assert_eq!(stored(&server), 1);
+}
+
+/// Requests that never end hold the server's places, and nobody else's: from the same address, too.
+#[test]
+fn half_open_requests_keep_nobody_out() {
+    crate::support::engines::run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite").with_tables().await;
+        let mut server = Server::start(&fresh, &["--workers", "0", "--connections", "40"]);
+        let admin = server.admin();
+        let host = server.url.strip_prefix("http://").expect("an address").to_owned();
+        let mut half_open = Vec::new();
+        for number in 0..200 {
+            let mut stream = TcpStream::connect(&host).expect("a connection");
+            drop(write!(stream, "GET / HTTP/1.1\r\nHost: x\r\nX-Pad: {number}"));
+            half_open.push(stream);
+            if number % 20 == 0 {
+                server.visitor().get("/health").expect(200);
+                admin.get("/api/v1/me").expect(200);
+            }
+        }
+        // Who is being answered keeps its place.
+        server.visitor().get("/health").expect(200);
+        let stopping = Instant::now();
+        assert!(server.stop().success());
+        assert!(stopping.elapsed() < Duration::from_secs(15), "requests that never end hold the server's end up");
+    });
+}
+
+/// Thousands may send a form that they need not be signed in for, each as slowly as the server lets them.
+#[test]
+fn who_is_not_signed_in_sends_little() {
+    crate::support::engines::run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite").with_tables().await;
+        let server = Server::start(&fresh, &["--workers", "0", "--trusted-proxies", "127.0.0.0/8, ::1"]);
+        let long = format!("token={}", "x".repeat(100_000));
+        server.visitor().post_form("/sign-in", &long).expect(413);
+        server.visitor().send("GET", "/health", &[("X-Forwarded-For", "192.0.2.7")], b"").expect(200);
+    });
+}
