@@ -154,8 +154,8 @@ async fn write_result(
     let result = transaction
         .one(
             "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
-                version, task, seconds, grader, essence, nearly_right, created_at)
-             VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id",
+                version, task, seconds, grader, essence, nearly_right, shown, created_at)
+             VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id",
             values![
                 job,
                 submission,
@@ -172,7 +172,8 @@ async fn write_result(
                 seconds,
                 &outcome.grader,
                 &outcome.essence,
-                outcome.code == "AC" || !outcome.wrong.is_empty()
+                outcome.code == "AC" || !outcome.wrong.is_empty(),
+                outcome.shown.clone()
             ],
         )
         .await?

@@ -13,6 +13,7 @@ pub mod problem;
 pub mod queue;
 pub mod retention;
 mod secret;
+pub mod shown;
 pub mod storage;
 pub mod store;
 pub mod suspect;

@@ -98,6 +98,10 @@ pub struct Outcome<F = OutputFile> {
     pub seconds: String,
     /// Reports and logs; empty in lists.
     pub files: Vec<F>,
+    /// What students see while groups are withheld, as [`Shown`](crate::shown::Shown) keeps it; nothing while nobody
+    /// has looked.
+    #[serde(skip)]
+    pub shown: Option<String>,
 }
 
 /// A scene that is not accepted.
@@ -125,6 +129,7 @@ impl<F> Outcome<F> {
             wrong: self.wrong,
             seconds: self.seconds,
             files,
+            shown: self.shown,
         }
     }
 }
@@ -145,6 +150,7 @@ impl Outcome {
             wrong: Vec::new(),
             seconds: "0".to_owned(),
             files: Vec::new(),
+            shown: Some(String::new()),
         }
     }
 }

@@ -92,7 +92,7 @@ impl Person {
         };
         let rows = transaction
             .rows(
-                "SELECT id, slug, title, visible, settings FROM assignment WHERE course = ? ORDER BY id",
+                "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? ORDER BY id",
                 values![place.course],
             )
             .await?;
@@ -207,7 +207,7 @@ impl Person {
         }
         let row = transaction
             .row(
-                "SELECT id, slug, title, visible, settings FROM assignment WHERE course = ? AND slug = ?",
+                "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? AND slug = ?",
                 values![place.course, slug],
             )
             .await?;

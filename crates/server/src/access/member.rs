@@ -2,16 +2,16 @@
 use super::{
     House,
     account::Account,
-    view::{self, Assignment, Course, Event, History, Submission},
+    view::{self, Assignment, Course, History, Submission},
 };
 use crate::{
     db::{DbError, Transaction},
     problem::Problem,
+    shown::{self, Shown},
     store::{Artefact, Digest, Opened},
     task::OutputFile,
-    values, worker,
+    values,
 };
-use futures_util::StreamExt;
 use std::ops::Range;
 
 /// The report that holds no group that its suite hides from students.
@@ -60,7 +60,7 @@ impl Member {
         let mut transaction = self.house.0.database.read().await?;
         let rows = transaction
             .rows(
-                "SELECT id, slug, title, visible, settings FROM assignment
+                "SELECT id, slug, title, visible, settings, published_at FROM assignment
                  WHERE course = ? AND (visible = 1 OR ? = 1) ORDER BY id",
                 values![self.course, self.is_staff],
             )
@@ -84,7 +84,7 @@ impl Member {
     ) -> Result<Assignment, Problem> {
         let row = transaction
             .row(
-                "SELECT id, slug, title, visible, settings FROM assignment
+                "SELECT id, slug, title, visible, settings, published_at FROM assignment
                  WHERE course = ? AND slug = ? AND (visible = 1 OR ? = 1)",
                 values![self.course, slug, self.is_staff],
             )
@@ -99,14 +99,43 @@ impl Member {
     pub async fn submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
         let mut transaction = self.house.0.database.read().await?;
         let assignment = self.find_assignment(&mut transaction, assignment).await?;
-        Ok(view::submissions_of(&mut transaction, assignment.id, self.account.id).await?)
+        let mut submissions = view::submissions_of(&mut transaction, assignment.id, self.account.id).await?;
+        for submission in &mut submissions {
+            // Nobody has looked at what is hidden in it yet, which takes its files.
+            if submission.grade.as_ref().is_some_and(|grade| !self.is_staff && grade.shown.is_none()) {
+                *submission = self.find_submission(&mut transaction, submission.id).await?;
+                submission.grade.iter_mut().for_each(|grade| grade.outcome.files.clear());
+            } else {
+                self.withhold(submission).await?;
+            }
+        }
+        Ok(submissions)
+    }
+
+    /// Leaves out what students do not see before it is published.
+    async fn withhold(&self, submission: &mut Submission) -> Result<(), Problem> {
+        let Some(grade) = submission.grade.as_mut().filter(|_| !self.is_staff && !submission.is_published) else {
+            return Ok(());
+        };
+        // Of what older versions graded nobody has looked yet.
+        let kept = match grade.outcome.shown.take() {
+            Some(kept) => kept,
+            None => shown::of_outcome(&self.house.0.store, &grade.outcome.files).await?,
+        };
+        if let Some(shown) = Shown::read(&kept) {
+            shown.cover(&mut grade.outcome, SHOWN);
+            submission.is_withheld = true;
+            grade.outcome.shown = Some(kept);
+        }
+        Ok(())
     }
 
     pub(super) async fn find_submission(&self, transaction: &mut Transaction, id: i64) -> Result<Submission, Problem> {
         let found = view::submission(transaction, &self.house, self.course, id).await?;
-        found
-            .filter(|submission| self.is_staff || submission.account == self.account.id)
-            .ok_or_else(|| Problem::not_found("submission"))
+        let found = found.filter(|submission| self.is_staff || submission.account == self.account.id);
+        let mut submission = found.ok_or_else(|| Problem::not_found("submission"))?;
+        self.withhold(&mut submission).await?;
+        Ok(submission)
     }
 
     /// A submission: one of their own, or any of the course for staff.
@@ -124,18 +153,8 @@ impl Member {
     /// When they may see none of this number.
     pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
         let mut transaction = self.house.0.database.read().await?;
-        self.find_submission(&mut transaction, id).await?;
-        Ok(view::history(&mut transaction, id).await?)
-    }
-
-    /// What happened to it after the event of this number.
-    ///
-    /// # Errors
-    /// When they may see none of this number.
-    pub async fn events(&self, id: i64, after: i64) -> Result<(Submission, Vec<Event>), Problem> {
-        let mut transaction = self.house.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
-        Ok((submission, view::events_of(&mut transaction, id, after).await?))
+        Ok(view::history(&mut transaction, id, submission.is_withheld).await?)
     }
 
     /// One of the reports on it, to be opened.
@@ -144,29 +163,10 @@ impl Member {
     /// When there is none of this name.
     pub async fn report(&self, id: i64, name: &str) -> Result<OutputFile, Problem> {
         let submission = self.kept(id).await?;
-        if name != SHOWN && self.hides(&submission).await? {
-            return Err(Problem::not_found("report"));
-        }
         submission
             .grade
             .and_then(|grade| grade.outcome.files.into_iter().find(|file| file.name == name))
             .ok_or_else(|| Problem::not_found("report"))
-    }
-
-    /// Whether a submission's reports tell of groups that its suite hides from whoever asks. Then there is only the
-    /// page for students, which the grader makes without them.
-    ///
-    /// # Errors
-    /// When the store fails.
-    pub async fn hides(&self, submission: &Submission) -> Result<bool, Problem> {
-        let grade = submission.grade.as_ref().filter(|_| !self.is_staff);
-        let Some(file) = grade.and_then(|grade| grade.files.iter().find(|file| file.name == "grade.json")) else {
-            return Ok(false);
-        };
-        let opened = self.open(&file.artefact, None).await?;
-        let pieces = tokio_util::io::StreamReader::new(opened.pieces.map(|piece| piece.map_err(std::io::Error::other)));
-        let reading = move || worker::hides_groups(tokio_util::io::SyncIoBridge::new(Box::pin(pieces)));
-        tokio::task::spawn_blocking(reading).await.map_err(|_| Problem::fault())
     }
 
     /// What was handed in, to be opened.

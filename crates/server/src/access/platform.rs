@@ -294,7 +294,7 @@ impl Staff {
     pub async fn send_scores(&self, slug: &str) -> Result<usize, Problem> {
         let assignment = self.member().assignment(slug).await?;
         let mut transaction = self.begin().await?;
-        let count = score::send_all(&mut transaction, assignment.id).await?;
+        let count = score::send_all(&mut transaction, assignment.id, true).await?;
         let text = format!("{count} scores of {slug} are sent again");
         view::note(&mut transaction, &self.deed("scores", Some(assignment.id), &text)).await?;
         transaction.commit().await?;

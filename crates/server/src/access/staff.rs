@@ -5,6 +5,7 @@ use super::{
 };
 use crate::{
     db::{DbError, Transaction},
+    lti::score,
     problem::Problem,
     values,
 };
@@ -67,7 +68,7 @@ impl Staff {
                  VALUES (?, ?, ?, ?, ?, {now})
                  ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
                     settings = excluded.settings
-                 RETURNING id, slug, title, visible, settings",
+                 RETURNING id, slug, title, visible, settings, published_at",
                 values![self.0.course, slug, title, visible, settings.text()],
             )
             .await?;
@@ -76,6 +77,28 @@ impl Staff {
         view::note(&mut transaction, &self.deed("assignment", Some(assignment.id), &text)).await?;
         transaction.commit().await?;
         Ok(assignment)
+    }
+
+    /// Shows students what the suite hides, or withholds it again; platforms are told what is shown.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn publish(&self, slug: &str, published: bool) -> Result<Assignment, Problem> {
+        let mut transaction = self.begin().await?;
+        let assignment = self.0.find_assignment(&mut transaction, slug).await?;
+        let row = transaction
+            .one(
+                "UPDATE assignment SET published_at = CASE WHEN ? = 1 THEN {now} END WHERE id = ?
+                 RETURNING id, slug, title, visible, settings, published_at",
+                values![published, assignment.id],
+            )
+            .await?;
+        let text = format!("hidden groups of {slug} are {}", if published { "published" } else { "withheld" });
+        view::note(&mut transaction, &self.deed("assignment", Some(assignment.id), &text)).await?;
+        score::send_all(&mut transaction, assignment.id, false).await?;
+        transaction.commit().await?;
+        self.0.house.0.bell.strike();
+        view::read_assignment(&row)
     }
 
     /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.

@@ -3,6 +3,7 @@ use super::{Member, Staff, view};
 use crate::{
     db::{DbError, Row},
     problem::Problem,
+    shown::Shown,
     values,
 };
 use serde::Serialize;
@@ -106,7 +107,9 @@ impl Member {
     /// When they may see none of this number.
     pub async fn doubts(&self, id: i64) -> Result<Vec<String>, Problem> {
         let mut transaction = self.house.0.database.read().await?;
-        self.find_submission(&mut transaction, id).await?;
+        let submission = self.find_submission(&mut transaction, id).await?;
+        let kept = submission.grade.filter(|_| submission.is_withheld).and_then(|grade| grade.outcome.shown);
+        let shown = kept.as_deref().and_then(Shown::read);
         let rows = transaction
             .rows(
                 "SELECT DISTINCT wrong_scene.scene FROM grade
@@ -118,6 +121,8 @@ impl Member {
                 values![id],
             )
             .await?;
-        Ok(rows.iter().map(|row| row.text("scene")).collect::<Result<_, DbError>>()?)
+        let mut scenes = rows.iter().map(|row| row.text("scene")).collect::<Result<Vec<_>, DbError>>()?;
+        scenes.retain(|scene| shown.as_ref().is_none_or(|shown| shown.tells_of(scene)));
+        Ok(scenes)
     }
 }

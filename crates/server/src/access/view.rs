@@ -4,6 +4,7 @@ use crate::{
     db::{DbError, Row, Transaction, Value},
     problem::Problem,
     queue::{self, Lane},
+    shown::Shown,
     store::Artefact,
     task::{Outcome, OutputFile, Suite, Task},
     values,
@@ -34,6 +35,9 @@ pub struct Assignment {
     pub visible: bool,
     /// How it is graded.
     pub settings: Settings,
+    /// Since when students see groups that the suite hides, in milliseconds since 1970.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub published_at: Option<i64>,
 }
 
 /// What was handed in, and what became of it.
@@ -75,6 +79,12 @@ pub struct Submission {
     /// The result that counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grade: Option<Graded>,
+    /// Whether groups that the suite hides are left out of the grade, its history and its reports until staff publishes
+    /// them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_withheld: bool,
+    #[serde(skip)]
+    pub(super) is_published: bool,
     #[serde(skip)]
     job: Option<i64>,
     #[serde(skip)]
@@ -185,9 +195,9 @@ macro_rules! submissions {
         concat!(
             "SELECT submission.id, submission.number, submission.form, submission.file_name, submission.digest,
                 submission.size, submission.created_at, submission.removed_at, submission.account, assignment.slug AS assignment,
-                assignment.title, account.login, account.name, job.id AS job, job.state, grade.result, result.verdict,
+                assignment.title, assignment.published_at, account.login, account.name, job.id AS job, job.state, grade.result, result.verdict,
                 result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
-                result.grader, result.essence, result.created_at AS graded_at
+                result.grader, result.essence, result.shown, result.created_at AS graded_at
              FROM submission
              JOIN assignment ON assignment.id = submission.assignment
              JOIN account ON account.id = submission.account
@@ -218,6 +228,7 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
                 wrong: Vec::new(),
                 seconds: row.text("seconds")?,
                 files: Vec::new(),
+                shown: row.maybe_text("shown")?,
             },
             created_at: row.int("graded_at")?,
         }),
@@ -239,6 +250,8 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
         ahead: None,
         expected_seconds: None,
         grade,
+        is_withheld: false,
+        is_published: row.maybe_int("published_at")?.is_some(),
         job: row.maybe_int("job")?,
         account: row.int("account")?,
     })
@@ -316,11 +329,16 @@ pub(super) async fn submission(
     Ok(Some(submission))
 }
 
-pub(super) async fn history(transaction: &mut Transaction, submission: i64) -> Result<Vec<History>, DbError> {
+/// How a grade came to be; with `withheld` as if there were no hidden groups.
+pub(super) async fn history(
+    transaction: &mut Transaction,
+    submission: i64,
+    withheld: bool,
+) -> Result<Vec<History>, DbError> {
     let rows = transaction
         .rows(
             "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
-                old.points AS old_points, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
+                old.points AS old_points, old.shown AS old_shown, new.shown AS new_shown, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
                 new.grader, new.essence, new.task
              FROM grade_change
              JOIN result AS new ON new.id = grade_change.new_result
@@ -330,19 +348,31 @@ pub(super) async fn history(transaction: &mut Transaction, submission: i64) -> R
             values![submission],
         )
         .await?;
+    let shown = |row: &Row, column: &str| -> Result<Option<(String, Option<String>)>, DbError> {
+        let text = row.maybe_text(column)?.filter(|_| withheld);
+        Ok(text.as_deref().and_then(Shown::read).map(Shown::line))
+    };
     let read = |row: &Row| {
+        let old = match shown(row, "old_shown")? {
+            Some((code, points)) => (Some(code), points),
+            None => (row.maybe_text("old_code")?, row.maybe_text("old_points")?),
+        };
+        let new = match shown(row, "new_shown")? {
+            Some(line) => line,
+            None => (row.text("new_code")?, row.maybe_text("new_points")?),
+        };
         Ok(History {
             changed_at: row.int("changed_at")?,
             reason: row.text("reason")?,
             by: row.maybe_text("login")?,
-            old_code: row.maybe_text("old_code")?,
-            old_points: row.maybe_text("old_points")?,
-            new_code: row.text("new_code")?,
-            new_points: row.maybe_text("new_points")?,
+            old_code: old.0,
+            old_points: old.1,
+            new_code: new.0,
+            new_points: new.1,
             result: row.int("result")?,
             version: row.text("version")?,
             grader: row.text("grader")?,
-            essence: row.text("essence")?,
+            essence: if withheld { String::new() } else { row.text("essence")? },
             by_what: by_what(&row.text("task")?),
             task: row.text("task")?,
         })
@@ -372,23 +402,6 @@ pub(super) fn read_event(row: &Row) -> Result<Event, DbError> {
     })
 }
 
-/// What happened to a submission after the event of this number.
-pub(super) async fn events_of(
-    transaction: &mut Transaction,
-    submission: i64,
-    after: i64,
-) -> Result<Vec<Event>, DbError> {
-    let rows = transaction
-        .rows(
-            "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
-             LEFT JOIN account ON account.id = event.actor
-             WHERE submission = ? AND event.id > ? ORDER BY event.id LIMIT 200",
-            values![submission, after],
-        )
-        .await?;
-    rows.iter().map(read_event).collect()
-}
-
 pub(super) fn read_assignment(row: &Row) -> Result<Assignment, Problem> {
     Ok(Assignment {
         id: row.int("id")?,
@@ -396,6 +409,7 @@ pub(super) fn read_assignment(row: &Row) -> Result<Assignment, Problem> {
         title: row.text("title")?,
         visible: row.flag("visible")?,
         settings: Settings::read(&row.text("settings")?)?,
+        published_at: row.maybe_int("published_at")?,
     })
 }
 

@@ -8,6 +8,7 @@ use super::Platform;
 use crate::{
     db::{DbError, Row, Transaction},
     queue::{self, Bell, Lane, NewJob, Turn},
+    shown::Shown,
     values,
 };
 use serde::{Deserialize, Serialize};
@@ -44,8 +45,8 @@ pub(crate) async fn changed(transaction: &mut Transaction, submission: i64) -> R
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// Has all scores of an assignment sent, also those that platforms know; how many these are.
-pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64) -> Result<usize, DbError> {
+/// Has all scores of an assignment sent, with `again` also those that platforms know; how many these are.
+pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, again: bool) -> Result<usize, DbError> {
     let rows = transaction
         .rows(
             "SELECT platform_link.id AS link, member.account FROM platform_link
@@ -61,7 +62,7 @@ pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64) -> 
             values![assignment],
         )
         .await?;
-    enqueue(transaction, &rows, true).await
+    enqueue(transaction, &rows, again).await
 }
 
 /// Has what an account is worth sent to a link that it just came by.
@@ -176,11 +177,12 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
 
 /// What somebody's work on an assignment is worth: the most points of all their submissions. While there are none the
 /// platform is told that they come, and when the grader failed, that somebody has to look: never a zero that nobody
-/// earned.
+/// earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let rows = transaction
         .rows(
-            "SELECT job.state, result.points, result.max_points FROM submission
+            "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown FROM submission
+             JOIN assignment ON assignment.id = submission.assignment
              LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL
              LEFT JOIN grade ON grade.submission = submission.id
              LEFT JOIN result ON result.id = grade.result
@@ -193,10 +195,14 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
     for row in &rows {
         let state = row.maybe_text("state")?.unwrap_or_default();
         waits |= matches!(state.as_str(), "waiting" | "running");
-        let number = |column: &str| -> Result<Option<f64>, DbError> {
-            Ok(row.maybe_text(column)?.and_then(|text| text.parse().ok()).filter(|number: &f64| number.is_finite()))
+        let withheld = row.maybe_text("shown")?.filter(|_| row.maybe_int("published_at").is_ok_and(|at| at.is_none()));
+        let (points, most) = match withheld.as_deref().and_then(Shown::read) {
+            Some(shown) => shown.points(),
+            None => (row.maybe_text("points")?, row.maybe_text("max_points")?),
         };
-        if let (Some(points), Some(most)) = (number("points")?, number("max_points")?)
+        let number =
+            |text: Option<String>| text.and_then(|text| text.parse().ok()).filter(|number: &f64| number.is_finite());
+        if let (Some(points), Some(most)) = (number(points), number(most))
             && most > 0.0
             && best.is_none_or(|(best, _)| points >= best)
         {

@@ -4,6 +4,7 @@ use crate::{
     db::{Database, DbError},
     ledger,
     queue::{self, Bell, Completion, Ear, Failure, Lane, Lease, Policy},
+    shown,
     store::{Artefact, Digest, Store, StoreError},
     task::Outcome,
     values,
@@ -107,8 +108,10 @@ impl Desk for LocalDesk {
                 return Err(DeskError::Refused(format!("{} is not in the store", file.name)));
             }
         }
+        let shown = Some(shown::of_outcome(&self.store, &outcome.files).await?);
+        let outcome = Outcome { shown, ..outcome.clone() };
         let mut transaction = self.database.begin().await?;
-        let completion = ledger::finish(&mut transaction, lease, outcome).await?;
+        let completion = ledger::finish(&mut transaction, lease, &outcome).await?;
         Bell::ring(&mut transaction).await?;
         transaction.commit().await?;
         self.bell.strike();

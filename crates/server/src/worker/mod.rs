@@ -17,6 +17,6 @@ pub use grader::{Graded, Grader, GraderFault, NewFile};
 pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalDesk;
 pub use program::{Program, REPORTS};
-pub(crate) use reading::{essence, hides_groups};
+pub(crate) use reading::essence;
 pub use remote::RemoteDesk;
 pub use slots::{Options, work};

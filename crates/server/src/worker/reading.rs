@@ -3,7 +3,7 @@ use super::Graded;
 use crate::{store::Digest, task::WrongScene};
 use serde::Deserialize;
 use serde_json::Value;
-use std::{fs, io, path::Path};
+use std::{fs, path::Path};
 
 /// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader
 /// may be older; what is read here was the same in both.
@@ -96,6 +96,7 @@ pub(super) fn read_grade(file: &Path) -> Result<Graded, String> {
         wrong: wrong(&scenes),
         seconds: "0".to_owned(),
         files: Vec::new(),
+        shown: None,
     })
 }
 
@@ -117,28 +118,6 @@ pub(crate) fn essence(grade: &[u8]) -> Result<String, serde_json::Error> {
     let mut value: Value = serde_json::from_slice(grade)?;
     forget(&mut value);
     serde_json::to_string(&value)
-}
-
-/// Whether a `grade.json` tells of groups that students do not see at once; also when it can't be read. Of what it says
-/// besides nothing is kept in memory.
-pub(crate) fn hides_groups(grade: impl io::Read) -> bool {
-    #[derive(Deserialize)]
-    struct Report {
-        #[serde(default)]
-        grades: Vec<Grade>,
-    }
-    #[derive(Deserialize)]
-    struct Grade {
-        #[serde(default)]
-        groups: Vec<Group>,
-    }
-    #[derive(Deserialize)]
-    struct Group {
-        visibility: Option<String>,
-    }
-    let Ok(report) = serde_json::from_reader::<_, Report>(io::BufReader::new(grade)) else { return true };
-    let mut groups = report.grades.iter().flat_map(|grade| &grade.groups);
-    groups.any(|group| group.visibility.as_deref().is_some_and(|visibility| visibility != "visible"))
 }
 
 /// Whether so many wrong scenes leave a submission nearly right: what it answers there may be worth a second look.

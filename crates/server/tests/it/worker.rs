@@ -60,6 +60,7 @@ impl Grader for Watchful {
             essence: String::new(),
             wrong: Vec::new(),
             seconds: "0".to_owned(),
+            shown: None,
             files: Vec::new(),
         })
     }

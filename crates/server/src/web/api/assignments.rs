@@ -116,6 +116,28 @@ fn check_suite(archive: &Path, incoming: &Path) -> Result<(), Problem> {
     Ok(())
 }
 
+/// Shows students what the suite hides: groups that are not visible count in what they see from now on, too.
+#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/published", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path)),
+    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn publish(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+) -> Result<Json<Assignment>, Problem> {
+    Ok(Json(staff.publish(&assignment, true).await?))
+}
+
+/// Withholds it again.
+#[utoipa::path(delete, path = "/api/v1/courses/{course}/assignments/{assignment}/published", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path)),
+    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn withhold(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+) -> Result<Json<Assignment>, Problem> {
+    Ok(Json(staff.publish(&assignment, false).await?))
+}
+
 /// How all students stand: which submission counts, and for what.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/class", tag = "assignments",
     params(("course" = String, Path), ("assignment" = String, Path)),

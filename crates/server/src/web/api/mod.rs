@@ -43,6 +43,7 @@ pub(super) fn routes() -> OpenApiRouter<House> {
         .routes(routes!(assignments::assignments))
         .routes(routes!(assignments::assignment, assignments::set_assignment))
         .routes(routes!(assignments::set_suite))
+        .routes(routes!(assignments::publish, assignments::withhold))
         .routes(routes!(assignments::standings))
         .routes(routes!(assignments::export))
         .routes(routes!(submissions::own, submissions::submit))

@@ -66,6 +66,22 @@ pub(super) async fn begin(
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }
 
+pub(super) async fn publish(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+) -> Result<Redirect, Problem> {
+    staff.publish(&assignment, true).await?;
+    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
+}
+
+pub(super) async fn withhold(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+) -> Result<Redirect, Problem> {
+    staff.publish(&assignment, false).await?;
+    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
+}
+
 async fn show_page(staff: &Staff, slug: String, assignment: &str, id: i64) -> Result<Html<String>, Problem> {
     let assignment = staff.member().assignment(assignment).await?;
     let regrade = staff.show_regrade(&assignment.slug, id).await?;

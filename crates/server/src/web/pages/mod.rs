@@ -78,6 +78,8 @@ pages! {
     post "/c/{course}/a/{assignment}/settings" => course::set_settings,
     post "/c/{course}/a/{assignment}/suite" => course::set_suite,
     get "/c/{course}/a/{assignment}/class" => grades::class,
+    post "/c/{course}/a/{assignment}/publish" => grades::publish,
+    post "/c/{course}/a/{assignment}/withhold" => grades::withhold,
     post "/c/{course}/a/{assignment}/scores" => platform::send_scores,
     post "/c/{course}/a/{assignment}/regrades" => grades::begin,
     get "/c/{course}/a/{assignment}/regrades/{id}" => grades::show_regrade,

@@ -68,11 +68,7 @@ pub(super) async fn submission(
     member: Member,
     Params((slug, id)): Params<(String, i64)>,
 ) -> Result<Html<String>, Problem> {
-    let mut submission = member.submission(id).await?;
-    let hides = member.hides(&submission).await?;
-    if let Some(grade) = submission.grade.as_mut().filter(|_| hides) {
-        grade.outcome.files.retain(|file| file.name == "report.html");
-    }
+    let submission = member.submission(id).await?;
     let frame = Frame::course(&member)
         .then(format!("/c/{slug}/a/{}", submission.assignment), &submission.title)
         .then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));

@@ -52,8 +52,8 @@ visibility=visible
 case $scene in Secret/*) visibility=hidden ;; esac
 cat > "$json" <<END
 {"schema": 4, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
- "max_points": 100, "wall_seconds": $$.5, "groups": [{"visibility": "$visibility", "scenes": [{"scene": "Group/easy", "code": "AC", "right_steps": 9},
- {"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
+ "max_points": 100, "wall_seconds": $$.5, "groups": [{"points": 10, "max_points": 10, "scenes": [{"scene": "Group/easy", "code": "AC", "verdict": "accepted", "right_steps": 9}]},
+ {"visibility": "$visibility", "points": $points, "max_points": 90, "scenes": [{"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
 END
 [ "$code" = AC ]
 "#;

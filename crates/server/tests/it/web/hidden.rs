@@ -1,7 +1,7 @@
 //! What a suite hides from students, the service does not show them.
 use crate::support::{
     engines::{Fresh, on_both_engines},
-    server::Server,
+    server::{Client, Server},
 };
 
 on_both_engines!(reports_that_tell_of_hidden_groups_are_for_staff);
@@ -28,6 +28,52 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
             ada.get(&path(open)).expect(200);
         }
     }
+    // Nothing that a student is told changes with what is hidden: not points, counts, verdicts, digests or sizes.
+    let other = ada.submit("physics", b"#!grade RTE 7 Secret/scene 1\n");
+    ada.wait_for_grade("physics", other);
+    let told = |by: &Client, id: i64| {
+        let mut submission = by.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
+        let mut grade = submission["grade"].take();
+        grade["created_at"].take();
+        let mut history =
+            by.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json()[0].take();
+        for own in ["changed_at", "result", "task", "by_what"] {
+            history[own].take();
+        }
+        (grade, history, submission["is_withheld"].take())
+    };
+    let (grade, history, withheld) = told(&ada, hidden);
+    assert_eq!((&grade, &history, &withheld), (&told(&ada, other).0, &told(&ada, other).1, &true.into()));
+    assert_eq!([&grade["code"], &grade["points"], &grade["max_points"]], ["AC", "10.0", "10.0"]);
+    assert_eq!([&history["new_code"], &history["new_points"]], ["AC", "10.0"]);
+    let list = ada.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json();
+    assert!(
+        list.as_array().expect("a list").iter().all(|one| one["id"] == open || one["grade"]["code"] == "AC"),
+        "{list}"
+    );
+    let events = ada.get(&format!("/api/v1/courses/physics/submissions/{other}/events")).expect(200).text();
+    assert!(events.contains("is_withheld") && !events.contains("RTE") && !events.contains("grade.json"), "{events}");
+    let page = ada.get(&format!("/c/physics/s/{other}")).expect(200).text();
+    assert!(!page.contains("RTE") && page.contains("10 / 10 points"), "{page}");
+    assert_eq!(told(&teacher, other).0["points"], "7");
+    // Once staff has published, everything shows.
+    ada.send("PUT", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(403);
+    teacher.post_form("/c/physics/a/m1/publish", "").expect(303);
+    assert_eq!(told(&ada, other), told(&teacher, other));
+    assert_eq!(told(&ada, other).0["code"], "RTE");
+    ada.get(&format!("/c/physics/s/{hidden}/report/grade.json")).expect(200);
+    teacher.send("DELETE", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(200);
+    assert_eq!(told(&ada, other).0, grade);
+    // What older versions graded is looked at when it is asked for.
+    let mut transaction = fresh.database.begin().await.expect("a transaction");
+    transaction.execute("UPDATE result SET shown = NULL", &[]).await.expect("as before");
+    transaction.commit().await.expect("a commit");
+    assert_eq!(told(&ada, other).0, grade);
+    let list = ada.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json();
+    assert_eq!(
+        [&list[0]["grade"]["code"], &list[0]["grade"]["files"]],
+        [&serde_json::json!("AC"), &serde_json::json!([])]
+    );
     // The page for students is made without them.
     ada.get(&format!("/api/v1/courses/physics/submissions/{hidden}/files/report.html")).expect(200);
     let page = ada.get(&format!("/c/physics/s/{hidden}")).expect(200).text();

@@ -48,7 +48,7 @@ async fn a_past_grade_is_made_again_byte_for_byte(fresh: Fresh) {
     fs::set_permissions(&other, fs::metadata(&grader).expect("a file").permissions()).expect("permissions");
     let (code, said) = replay(&other, &[&number]);
     assert!(code == Some(1) && said.contains("ANOTHER GRADE"), "{code:?} {said}");
-    assert!(said.contains("/grades/0/groups/0/scenes/1/summary: \"a step is wrong\" then, \"another"), "{said}");
+    assert!(said.contains("/grades/0/groups/1/scenes/0/summary: \"a step is wrong\" then, \"another"), "{said}");
     assert_eq!(replay(&grader, &["999"]).0, Some(2));
     // Nothing changes by it.
     assert_eq!(ada.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json(), history);

@@ -44,6 +44,8 @@ fn the_database_is_copied_before_its_tables_change() {
             "ALTER TABLE submission DROP COLUMN removed_at",
             "DROP TABLE invitation",
             "ALTER TABLE account DROP COLUMN managed_by",
+            "ALTER TABLE assignment DROP COLUMN published_at",
+            "ALTER TABLE result DROP COLUMN shown",
             "DROP TABLE session",
             "DROP TABLE token",
             "DROP TABLE sign_in_link",
