@@ -24,6 +24,7 @@ pub struct Member {
     pub(super) slug: String,
     pub(super) title: String,
     pub(super) is_staff: bool,
+    pub(super) is_archived: bool,
     pub(super) house: House,
 }
 
@@ -44,6 +45,12 @@ impl Member {
     #[must_use]
     pub fn is_staff(&self) -> bool {
         self.is_staff
+    }
+
+    /// Whether the course is put away.
+    #[must_use]
+    pub fn is_archived(&self) -> bool {
+        self.is_archived
     }
 
     /// The house.

@@ -19,6 +19,7 @@ mod person;
 mod platform;
 mod regrade;
 mod remote;
+mod removal;
 mod request;
 mod settings;
 mod staff;

@@ -22,6 +22,8 @@ pub struct CourseOf {
     pub course: Course,
     /// `student`, `staff`, or `admin`.
     pub role: String,
+    /// Whether it is put away: nobody hands in any more.
+    pub is_archived: bool,
 }
 
 /// A token, without its secret.
@@ -81,15 +83,17 @@ impl Person {
         let all: i64 = self.account.is_admin.into();
         let rows = transaction
             .rows(
-                "SELECT course.slug, course.title, coalesce(member.role, 'admin') AS role FROM course
+                "SELECT course.slug, course.title, course.archived_at, coalesce(member.role, 'admin') AS role FROM course
                  LEFT JOIN member ON member.course = course.id AND member.account = ?
-                 WHERE member.role IS NOT NULL OR ? = 1 ORDER BY course.slug",
+                 WHERE member.role IS NOT NULL OR ? = 1
+                 ORDER BY CASE WHEN course.archived_at IS NULL THEN 0 ELSE 1 END, course.slug",
                 values![self.account.id, all],
             )
             .await?;
         let read = |row: &Row| {
             let course = Course { slug: row.text("slug")?, title: row.text("title")? };
-            Ok(CourseOf { course, role: row.text("role")? })
+            let is_archived = row.maybe_int("archived_at")?.is_some();
+            Ok(CourseOf { course, role: row.text("role")?, is_archived })
         };
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }

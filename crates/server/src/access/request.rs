@@ -152,7 +152,7 @@ impl FromRequestParts<House> for Member {
         let mut transaction = house.0.database.read().await?;
         let row = transaction
             .row(
-                "SELECT course.id, course.slug, course.title, member.role FROM course
+                "SELECT course.id, course.slug, course.title, course.archived_at, member.role FROM course
                  LEFT JOIN member ON member.course = course.id AND member.account = ?
                  WHERE course.slug = ?",
                 values![person.account.id, slug],
@@ -166,6 +166,7 @@ impl FromRequestParts<House> for Member {
         }
         Ok(Self {
             is_staff: person.account.is_admin || role.as_deref() == Some("staff"),
+            is_archived: row.maybe_int("archived_at")?.is_some(),
             course: row.int("id")?,
             slug: row.text("slug")?,
             title: row.text("title")?,

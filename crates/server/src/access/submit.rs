@@ -46,6 +46,9 @@ impl Member {
     /// key finds it.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<Accepted, Problem> {
         let assignment = self.assignment(assignment).await?;
+        if self.is_archived {
+            return Err(Problem::conflict("the course is archived", "ask the administrator to open it again"));
+        }
         let forms = assignment.settings.forms.join(" or ");
         if !assignment.settings.takes(upload.form) {
             return Err(Problem::unusable(format!("this assignment takes {forms}")));

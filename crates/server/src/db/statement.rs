@@ -25,7 +25,7 @@ pub(super) fn parts(script: &str, dialect: Dialect) -> String {
 /// stands in another, and PostgreSQL counts its placeholders. Statements hold no braces and no question marks of their own:
 /// values never stand in a statement's text.
 pub(super) fn text(statement: &str, dialect: Dialect) -> String {
-    let words: [(&str, &str); 9] = match dialect {
+    let words: [(&str, &str); 10] = match dialect {
         Dialect::Sqlite => [
             ("{now}", "CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER)"),
             ("{int}", "INTEGER"),
@@ -37,6 +37,7 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{for update}", ""),
             ("{each}", "json_each(?) AS wanted"),
             ("{strpos}", "instr"),
+            ("{for removal}", ""),
         ],
         Dialect::Postgres => [
             // Not now(), which stands still within a transaction: a lease counts from when it is given.
@@ -52,6 +53,8 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{for update}", "FOR NO KEY UPDATE"),
             ("{each}", "json_array_elements_text(CAST(? AS json)) AS wanted (value)"),
             ("{strpos}", "strpos"),
+            // Rows that refer to it can't be written meanwhile either.
+            ("{for removal}", "FOR UPDATE"),
         ],
     };
     let mut text = statement.to_owned();

@@ -131,6 +131,14 @@ pub(super) async fn disable_account(admin: Admin, Params(login): Params<String>)
     Ok(StatusCode::NO_CONTENT)
 }
 
+/// Removes a person: what they handed in, what it came to, their names, and every way in. Nothing of it comes back.
+#[utoipa::path(delete, path = "/api/v1/accounts/{login}/data", tag = "administration", params(("login" = String, Path)),
+    responses((status = 204, description = "Removed"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn remove_person(admin: Admin, Params(login): Params<String>) -> Result<StatusCode, Problem> {
+    admin.remove_person(&login).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
 /// The tokens of workers.
 #[utoipa::path(get, path = "/api/v1/worker-tokens", tag = "administration",
     responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem, content_type = "application/problem+json")))]

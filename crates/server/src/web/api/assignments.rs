@@ -12,7 +12,7 @@ use axum::{
     Json,
     body::Body as HttpBody,
     extract::Request,
-    http::header,
+    http::{StatusCode, header},
     response::{IntoResponse, Response},
 };
 use serde::Deserialize;
@@ -68,6 +68,18 @@ pub(super) async fn set_assignment(
     Body(wish): Body<AssignmentWish>,
 ) -> Result<Json<Assignment>, Problem> {
     Ok(Json(staff.set_assignment(&assignment, &wish.title, wish.visible, &wish.settings).await?))
+}
+
+/// Removes an assignment with all submissions to it, for ever.
+#[utoipa::path(delete, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path)),
+    responses((status = 204, description = "Removed"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn remove_assignment(
+    staff: Staff,
+    Params((_, assignment)): Params<(String, String)>,
+) -> Result<StatusCode, Problem> {
+    staff.remove_assignment(&assignment).await?;
+    Ok(StatusCode::NO_CONTENT)
 }
 
 /// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite.

@@ -55,6 +55,45 @@ pub(super) async fn new_course(
     Ok((StatusCode::CREATED, Json(admin.new_course(&wish.slug, &wish.title).await?)))
 }
 
+/// Puts a course away: nobody hands in any more, and everything stays to be read.
+#[utoipa::path(put, path = "/api/v1/courses/{course}/archived", tag = "administration", params(("course" = String, Path)),
+    responses((status = 204, description = "Archived"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn archive(admin: Admin, Params(course): Params<String>) -> Result<StatusCode, Problem> {
+    admin.archive_course(&course, true).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Takes it out again.
+#[utoipa::path(delete, path = "/api/v1/courses/{course}/archived", tag = "administration",
+    params(("course" = String, Path)),
+    responses((status = 204, description = "Open again"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn reopen(admin: Admin, Params(course): Params<String>) -> Result<StatusCode, Problem> {
+    admin.archive_course(&course, false).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Removes a course with its assignments, submissions and log, for ever. Accounts stay.
+#[utoipa::path(delete, path = "/api/v1/courses/{course}", tag = "administration",
+    params(("course" = String, Path), ("confirm" = String, Query, description = "The course's name once more")),
+    responses((status = 204, description = "Removed"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn remove_course(
+    admin: Admin,
+    Params(course): Params<String>,
+    Asked(asked): Asked<Confirm>,
+) -> Result<StatusCode, Problem> {
+    if asked.confirm != course {
+        return Err(Problem::invalid("confirm is the course's name once more"));
+    }
+    admin.remove_course(&course).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// That it is meant.
+#[derive(Deserialize)]
+pub(super) struct Confirm {
+    confirm: String,
+}
+
 /// The members of a course.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/members", tag = "courses", params(("course" = String, Path)),
     responses((status = 200, body = Vec<MemberInfo>), (status = "default", body = Problem, content_type = "application/problem+json")))]

@@ -5,7 +5,7 @@ use super::super::{
     status, upload,
 };
 use crate::{
-    access::{History, Member, Standing, Submission, Upload},
+    access::{History, Member, Staff, Standing, Submission, Upload},
     problem::Problem,
 };
 use axum::{
@@ -105,6 +105,18 @@ pub(super) async fn submission(
     Params((_, id)): Params<(String, i64)>,
 ) -> Result<Json<Submission>, Problem> {
     Ok(Json(member.submission(id).await?))
+}
+
+/// Removes a submission with its grades and reports, for ever.
+#[utoipa::path(delete, path = "/api/v1/courses/{course}/submissions/{id}", tag = "submissions",
+    params(("course" = String, Path), ("id" = i64, Path)),
+    responses((status = 204, description = "Removed"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn remove_submission(
+    staff: Staff,
+    Params((_, id)): Params<(String, i64)>,
+) -> Result<StatusCode, Problem> {
+    staff.remove_submission(id).await?;
+    Ok(StatusCode::NO_CONTENT)
 }
 
 /// How its grade came to be: who, when, why, by which version and rules.

@@ -24,6 +24,7 @@ struct CoursePage {
     slug: String,
     title: String,
     is_staff: bool,
+    is_archived: bool,
     assignments: Vec<Assignment>,
 }
 
@@ -98,6 +99,7 @@ pub(super) async fn course(member: Member) -> Result<Html<String>, Problem> {
         slug: course.slug,
         title: course.title,
         is_staff: member.is_staff(),
+        is_archived: member.is_archived(),
         assignments: member.assignments().await?,
     })
 }
@@ -137,6 +139,14 @@ pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) ->
         (None, None) => None,
     };
     members_page(&staff, link).await
+}
+
+pub(super) async fn remove_member(
+    staff: Staff,
+    Params((slug, login)): Params<(String, String)>,
+) -> Result<Redirect, Problem> {
+    staff.remove_member(&login).await?;
+    Ok(see(&format!("/c/{slug}/members")))
 }
 
 pub(super) async fn member_link(

@@ -5,6 +5,7 @@ mod administration;
 mod course;
 mod grades;
 mod platform;
+mod removal;
 mod sign_in;
 mod submission;
 mod text;
@@ -51,6 +52,9 @@ pages! {
     get "/admin" => administration::page,
     post "/admin/courses" => administration::new_course,
     post "/admin/accounts" => administration::set_account,
+    get "/admin/accounts/{login}/remove" => removal::person,
+    post "/admin/accounts/{login}/remove" => removal::remove_person,
+    post "/admin/accounts/{login}/shut" => removal::shut_account,
     post "/admin/workers" => administration::new_worker,
     post "/admin/workers/{id}/revoke" => administration::revoke_worker,
     post "/admin/platforms" => platform::set_platform,
@@ -66,14 +70,21 @@ pages! {
     post "/lti/choose/{secret}/assignment" => platform::choose_assignment,
     get "/c/{course}" => course::course,
     post "/c/{course}/assignments" => course::new_assignment,
+    get "/c/{course}/remove" => removal::course,
+    post "/c/{course}/remove" => removal::remove_course,
+    post "/c/{course}/archive" => removal::archive,
+    post "/c/{course}/reopen" => removal::reopen,
     get "/c/{course}/members" => course::members,
     post "/c/{course}/members" => course::set_member,
+    post "/c/{course}/members/{login}/remove" => course::remove_member,
     post "/c/{course}/members/{login}/link" => course::member_link,
     post "/c/{course}/members/roster" => platform::read_roster,
     get "/c/{course}/audit" => course::audit,
     get "/c/{course}/queue" => course::queue,
     get "/c/{course}/a/{assignment}" => submission::assignment,
     post "/c/{course}/a/{assignment}" => submission::submit,
+    get "/c/{course}/a/{assignment}/remove" => removal::assignment,
+    post "/c/{course}/a/{assignment}/remove" => removal::remove_assignment,
     get "/c/{course}/a/{assignment}/settings" => course::settings,
     post "/c/{course}/a/{assignment}/settings" => course::set_settings,
     post "/c/{course}/a/{assignment}/suite" => course::set_suite,
@@ -88,6 +99,8 @@ pages! {
     post "/c/{course}/a/{assignment}/suspicions/{id}/dismiss" => grades::dismiss,
     post "/c/{course}/a/{assignment}/suspicions/{id}/tell" => grades::tell,
     get "/c/{course}/s/{id}" => submission::submission,
+    get "/c/{course}/s/{id}/remove" => removal::submission,
+    post "/c/{course}/s/{id}/remove" => removal::remove_submission,
     get "/c/{course}/s/{id}/report/{name}" => submission::report,
     get "/c/{course}/s/{id}/upload" => submission::upload,
     get "/static/style.css" => style,

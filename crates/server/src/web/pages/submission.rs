@@ -35,6 +35,7 @@ struct SubmissionPage {
     frame: Frame,
     slug: String,
     is_own: bool,
+    is_staff: bool,
     submission: Submission,
     is_moving: bool,
     history: Vec<History>,
@@ -83,6 +84,7 @@ pub(super) async fn submission(
     show(&SubmissionPage {
         frame,
         slug,
+        is_staff: member.is_staff(),
         is_own: submission.login == member.account().login,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,

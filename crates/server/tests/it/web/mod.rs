@@ -8,6 +8,7 @@ mod limits;
 mod passwords;
 mod people;
 mod platforms;
+mod removal;
 mod replay;
 mod roles;
 mod storage;

@@ -99,6 +99,24 @@ const ROUTES: &[(&str, &str, For)] = &[
     ("get", "/welcome/{secret}", All),
     ("post", "/welcome/{secret}", All),
     ("post", "/sign-out", All),
+    ("delete", "/api/v1/courses/{course}", Admins),
+    ("put", "/api/v1/courses/{course}/archived", Admins),
+    ("delete", "/api/v1/courses/{course}/archived", Admins),
+    ("delete", "/api/v1/courses/{course}/assignments/{assignment}", Staff),
+    ("delete", "/api/v1/courses/{course}/submissions/{id}", Staff),
+    ("delete", "/api/v1/accounts/{login}/data", Admins),
+    ("get", "/admin/accounts/{login}/remove", Admins),
+    ("post", "/admin/accounts/{login}/remove", Admins),
+    ("post", "/admin/accounts/{login}/shut", Admins),
+    ("get", "/c/{course}/remove", Admins),
+    ("post", "/c/{course}/remove", Admins),
+    ("post", "/c/{course}/archive", Admins),
+    ("post", "/c/{course}/reopen", Admins),
+    ("post", "/c/{course}/members/{login}/remove", Staff),
+    ("get", "/c/{course}/a/{assignment}/remove", Staff),
+    ("post", "/c/{course}/a/{assignment}/remove", Staff),
+    ("get", "/c/{course}/s/{id}/remove", Staff),
+    ("post", "/c/{course}/s/{id}/remove", Staff),
     ("get", "/invitation/{secret}", People),
     ("post", "/invitation/{secret}", People),
     ("post", "/invitations/{course}/accept", People),
@@ -166,8 +184,9 @@ enum Role {
 
 /// The path to the submission of `owner`; what else it names is not there, so that a request that gets in changes
 /// nothing.
-fn fill(path: &str, submission: i64) -> String {
-    let id = if path.contains("submissions/{id}") || path.contains("/s/{id}") { submission } else { 999_999 };
+fn fill(method: &str, path: &str, submission: i64) -> String {
+    let is_there = path.contains("submissions/{id}") || path.contains("/s/{id}");
+    let id = if is_there && method != "delete" { submission } else { 999_999 };
     path.replace("{course}", "physics")
         .replace(
             "{assignment}",
@@ -234,7 +253,7 @@ fn every_route_serves_whom_it_should_and_nobody_else() {
                 } else {
                     &[JSON[0], ("Sec-Fetch-Site", "same-origin")]
                 };
-                let answer = client.send(&method.to_uppercase(), &fill(path, submission), headers, b"%");
+                let answer = client.send(&method.to_uppercase(), &fill(method, path, submission), headers, b"%");
                 let refused = expected(*role, *whom);
                 let right = match refused {
                     // A page shows the way in instead.

@@ -1,0 +1,271 @@
+//! Removing people, submissions, assignments and courses with all that is kept of them. The audit log says that it was
+//! done, and names nobody. Bytes in the store go when nothing names them any more, see [`retention`](crate::retention);
+//! a job that runs meanwhile finds its lease gone, and ends without effect.
+use super::{
+    Admin, Staff,
+    view::{self, Deed},
+};
+use crate::{
+    db::{DbError, Transaction},
+    lti::score,
+    problem::Problem,
+    values,
+};
+
+/// Takes the jobs of submissions out of the queue. What is finished in this moment is waited for: its result is there
+/// then, to be removed.
+macro_rules! cancel_jobs {
+    ($transaction:expr, $value:expr, $which:literal) => {
+        $transaction
+            .execute(
+                concat!(
+                    "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+                     WHERE state IN ('waiting', 'running') AND submission IN (SELECT id FROM submission WHERE ",
+                    $which,
+                    ")"
+                ),
+                values![$value],
+            )
+            .await?
+    };
+}
+
+/// Removes what is kept of submissions.
+macro_rules! remove_submissions {
+    ($transaction:expr, $value:expr, $which:literal) => {
+        cancel_jobs!($transaction, $value, $which);
+        for statement in [
+            concat!(
+                "DELETE FROM wrong_scene WHERE result IN (SELECT id FROM result WHERE submission IN
+                (SELECT id FROM submission WHERE ",
+                $which,
+                "))"
+            ),
+            concat!(
+                "DELETE FROM result_file WHERE result IN (SELECT id FROM result WHERE submission IN
+                (SELECT id FROM submission WHERE ",
+                $which,
+                "))"
+            ),
+            concat!("DELETE FROM grade_change WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
+            concat!("DELETE FROM grade WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
+            concat!("DELETE FROM result WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
+            concat!(
+                "DELETE FROM job_file WHERE job IN (SELECT id FROM job WHERE submission IN
+                (SELECT id FROM submission WHERE ",
+                $which,
+                "))"
+            ),
+            concat!("DELETE FROM job WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
+            concat!("DELETE FROM upload_key WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
+            concat!("DELETE FROM event WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
+            concat!("DELETE FROM submission WHERE ", $which),
+        ] {
+            $transaction.execute(statement, values![$value]).await?;
+        }
+    };
+}
+
+async fn run(transaction: &mut Transaction, statements: &[&'static str], id: i64) -> Result<(), DbError> {
+    for statement in statements {
+        transaction.execute(statement, values![id]).await?;
+    }
+    Ok(())
+}
+
+impl Staff {
+    /// Removes a submission.
+    ///
+    /// # Errors
+    /// When the course has none of this number.
+    pub async fn remove_submission(&self, id: i64) -> Result<(), Problem> {
+        let mut transaction = self.begin().await?;
+        let found = transaction
+            .row(
+                "SELECT assignment.id FROM submission JOIN assignment ON assignment.id = submission.assignment
+                 WHERE submission.id = ? AND assignment.course = ?",
+                values![id, self.member().course],
+            )
+            .await?;
+        let Some(found) = found else { return Err(Problem::not_found("submission")) };
+        score::changed(&mut transaction, id).await?;
+        remove_submissions!(transaction, id, "id = ?");
+        view::note(&mut transaction, &self.deed("removed", Some(found.int("id")?), "a submission")).await?;
+        transaction.commit().await?;
+        self.member().house.0.bell.strike();
+        Ok(())
+    }
+
+    /// Removes an assignment with its submissions.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn remove_assignment(&self, slug: &str) -> Result<(), Problem> {
+        let mut transaction = self.begin().await?;
+        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        cancel_jobs!(transaction, assignment.id, "assignment = ?");
+        // From here on nobody hands in.
+        transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
+        remove_submissions!(transaction, assignment.id, "assignment = ?");
+        let rest = [
+            "DELETE FROM platform_score WHERE link IN (SELECT id FROM platform_link WHERE assignment = ?)",
+            "DELETE FROM platform_link WHERE assignment = ?",
+            "DELETE FROM campaign WHERE assignment = ?",
+            "DELETE FROM suspicion WHERE assignment = ?",
+            "DELETE FROM event WHERE assignment = ?",
+            "DELETE FROM assignment WHERE id = ?",
+        ];
+        run(&mut transaction, &rest, assignment.id).await?;
+        view::note(&mut transaction, &self.deed("removed", None, &format!("the assignment {slug}"))).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+impl Admin {
+    fn removed<'a>(&self, text: &'a str) -> Deed<'a> {
+        let actor = self.account().id;
+        Deed { kind: "removed", actor, course: None, assignment: None, submission: None, text }
+    }
+
+    async fn course(&self, transaction: &mut Transaction, slug: &str) -> Result<i64, Problem> {
+        let row = transaction.row("SELECT id FROM course WHERE slug = ?", values![slug]).await?;
+        Ok(row.ok_or_else(|| Problem::not_found("course"))?.int("id")?)
+    }
+
+    /// Puts a course away: nobody hands in any more, and everything stays to be read. Or takes it out again.
+    ///
+    /// # Errors
+    /// When there is no such course.
+    pub async fn archive_course(&self, slug: &str, archived: bool) -> Result<(), Problem> {
+        let mut transaction = self.house().0.database.begin().await?;
+        let course = self.course(&mut transaction, slug).await?;
+        transaction
+            .execute(
+                "UPDATE course SET archived_at = CASE WHEN ? = 1 THEN {now} END WHERE id = ?",
+                values![archived, course],
+            )
+            .await?;
+        let text = format!("{slug} is {}", if archived { "archived" } else { "open again" });
+        let deed = Deed { kind: "course", course: Some(course), ..self.removed(&text) };
+        view::note(&mut transaction, &deed).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// Removes a course with its assignments and submissions. People's accounts stay.
+    ///
+    /// # Errors
+    /// When there is no such course.
+    pub async fn remove_course(&self, slug: &str) -> Result<(), Problem> {
+        let mut transaction = self.house().0.database.begin().await?;
+        let course = self.course(&mut transaction, slug).await?;
+        cancel_jobs!(transaction, course, "assignment IN (SELECT id FROM assignment WHERE course = ?)");
+        transaction.rows("SELECT id FROM course WHERE id = ? {for removal}", values![course]).await?;
+        transaction.rows("SELECT id FROM assignment WHERE course = ? {for removal}", values![course]).await?;
+        remove_submissions!(transaction, course, "assignment IN (SELECT id FROM assignment WHERE course = ?)");
+        let rest = [
+            "DELETE FROM platform_score WHERE link IN (SELECT platform_link.id FROM platform_link
+                JOIN platform_course ON platform_course.id = platform_link.platform_course WHERE course = ?)",
+            "DELETE FROM platform_link WHERE platform_course IN (SELECT id FROM platform_course WHERE course = ?)",
+            "DELETE FROM platform_member WHERE platform_course IN (SELECT id FROM platform_course WHERE course = ?)",
+            "DELETE FROM platform_course WHERE course = ?",
+            "DELETE FROM campaign WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
+            "DELETE FROM suspicion WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
+            "DELETE FROM assignment WHERE course = ?",
+            "DELETE FROM kept_bytes WHERE course = ?",
+            "DELETE FROM invitation WHERE course = ?",
+            "DELETE FROM member WHERE course = ?",
+            "UPDATE account SET managed_by = NULL WHERE managed_by = ?",
+            "DELETE FROM event WHERE course = ?",
+            "DELETE FROM course WHERE id = ?",
+        ];
+        run(&mut transaction, &rest, course).await?;
+        view::note(&mut transaction, &self.removed("a course with all that belonged to it")).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// Removes a person: what they handed in, what it came to, their names, and every way in. What they did as staff
+    /// stays, by nobody's name.
+    ///
+    /// # Errors
+    /// When there is no such account, or it is one's own.
+    pub async fn remove_person(&self, login: &str) -> Result<(), Problem> {
+        if login == self.account().login {
+            return Err(Problem::conflict("this is your own account", "ask another administrator"));
+        }
+        let mut transaction = self.house().0.database.begin().await?;
+        let row = transaction.row("SELECT id FROM account WHERE login = ?", values![login]).await?;
+        let Some(row) = row else { return Err(Problem::not_found("account")) };
+        let account = row.int("id")?;
+        cancel_jobs!(transaction, account, "account = ?");
+        transaction.rows("SELECT id FROM account WHERE id = ? {for removal}", values![account]).await?;
+        remove_submissions!(transaction, account, "account = ?");
+        let rest = [
+            "DELETE FROM platform_score WHERE account = ?",
+            "DELETE FROM platform_choice WHERE account = ?",
+            "DELETE FROM platform_member WHERE account = ?",
+            "DELETE FROM platform_account WHERE account = ?",
+            "DELETE FROM kept_bytes WHERE account = ?",
+            "DELETE FROM invitation WHERE account = ?",
+            "DELETE FROM invitation WHERE invited_by = ?",
+            "DELETE FROM member WHERE account = ?",
+            "DELETE FROM session WHERE account = ?",
+            "DELETE FROM sign_in_link WHERE account = ?",
+            "DELETE FROM token WHERE account = ?",
+        ];
+        run(&mut transaction, &rest, account).await?;
+        let nobody = format!("removed-{account}");
+        transaction
+            .execute(
+                "UPDATE account SET login = ?, name = 'a removed person', password = NULL, is_admin = 0,
+                    managed_by = NULL, disabled_at = {now} WHERE id = ?",
+                values![&nobody, account],
+            )
+            .await?;
+        // The log has logins in its sentences, too.
+        let rows = transaction
+            .rows("SELECT id, text FROM event WHERE text LIKE '%' || CAST(? AS TEXT) || '%'", values![login])
+            .await?;
+        for row in &rows {
+            let text = without_name(&row.text("text")?, login, &nobody);
+            transaction.execute("UPDATE event SET text = ? WHERE id = ?", values![text, row.int("id")?]).await?;
+        }
+        view::note(&mut transaction, &self.removed("a person with all that was kept of them")).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+/// A sentence with another name in it, where it is a word of its own.
+fn without_name(text: &str, name: &str, other: &str) -> String {
+    let is_of_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let mut left = text;
+    let mut kept = String::with_capacity(text.len());
+    while let Some(at) = left.find(name) {
+        let (before, after) = (&left[..at], &left[at + name.len()..]);
+        let whole =
+            !kept.chars().chain(before.chars()).next_back().is_some_and(is_of_word) && !after.starts_with(is_of_word);
+        kept.push_str(before);
+        kept.push_str(if whole { other } else { name });
+        left = after;
+    }
+    kept + left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_name;
+
+    #[test]
+    fn only_whole_names_are_replaced() {
+        let without = |text: &str| without_name(text, "ada", "removed-7");
+        assert_eq!(without("ada is student"), "removed-7 is student");
+        assert_eq!(without("a link for ada"), "a link for removed-7");
+        assert_eq!(
+            without("ada: 3 of 4, adam, ada.b, b-ada, (ada)"),
+            "removed-7: 3 of 4, adam, ada.b, b-ada, (removed-7)"
+        );
+    }
+}

@@ -1,0 +1,142 @@
+//! Removing for ever: a page that says what goes, and a button that means it.
+use super::{
+    super::input::{Fields, Params},
+    Frame, see, show,
+};
+use crate::{
+    access::{Admin, Staff},
+    problem::Problem,
+};
+use askama::Template;
+use axum::response::{Html, Redirect};
+use serde::Deserialize;
+
+#[derive(Template)]
+#[template(path = "remove.html")]
+struct RemovePage {
+    frame: Frame,
+    /// What is to be removed.
+    title: String,
+    /// What goes with it.
+    words: &'static str,
+    /// What the form says that is meant.
+    confirm: String,
+    /// Another thing that can be done instead: an address and its button.
+    instead: Option<(String, &'static str)>,
+}
+
+/// That it is meant: what is to be removed, by name.
+#[derive(Deserialize)]
+pub(super) struct Confirmed {
+    confirm: String,
+}
+
+impl Confirmed {
+    fn is(&self, what: &str) -> Result<(), Problem> {
+        if self.confirm == what { Ok(()) } else { Err(Problem::invalid("this form is of something else")) }
+    }
+}
+
+const SUBMISSION: &str = "The upload, its grades, their history and its reports are removed for ever.";
+const ASSIGNMENT: &str = "All submissions to it, their grades and reports, regrades, and links of learning platforms to it are \
+                          removed for ever. Export the class before.";
+const COURSE: &str = "Its assignments, all submissions, grades and reports, its members and its log are removed for ever. Accounts \
+                      stay. Archived it could still be read.";
+const PERSON: &str = "All that they handed in, what it came to, their login and name, tokens and links are removed for ever, in all \
+                      courses. A shut account only can't sign in any more.";
+
+pub(super) async fn submission(
+    staff: Staff,
+    Params((slug, id)): Params<(String, i64)>,
+) -> Result<Html<String>, Problem> {
+    let submission = staff.member().submission(id).await?;
+    let frame =
+        Frame::course(staff.member()).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
+    let title = format!("Submission {} of {} to {}", submission.number, submission.login, submission.title);
+    show(&RemovePage { frame, title, words: SUBMISSION, confirm: id.to_string(), instead: None })
+}
+
+pub(super) async fn remove_submission(
+    staff: Staff,
+    Params((slug, id)): Params<(String, i64)>,
+    Fields(form): Fields<Confirmed>,
+) -> Result<Redirect, Problem> {
+    form.is(&id.to_string())?;
+    let assignment = staff.member().submission(id).await?.assignment;
+    staff.remove_submission(id).await?;
+    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
+}
+
+pub(super) async fn assignment(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+) -> Result<Html<String>, Problem> {
+    let assignment = staff.member().assignment(&assignment).await?;
+    let frame = Frame::course(staff.member()).then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title);
+    show(&RemovePage { frame, title: assignment.title, words: ASSIGNMENT, confirm: assignment.slug, instead: None })
+}
+
+pub(super) async fn remove_assignment(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+    Fields(form): Fields<Confirmed>,
+) -> Result<Redirect, Problem> {
+    form.is(&assignment)?;
+    staff.remove_assignment(&assignment).await?;
+    Ok(see(&format!("/c/{slug}")))
+}
+
+pub(super) async fn course(admin: Admin, staff: Staff) -> Result<Html<String>, Problem> {
+    let course = staff.member().course();
+    let (way, button) = match staff.member().is_archived() {
+        true => ("reopen", "Open it again"),
+        false => ("archive", "Archive it"),
+    };
+    let instead = Some((format!("/c/{}/{way}", course.slug), button));
+    let frame = Frame::of(admin.account()).then(format!("/c/{}", course.slug), &course.title);
+    show(&RemovePage { frame, title: course.title, words: COURSE, confirm: course.slug, instead })
+}
+
+pub(super) async fn remove_course(
+    admin: Admin,
+    Params(slug): Params<String>,
+    Fields(form): Fields<Confirmed>,
+) -> Result<Redirect, Problem> {
+    form.is(&slug)?;
+    admin.remove_course(&slug).await?;
+    Ok(see("/"))
+}
+
+pub(super) async fn archive(admin: Admin, Params(slug): Params<String>) -> Result<Redirect, Problem> {
+    admin.archive_course(&slug, true).await?;
+    Ok(see(&format!("/c/{slug}")))
+}
+
+pub(super) async fn reopen(admin: Admin, Params(slug): Params<String>) -> Result<Redirect, Problem> {
+    admin.archive_course(&slug, false).await?;
+    Ok(see(&format!("/c/{slug}")))
+}
+
+pub(super) async fn person(admin: Admin, Params(login): Params<String>) -> Result<Html<String>, Problem> {
+    let found = admin.accounts().await?.into_iter().find(|account| account.login == login);
+    let account = found.ok_or_else(|| Problem::not_found("account"))?;
+    let frame = Frame::of(admin.account()).then("/admin".to_owned(), "Administration");
+    let instead = Some((format!("/admin/accounts/{login}/shut"), "Only shut the account"));
+    let title = format!("{} ({login})", account.name);
+    show(&RemovePage { frame, title, words: PERSON, confirm: login, instead })
+}
+
+pub(super) async fn remove_person(
+    admin: Admin,
+    Params(login): Params<String>,
+    Fields(form): Fields<Confirmed>,
+) -> Result<Redirect, Problem> {
+    form.is(&login)?;
+    admin.remove_person(&login).await?;
+    Ok(see("/admin"))
+}
+
+pub(super) async fn shut_account(admin: Admin, Params(login): Params<String>) -> Result<Redirect, Problem> {
+    admin.disable_account(&login).await?;
+    Ok(see("/admin"))
+}
