@@ -12,6 +12,7 @@ use crate::{
     task::OutputFile,
     values,
 };
+use futures_util::StreamExt;
 use std::ops::Range;
 
 /// The report that holds no group that its suite hides from students.
