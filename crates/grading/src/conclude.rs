@@ -81,6 +81,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
         steps: judged.steps,
         cpu: program.cpu,
         wall: program.wall,
+        judging: std::time::Duration::ZERO,
         memory: Some(program.peak_memory),
         stdout: kept(&program.stdout),
         stderr: kept(&program.stderr),

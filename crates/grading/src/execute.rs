@@ -25,6 +25,7 @@ use std::{
     io::{self, Read},
     path::{Path, PathBuf},
     sync::atomic::{AtomicU64, Ordering},
+    time::Instant,
 };
 
 /// Name of the scene's copy in the working folder, and of the trace.
@@ -96,6 +97,7 @@ impl Runner<'_> {
         task: &SceneTask,
         on_step: &mut dyn FnMut(u32),
     ) -> Result<SceneResult, ExecuteError> {
+        let begin = Instant::now();
         let (mut running, folder) = self.start(&program.program, program.identity, task)?;
         let is_untouched = running.is_in_memory();
         let _registered = self.cancellation.register(running.canceller());
@@ -160,6 +162,7 @@ impl Runner<'_> {
         if let Some(fault) = explaining {
             return Ok(failed(Activity::Explaining, &fault));
         }
+        result.judging = begin.elapsed().saturating_sub(result.wall);
         if let Some(cards) = self.cards
             && !(result.verdict.is_accepted() && result.differs.is_none())
         {

@@ -205,7 +205,7 @@ pub(super) struct Grading<'a> {
 
 /// What is known of a submission's scenes.
 struct Known {
-    /// Verdict and wall time of every scene that is done.
+    /// Verdict of every scene that is done, and how long its run and judging it took.
     done: Vec<Option<(Verdict, Duration)>>,
     /// The first scene that is not run any more, and why.
     end: Option<(usize, NotRunReason)>,
@@ -327,7 +327,7 @@ impl<'a> Grading<'a> {
     /// Notes a result, and whether it is the end.
     fn note(&self, scene: usize, result: &SceneResult) {
         let mut known = lock(&self.known);
-        known.done[scene] = Some((result.verdict, result.wall));
+        known.done[scene] = Some((result.verdict, result.wall + result.judging));
         if known.end.is_none_or(|(end, _)| scene < end) {
             let end = patience::end(&self.grader.plan.patience, self.grader.options.fail_fast, &known.done);
             known.end = end.or(known.end);

@@ -14,7 +14,7 @@ use std::time::Duration;
 pub struct Patience {
     /// So many scenes in a row may run into a limit: of time, of memory or of output; 0 for any number.
     pub time_outs: u32,
-    /// Wall time of all runs of a submission together.
+    /// Wall time of all runs of a submission together, and of judging them.
     pub total: Duration,
 }
 
@@ -35,7 +35,7 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     SceneResult::without_run(&task.name, task.scene.steps(), verdict, Reason::LeftOut(why))
 }
 
-/// The first scene that is not run, and why. `known` has the verdict and the wall time of every scene that is done.
+/// The first scene that is not run, and why. `known` has the verdict of every scene that is done, and how long it took.
 pub(super) fn end(
     patience: &Patience,
     fail_fast: bool,
@@ -46,11 +46,11 @@ pub(super) fn end(
         if total >= patience.total {
             return Some((number, NotRunReason::Total(patience.total)));
         }
-        let Some((verdict, wall)) = *known else {
+        let Some((verdict, took)) = *known else {
             stopped = 0;
             continue;
         };
-        total += wall;
+        total += took;
         (stopped, worst) = match is_limit(verdict) {
             true if stopped > 0 => (stopped + 1, worst.max(verdict)),
             true => (1, verdict),

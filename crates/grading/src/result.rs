@@ -36,6 +36,9 @@ pub struct SceneResult {
     pub cpu: Duration,
     /// Wall time of the run.
     pub wall: Duration,
+    /// What judging and explaining took beyond that.
+    #[serde(default)]
+    pub judging: Duration,
     /// Peak memory of the program in bytes, when known.
     pub memory: Option<u64>,
     /// What the program wrote to its standard output, capped; raw text that a report has to escape.
@@ -62,6 +65,7 @@ impl SceneResult {
             steps,
             cpu: Duration::ZERO,
             wall: Duration::ZERO,
+            judging: Duration::ZERO,
             memory: None,
             stdout: String::new(),
             stderr: String::new(),

@@ -74,7 +74,8 @@ impl Grading<'_> {
             _ => None,
         };
         // What ran beside the scene that was the end does not count, or the number of jobs would.
-        let known: Vec<_> = results.iter().map(|(result, _)| Some((result.verdict, result.wall))).collect();
+        let known: Vec<_> =
+            results.iter().map(|(result, _)| Some((result.verdict, result.wall + result.judging))).collect();
         if let Some((end, why)) = patience::end(&plan.patience, options.fail_fast, &known) {
             for (result, scene) in results.iter_mut().zip(plan.scenes()).skip(end) {
                 *result = (patience::left_out(scene, why), false);

@@ -2,17 +2,16 @@
 //!
 //! Steps are judged from the trace's own states, so a trace chooses what the reference has to compute: states from
 //! which every round of impulses finds new collisions cost as many detection passes as the scene allows rounds,
-//! thousands of times what the scene's own run costs, and the fair rules repeat such steps. Work is counted in
-//! detection calls ([`SearchCounts::work`](fosssim_model::sim::SearchCounts::work)), not measured by a clock: the same
-//! bytes have the same verdict on every machine.
+//! thousands of times what the scene's own run costs, and the fair rules repeat such steps. Subnormal numbers slow
+//! processors down besides, and root searches and Newton's method may take many steps. All this is counted
+//! ([`Simulation::work`]) and not measured by a clock: the same bytes have the same verdict on every machine.
 use fosssim_model::{
-    scene::Scene,
-    sim::{Observer, RootSearch, Simulation, StepError},
+    scene::{Collision, Scene},
+    sim::{Observer, RootSearch, Simulation, StepError, pairs},
 };
 
-/// What every trace may ask for, however simple its scene is: about a second's work. Nearly all traces stay below it,
-/// and the scene's own run need not be known.
-pub(crate) const FLOOR: u64 = 10_000_000;
+/// What every trace may ask for, however simple its scene is: about a tenth of a second's work.
+pub(crate) const FLOOR: u64 = 1_000_000;
 
 /// Beyond that, so many times the scene's own run by the original's rules ...
 const PARITY: u64 = 10;
@@ -25,6 +24,8 @@ pub struct Budget<'a> {
     scene: &'a Scene,
     factor: u64,
     rest: u64,
+    /// What was allowed for the scene without knowing its own run.
+    at_least: u64,
     is_wide: bool,
 }
 
@@ -33,12 +34,14 @@ impl<'a> Budget<'a> {
     /// besides, to explain or to show them, takes as much as the original's rules may.
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
-        Self { scene, factor: if fair { FAIR } else { PARITY }, rest: FLOOR, is_wide: false }
+        let factor = if fair { FAIR } else { PARITY };
+        let at_least = least(scene).saturating_mul(factor);
+        Self { scene, factor, rest: FLOOR.saturating_add(at_least), at_least, is_wide: false }
     }
 
-    /// The same, where every trace may ask for so much.
+    /// The same, where every trace may ask for so much, and nothing is allowed before the scene's own run is known.
     pub(crate) fn with_floor(self, floor: u64) -> Self {
-        Self { rest: floor, ..self }
+        Self { rest: floor, at_least: 0, ..self }
     }
 
     /// What is left.
@@ -62,7 +65,7 @@ impl<'a> Budget<'a> {
     /// # Errors
     /// [`StepError`]; of kind `Work`, when nothing is left.
     pub fn step(&mut self, simulation: &mut Simulation, observer: &mut dyn Observer) -> Result<(), StepError> {
-        if self.rest < FLOOR / 2 {
+        if self.rest < (FLOOR.saturating_add(self.at_least)) / 2 {
             self.widen();
         }
         let begin = simulation.work();
@@ -77,9 +80,20 @@ impl<'a> Budget<'a> {
         if std::mem::replace(&mut self.is_wide, true) {
             return false;
         }
-        let own = of_scene(self.scene).saturating_mul(self.factor);
+        let own = of_scene(self.scene).saturating_mul(self.factor).saturating_sub(self.at_least);
         self.rest = self.rest.saturating_add(own);
         own > 0
+    }
+}
+
+/// What the scene's own run costs at least: a detection pass for each step, if there are any. Nearly all traces stay
+/// below the multiple of this that they may take, and the scene need not be run.
+fn least(scene: &Scene) -> u64 {
+    match scene.collision {
+        Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => {
+            u64::from(scene.steps()).saturating_mul(pairs(scene).count() as u64)
+        }
+        Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0,
     }
 }
 
@@ -130,7 +144,7 @@ mod tests {
 
     fn judged(floor: u64, scene: &Scene, trace: &[u8], fair: bool, threads: usize) -> Outcome {
         let options = Options { fair, threads, ..Options::default() };
-        judge_within((usize::MAX, floor), scene, trace, &options, &mut ())
+        judge_within(usize::MAX, Some(floor), scene, trace, &options, &mut ())
     }
 
     /// The step at which judging was given up.

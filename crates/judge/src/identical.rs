@@ -99,9 +99,8 @@ impl Identical {
             self.skipped -= 1;
             return None;
         }
-        let counts = self.simulation.search_counts();
-        let is_sound =
-            self.step(step, before, context, counts.work().saturating_add(most_work)) && !self.hangs_on_size();
+        let (counts, work) = (self.simulation.search_counts(), self.simulation.work());
+        let is_sound = self.step(step, before, context, work.saturating_add(most_work)) && !self.hangs_on_size();
         let Self { watch, alike, theirs, pending, .. } = self;
         pending.clear();
         let is_own = is_sound && reader.passes(&watch.bytes);
@@ -118,13 +117,13 @@ impl Identical {
             return None;
         }
         self.misses = 0;
-        let now = self.simulation.search_counts();
-        self.searches += now - counts;
+        self.searches += self.simulation.search_counts() - counts;
         let bytes = &self.watch.bytes;
         if is_own {
             fair = context.map(|context| StepJudgement::identical(context, step, bytes.polynomials()));
         }
-        Some(Found { work: now.work() - counts.work(), bytes: bytes.len(), is_own, fair })
+        let work = self.simulation.work() - work;
+        Some(Found { work, bytes: bytes.len(), is_own, fair })
     }
 
     /// Whether the step has a result and its states are nothing out of the ordinary.

@@ -12,7 +12,7 @@ pub use super::{
 };
 
 use super::{
-    budget::{Budget, FLOOR},
+    budget::Budget,
     fair::{self, Context, Reach, Records, StepJudgement},
     identical::Identical,
     outcome::{Damage, Outcome, Stop},
@@ -99,12 +99,13 @@ pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, pro
 /// Compiled once and here, whatever the trace comes from: what is generic is compiled where it is used, at that crate's
 /// level.
 fn judge_any(scene: &Scene, trace: &mut (dyn Read + Send), options: &Options, progress: &mut dyn Progress) -> Outcome {
-    judge_within((record_memory(scene), FLOOR), scene, trace, options, progress)
+    judge_within(record_memory(scene), None, scene, trace, options, progress)
 }
 
-/// As [`judge`], with so much memory for the lists of a record, in bytes, and so much work for every trace.
+/// As [`judge`], with so much memory for the lists of a record, in bytes, and another floor of work, if one is given.
 pub(super) fn judge_within<R: Read + Send>(
-    (memory, work): (usize, u64),
+    memory: usize,
+    floor: Option<u64>,
     scene: &Scene,
     trace: R,
     options: &Options,
@@ -112,7 +113,9 @@ pub(super) fn judge_within<R: Read + Send>(
 ) -> Outcome {
     let reader = Lenient::new(trace, Layout::of(scene)).with_limit(memory);
     let mut replay = Replay::new(scene, reader, options.fair, options.root_search);
-    replay.budget = replay.budget.with_floor(work);
+    if let Some(floor) = floor {
+        replay.budget = replay.budget.with_floor(floor);
+    }
     if options.one_by_one {
         replay.identical.give_up();
     }

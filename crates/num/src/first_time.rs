@@ -27,7 +27,7 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
     first_time_counted(polynomials, &mut 0)
 }
 
-/// [`first_time`], which adds the steps that led to no zero to `fruitless` ([`Zeros::fruitless`]).
+/// [`first_time`], which adds the steps of the root searches to `steps` ([`Zeros::steps`]).
 ///
 /// # Errors
 /// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
@@ -35,13 +35,13 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
 /// # Panics
 /// As [`first_time`].
 #[inline]
-pub fn first_time_counted(polynomials: &[Polynomial], fruitless: &mut u64) -> Result<f64, DoesNotTerminate> {
+pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result<f64, DoesNotTerminate> {
     let lists = polynomials.iter().map(Polynomial::coefficients);
     // Two polynomials, of degree five at most, meet in five intervals at most; four of them in nine.
     match polynomials.len() {
-        0..=2 => intersected::<5>(lists, fruitless),
-        3..=4 => intersected::<9>(lists, fruitless),
-        _ => intersected::<32>(lists, fruitless),
+        0..=2 => intersected::<5>(lists, steps),
+        3..=4 => intersected::<9>(lists, steps),
+        _ => intersected::<32>(lists, steps),
     }
 }
 
@@ -60,15 +60,15 @@ pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f
 #[inline]
 fn intersected<'a, const CAPACITY: usize>(
     mut lists: impl Iterator<Item = &'a [f64]>,
-    fruitless: &mut u64,
+    steps: &mut u64,
 ) -> Result<f64, DoesNotTerminate> {
     let Some(first) = lists.next() else { return Ok(f64::INFINITY) };
     let mut set = Intervals::<CAPACITY>::new();
-    for &interval in counted(first, fruitless)?.as_slice() {
+    for &interval in counted(first, steps)?.as_slice() {
         set.push(interval);
     }
     for list in lists {
-        set = set.intersection(&counted(list, fruitless)?);
+        set = set.intersection(&counted(list, steps)?);
     }
     Ok(set.next_time(0.0))
 }
@@ -87,14 +87,14 @@ pub fn positive_set(coefficients: &[f64]) -> Result<PositiveSet, DoesNotTerminat
     counted(coefficients, &mut 0)
 }
 
-fn counted(coefficients: &[f64], fruitless: &mut u64) -> Result<PositiveSet, DoesNotTerminate> {
+fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNotTerminate> {
     let mut set = PositiveSet::new();
     let zeros = match coefficients.len() {
         0 => return Ok(set),
         1 => Zeros::default(),
         _ => rpoly::zeros(coefficients)?,
     };
-    *fruitless += u64::from(zeros.fruitless());
+    *steps += u64::from(zeros.steps());
     let mut storage = [0.0; MAX_DEGREE];
     let breaks = sorted_real_parts(&zeros, &mut storage);
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {

@@ -21,6 +21,7 @@ pub struct Simulation {
     q_start: Vec<f64>,
     state: State,
     steps_done: u32,
+    most_work: u64,
 }
 
 impl Simulation {
@@ -43,6 +44,7 @@ impl Simulation {
             q_start: Vec::with_capacity(state.positions.len()),
             state,
             steps_done: 0,
+            most_work: u64::MAX,
         }
     }
 
@@ -85,9 +87,12 @@ impl Simulation {
             return Err(StepError::VortexHessian { step });
         }
         self.q_start.clone_from(&self.state.positions);
-        self.stepper
-            .advance(&self.bodies, &self.forces, &mut self.state)
-            .map_err(|DoesNotConverge| StepError::Newton { step })?;
+        self.stepper.limit_work(self.most_work.saturating_sub(self.handler.counts().work()));
+        if let Err(DoesNotConverge) = self.stepper.advance(&self.bodies, &self.forces, &mut self.state) {
+            let is_beyond = self.stepper.is_beyond_limit();
+            return Err(if is_beyond { StepError::Work { step } } else { StepError::Newton { step } });
+        }
+        self.handler.limit_work(self.most_work.saturating_sub(self.stepper.work()));
         self.handler.handle(&self.bodies, step, &self.q_start, &mut self.state, observer)?;
         self.steps_done = step;
         observer.end_step(step, &self.state);
@@ -100,10 +105,10 @@ impl Simulation {
         self.handler.counts()
     }
 
-    /// What all steps so far have cost ([`SearchCounts::work`]).
+    /// What all steps so far have cost: detection ([`SearchCounts::work`]) and Newton's method.
     #[must_use]
     pub fn work(&self) -> u64 {
-        self.handler.counts().work()
+        self.handler.counts().work() + self.stepper.work()
     }
 
     /// Computes pairs one by one from now on, also for observers that only want bytes. The results are the same.
@@ -111,9 +116,9 @@ impl Simulation {
         self.handler.forgo_lanes();
     }
 
-    /// Lets steps end with [`StepError::Work`] after the detection pass that takes [`Simulation::work`] beyond this.
+    /// Lets steps end with [`StepError::Work`] after the detection pass or the iteration that takes [`Simulation::work`] beyond this.
     pub fn limit_work(&mut self, most: u64) {
-        self.handler.limit_work(most);
+        self.most_work = most;
     }
 }
 
@@ -204,6 +209,24 @@ mod tests {
             ["step 1", "pass 0 ContinuousTime", "hit at 0.5", "impulse -0 -0.25", "1 hits", "synchronise", "end 1"];
         assert_eq!(log.lines, expected);
         assert_eq!(simulation.steps_done(), 1);
+    }
+
+    #[test]
+    fn passes_over_subnormal_numbers_count_as_long_as_they_take() {
+        let pass = |height, speed| {
+            let mut scene = falling(Collision::ContinuousTime { restitution: 1.0 });
+            scene.particles.push(particle((height, 9.0), (0.0, speed), 1.0, 0.25));
+            let simulation = stepped(&scene, &mut Log::default());
+            (simulation.search_counts().calls, simulation.work())
+        };
+        let (calls, ordinary) = pass(1.0, 0.5);
+        assert!(calls > 0 && ordinary < 100 * calls, "{calls} calls, {ordinary} units");
+        for (height, speed) in [(1e-155, 0.5), (1.0, -1e-155)] {
+            let (same_calls, slow) = pass(height, speed);
+            assert_eq!(same_calls, calls);
+            assert!(slow >= 32 * calls, "{calls} calls, {slow} units");
+        }
+        assert_eq!(pass(0.0, 0.5).1, pass(-0.0, 0.5).1, "zeros are no subnormal numbers");
     }
 
     #[test]

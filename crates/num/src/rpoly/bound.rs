@@ -6,12 +6,12 @@ use crate::elementary::{exp, ln};
 /// Newton steps after which the iteration is known to cycle; every other one makes fewer than 500.
 const MAX_NEWTON_STEPS: usize = 1000;
 
-/// The bound for a polynomial of degree `N`; 0 when its constant term is 0.
+/// The bound for a polynomial of degree `N`; 0 when its constant term is 0. The steps that it takes are added to `steps`.
 ///
 /// # Errors
 /// [`DoesNotTerminate`] when a coefficient is not finite, or when the Newton iteration cycles among subnormals.
 #[inline]
-pub(super) fn lower_bound<const N: usize>(polynomial: &Coefficients) -> Result<f64, DoesNotTerminate> {
+pub(super) fn lower_bound<const N: usize>(polynomial: &Coefficients, steps: &mut u32) -> Result<f64, DoesNotTerminate> {
     if !polynomial[..=N].iter().all(|coefficient| coefficient.is_finite()) {
         return Err(DoesNotTerminate);
     }
@@ -20,7 +20,8 @@ pub(super) fn lower_bound<const N: usize>(polynomial: &Coefficients) -> Result<f
         moduli[i] = polynomial[i].abs();
     }
     moduli[N] = -moduli[N];
-    newton::<N>(&moduli, decimate::<N>(&moduli, start::<N>(&moduli)))
+    let x = decimate::<N>(&moduli, start::<N>(&moduli), steps);
+    newton::<N>(&moduli, x, steps)
 }
 
 /// The starting point: the geometric mean of the zeros' moduli, or the Newton step from the origin if that is nearer.
@@ -41,8 +42,9 @@ fn start<const N: usize>(moduli: &Coefficients) -> f64 {
 /// Divides by ten as long as the polynomial stays positive. With finite coefficients this ends after some 600 rounds
 /// at the latest, at zero.
 #[inline]
-fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64) -> f64 {
+fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64, steps: &mut u32) -> f64 {
     loop {
+        *steps += 1;
         let tenth = x * 0.1;
         let mut value = moduli[0];
         for &modulus in &moduli[1..=N] {
@@ -57,7 +59,7 @@ fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64) -> f64 {
 
 /// Newton's iteration until a step changes less than half a per cent. With `x = 0` the ratio is NaN and none is made.
 #[inline]
-fn newton<const N: usize>(moduli: &Coefficients, mut x: f64) -> Result<f64, DoesNotTerminate> {
+fn newton<const N: usize>(moduli: &Coefficients, mut x: f64, all_steps: &mut u32) -> Result<f64, DoesNotTerminate> {
     let mut step = x;
     let mut steps = 0;
     while (step / x).abs() > 0.005 {
@@ -65,6 +67,7 @@ fn newton<const N: usize>(moduli: &Coefficients, mut x: f64) -> Result<f64, Does
             return Err(DoesNotTerminate);
         }
         steps += 1;
+        *all_steps += 1;
         let mut value = moduli[0];
         let mut slope = value;
         for &modulus in &moduli[1..N] {

@@ -45,19 +45,21 @@ impl Convergence {
 }
 
 /// Steps with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit` steps
-/// at most.
+/// at most. All steps, those of the iterations among them, are added to `steps`.
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,
     mut k: Coefficients,
     u: f64,
     v: f64,
     limit: usize,
+    steps: &mut u32,
 ) -> Option<Found> {
     let mut factor = Convergence::START;
     let mut real = Convergence::START;
     let division = Division::<N>::new(polynomial, u, v);
     let mut scalars = Scalars::new(&k, &division);
     for step in 0..limit {
+        *steps += 1;
         k = scalars.next_k(&division);
         scalars = Scalars::new(&k, &division);
         let estimate = scalars.estimate(&k, polynomial, &division);
@@ -69,7 +71,7 @@ pub(super) fn run<const N: usize>(
             (factor_change, real_change) = (by_factor.change, by_zero.change);
             if by_factor.passes || by_zero.passes {
                 let attempt = Attempt { polynomial, k, estimate, zero, by_factor, by_zero };
-                let found = attempt.run::<N>(&mut factor, &mut real);
+                let found = attempt.run::<N>(&mut factor, &mut real, steps);
                 if found.is_some() {
                     return found;
                 }
@@ -101,7 +103,7 @@ enum Stage {
 impl Attempt<'_> {
     /// Chains the variable-shift iterations; each failure tightens its threshold.
     #[inline(never)]
-    fn run<const N: usize>(&self, factor: &mut Convergence, real: &mut Convergence) -> Option<Found> {
+    fn run<const N: usize>(&self, factor: &mut Convergence, real: &mut Convergence, steps: &mut u32) -> Option<Found> {
         let mut k = self.k;
         let (mut u, mut v) = self.estimate;
         let (mut factor_tried, mut zero_tried) = (false, false);
@@ -111,7 +113,8 @@ impl Attempt<'_> {
         loop {
             stage = match stage {
                 Stage::Quadratic => {
-                    if let Some((zeros, quotient)) = quadratic_iteration::run::<N>(self.polynomial, &mut k, u, v) {
+                    if let Some((zeros, quotient)) = quadratic_iteration::run::<N>(self.polynomial, &mut k, u, v, steps)
+                    {
                         return Some(Found::Two { zeros, quotient });
                     }
                     factor_tried = true;
@@ -124,7 +127,7 @@ impl Attempt<'_> {
                     }
                 }
                 Stage::Linear => {
-                    let outcome = linear_iteration::run::<N>(self.polynomial, &mut k, self.zero);
+                    let outcome = linear_iteration::run::<N>(self.polynomial, &mut k, self.zero, steps);
                     if let linear_iteration::Outcome::Zero(zero, quotient) = outcome {
                         return Some(Found::One { zero, quotient });
                     }

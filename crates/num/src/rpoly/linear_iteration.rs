@@ -19,11 +19,17 @@ pub(super) enum Outcome {
 
 /// Iterates from `s`; `k` is changed on failure.
 #[inline]
-pub(super) fn run<const N: usize>(polynomial: &Coefficients, k: &mut Coefficients, mut s: f64) -> Outcome {
+pub(super) fn run<const N: usize>(
+    polynomial: &Coefficients,
+    k: &mut Coefficients,
+    mut s: f64,
+    all_steps: &mut u32,
+) -> Outcome {
     let mut steps = 0;
     let mut t = 0.0_f64;
     let mut previous_size = 0.0;
     loop {
+        *all_steps += 1;
         let q = horner::<N>(polynomial, s);
         let value = q[N];
         let size = value.abs();

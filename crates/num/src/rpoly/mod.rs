@@ -43,12 +43,12 @@ pub struct DoesNotTerminate;
 pub struct Zeros {
     rejected: bool,
     length: usize,
-    fruitless: u32,
+    steps: u32,
     list: [Zero; MAX_DEGREE],
 }
 
 impl Zeros {
-    const REJECTED: Self = Self { rejected: true, length: 0, fruitless: 0, list: [(0.0, 0.0); MAX_DEGREE] };
+    const REJECTED: Self = Self { rejected: true, length: 0, steps: 0, list: [(0.0, 0.0); MAX_DEGREE] };
 
     /// The count that the original returns: the degree, less when the search gave up, `-1` when the polynomial was
     /// rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
@@ -65,11 +65,11 @@ impl Zeros {
         &self.list[..self.length]
     }
 
-    /// Steps with fixed shifts from which no zero was found: hardly ever any, up to 4200 for a zero where polynomials
-    /// are nearly nothing but round-off. Only the time that the search takes depends on them.
+    /// The steps of all stages together: some dozens as a rule, thousands where polynomials are nearly nothing but
+    /// round-off or subnormal. Only the time that the search took depends on them.
     #[must_use]
-    pub fn fruitless(&self) -> u32 {
-        self.fruitless
+    pub fn steps(&self) -> u32 {
+        self.steps
     }
 
     #[inline]
@@ -137,10 +137,10 @@ fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) ->
     let mut direction = (START_X, START_Y);
     loop {
         let found = match degree {
-            3 => find::<3>(&mut polynomial, &mut direction, &mut zeros.fruitless)?,
-            4 => find::<4>(&mut polynomial, &mut direction, &mut zeros.fruitless)?,
-            5 => find::<5>(&mut polynomial, &mut direction, &mut zeros.fruitless)?,
-            6 => find::<6>(&mut polynomial, &mut direction, &mut zeros.fruitless)?,
+            3 => find::<3>(&mut polynomial, &mut direction, &mut zeros.steps)?,
+            4 => find::<4>(&mut polynomial, &mut direction, &mut zeros.steps)?,
+            5 => find::<5>(&mut polynomial, &mut direction, &mut zeros.steps)?,
+            6 => find::<6>(&mut polynomial, &mut direction, &mut zeros.steps)?,
             _ => {
                 closed_form(zeros, &polynomial[..=degree]);
                 return Ok(());
@@ -167,23 +167,19 @@ fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) ->
 fn find<const N: usize>(
     polynomial: &mut Coefficients,
     direction: &mut (f64, f64),
-    fruitless: &mut u32,
+    steps: &mut u32,
 ) -> Result<Option<Found>, DoesNotTerminate> {
     scaling::scale::<N>(polynomial);
-    let bound = bound::lower_bound::<N>(polynomial)?;
+    let bound = bound::lower_bound::<N>(polynomial, steps)?;
     let start = no_shift::run::<N>(polynomial);
     for shift in 1..=MAX_SHIFTS {
         let (x, y) = *direction;
         *direction = (ROTATION_COSINE * x - ROTATION_SINE * y, ROTATION_SINE * x + ROTATION_COSINE * y);
         let real_part = bound * direction.0;
         // The published algorithm has the bound's square here; the original has the bound.
-        let found = fixed_shift::run::<N>(polynomial, start, -2.0 * real_part, bound, MAX_SHIFTS * shift);
+        let found = fixed_shift::run::<N>(polynomial, start, -2.0 * real_part, bound, MAX_SHIFTS * shift, steps);
         if found.is_some() {
             return Ok(found);
-        }
-        #[expect(clippy::cast_possible_truncation, reason = "at most 400")]
-        {
-            *fruitless += (MAX_SHIFTS * shift) as u32;
         }
     }
     Ok(None)

@@ -18,12 +18,14 @@ pub(super) fn run<const N: usize>(
     k: &mut Coefficients,
     mut u: f64,
     mut v: f64,
+    all_steps: &mut u32,
 ) -> Option<([Zero; 2], Coefficients)> {
     let mut steps = 0;
     let mut tried_cluster = false;
     let mut relative_step = 0.0;
     let mut previous_size = 0.0;
     loop {
+        *all_steps += 1;
         let zeros = quadratic::zeros(1.0, u, v);
         let [small, (large, _)] = zeros;
         // Real zeros of different moduli are left to the linear iteration.

@@ -94,13 +94,13 @@ fn the_stages_pass_the_checkpoints_of_the_specification() {
         cubic.map(f64::to_bits)[..4],
         [0x3B60000000000000, 0xBB88000000000000, 0x3B96000000000000, 0xBB88000000000000]
     );
-    assert_eq!(bound::lower_bound::<3>(&cubic).map(f64::to_bits), Ok(0x3FDBD470E3EA2231));
+    assert_eq!(bound::lower_bound::<3>(&cubic, &mut 0).map(f64::to_bits), Ok(0x3FDBD470E3EA2231));
     assert_eq!(
         no_shift::run::<3>(&cubic).map(f64::to_bits)[..3],
         [0x3B60000000000000, 0xBB83D8F3F2E646A7, 0x3B8792FFB6BD31A2]
     );
     let quartic: Coefficients = [1.0, -3.0, 2.0, 1.5, -0.5, 0.0, 0.0];
-    assert_eq!(bound::lower_bound::<4>(&quartic).map(f64::to_bits), Ok(0x3FCDDE43A6A408F7));
+    assert_eq!(bound::lower_bound::<4>(&quartic, &mut 0).map(f64::to_bits), Ok(0x3FCDDE43A6A408F7));
     assert_eq!(
         no_shift::run::<4>(&quartic).map(f64::to_bits)[..4],
         [0x3FF0000000000000, 0xC005ABD335ABD336, 0x3FF31CF5931CF593, 0x3FFE77B2C677B2C7]
@@ -122,6 +122,17 @@ fn searches_that_would_never_end_are_typed_outcomes() {
             }
         }
     }
+}
+
+#[test]
+fn the_steps_of_all_stages_are_counted() {
+    let steps = |coefficients: &[f64]| zeros(coefficients).expect("terminates").steps();
+    assert_eq!(steps(&[1.0, -3.0, 2.0]), 0, "a closed form");
+    let ordinary = steps(&[1.0, -6.0, 11.0, -6.0]);
+    assert!((5..100).contains(&ordinary), "{ordinary}");
+    // The bound divides by ten until it comes near a zero of 1e-300.
+    let small = steps(&[1.0, 1.0, 1e-300, 1e-300]);
+    assert!(small > ordinary + 100, "{small}");
 }
 
 #[test]

@@ -162,7 +162,8 @@ pub fn rehearse(result: &SceneResult) {
 /// plain text.
 fn without_the_harmless(result: &SceneResult) -> SceneResult {
     let mut kind = result.clone();
-    (kind.cpu, kind.wall, kind.memory) = (Duration::ZERO, Duration::ZERO, kind.memory.map(|_| 0));
+    (kind.cpu, kind.wall, kind.judging, kind.memory) =
+        (Duration::ZERO, Duration::ZERO, Duration::ZERO, kind.memory.map(|_| 0));
     if kind.right_steps == kind.steps {
         (kind.right_steps, kind.steps) = (kind.steps.min(1), kind.steps.min(1));
     }

@@ -20,13 +20,7 @@ const SHOWN: usize = 40;
 
 /// Tries so many of each kind on each scene, those of a corpus's folder, if there is one, among them.
 pub fn run(of_each: u64, seed: u64, corpus: Option<&Path>) -> ExitCode {
-    let built_in = library::names().filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())));
-    let mut scenes: Vec<(String, Vec<u8>)> = built_in.collect();
-    for path in corpus.map(|corpus| scene_files(&corpus.join("scenes/t2m2"))).unwrap_or_default() {
-        if let Ok(bytes) = std::fs::read(&path) {
-            scenes.push((path.display().to_string(), bytes));
-        }
-    }
+    let scenes = scenes(corpus);
     let (next, faults) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let work = || {
         loop {
@@ -49,6 +43,18 @@ pub fn run(of_each: u64, seed: u64, corpus: Option<&Path>) -> ExitCode {
     println!("{} scenes, 3 times {of_each} traces of each, {} faults", scenes.len(), faults.len());
     faults.iter().take(SHOWN).for_each(|fault| println!("{fault}"));
     ExitCode::from(u8::from(!faults.is_empty()))
+}
+
+/// The scenes that come with the program, and those of a corpus's folder, if there is one.
+pub fn scenes(corpus: Option<&Path>) -> Vec<(String, Vec<u8>)> {
+    let built_in = library::names().filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())));
+    let mut scenes: Vec<(String, Vec<u8>)> = built_in.collect();
+    for path in corpus.map(|corpus| scene_files(&corpus.join("scenes/t2m2"))).unwrap_or_default() {
+        if let Ok(bytes) = std::fs::read(&path) {
+            scenes.push((path.display().to_string(), bytes));
+        }
+    }
+    scenes
 }
 
 /// All scenes below a folder.

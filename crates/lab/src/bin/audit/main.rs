@@ -15,7 +15,8 @@
 //! `audit lanes [pairs] [seed]` compares detection in lanes with detection pair by pair instead, on random scenes, and
 //! `audit judging [CORPUS or part of a sample's id]` judging of many calls at a time with judging one by one; `audit
 //! drawn [traces] [seed]` does so on random traces. `audit forged [of each scene] [seed] [CORPUS]` looks for wrong
-//! traces that the fair rules accept, and for programs with factors that they refuse.
+//! traces that the fair rules accept, and for programs with factors that they refuse. `audit cost [of each scene] [seed]
+//! [CORPUS]` looks for traces that take long to judge.
 use std::{
     fmt::Write as _,
     process::ExitCode,
@@ -31,6 +32,7 @@ use fosssim_oracle::num::{
 };
 use fosssim_oracle::sim::formulas;
 
+mod cost;
 mod decisions;
 mod drawn;
 mod forged;
@@ -50,19 +52,21 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         });
     }
-    if words.next_if(|word| word == "forged").is_some() {
+    let is_cost = words.next_if(|word| word == "cost").is_some();
+    if is_cost || words.next_if(|word| word == "forged").is_some() {
         let mut number = |default| {
             words.next_if(|word| word.parse::<u64>().is_ok()).map_or(default, |word| word.parse().unwrap_or(default))
         };
         let (of_each, seed) = (number(100), number(1));
-        return forged::run(of_each, seed, words.next().as_deref().map(std::path::Path::new));
+        let run = if is_cost { cost::run } else { forged::run };
+        return run(of_each, seed, words.next().as_deref().map(std::path::Path::new));
     }
     let of_lanes = words.next_if(|word| word == "lanes").is_some();
     let of_drawn = words.next_if(|word| word == "drawn").is_some();
     let mut arguments = words.map(|argument| argument.parse::<u64>());
     let (Ok(detections), Ok(seed)) = (arguments.next().unwrap_or(Ok(1_000_000)), arguments.next().unwrap_or(Ok(1)))
     else {
-        eprintln!("usage: audit [lanes|drawn|forged] [detections] [seed]");
+        eprintln!("usage: audit [lanes|drawn|forged|cost] [detections] [seed]");
         return ExitCode::from(2);
     };
     if of_drawn {

@@ -28,8 +28,7 @@ pub(super) fn time_of_impact(
         }
     }
     counts.searched += 1;
-    let time =
-        first_time_counted(polynomials, &mut counts.fruitless).map_err(|_| StepError::RootSearch { step, pair })?;
+    let time = first_time_counted(polynomials, &mut counts.steps).map_err(|_| StepError::RootSearch { step, pair })?;
     if excluded && time <= 1.0 {
         counts.disagreements += 1;
     }

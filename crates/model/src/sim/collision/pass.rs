@@ -9,7 +9,7 @@ use super::{
         observer::{Decision, Detection, Impulse, Observer, Pass, Time, Wanted},
         pair::{Pair, PairKind, pair},
         pairs::{Place, is_end},
-        search::{RootSearch, SearchCounts},
+        search::{RootSearch, SUBNORMAL_WORK, SearchCounts, have_subnormal_products},
         step_error::StepError,
     },
     blocks::{Blocks, Setting},
@@ -115,6 +115,8 @@ impl Detector {
         self.passes += 1;
         self.displacements.clear();
         self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
+        let begin = self.counts.work();
+        let is_slow = have_subnormal_products(q_start) || have_subnormal_products(&self.displacements);
         let (mut place, mut hits) = (Place::of(0), 0);
         if self.has_lanes && !matches!(observer.wanted(), Wanted::Calls) {
             hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
@@ -134,6 +136,9 @@ impl Detector {
             way.observer.end_pass(pass, hits);
         } else {
             observer.end_pass(pass, hits);
+        }
+        if is_slow {
+            self.counts.subnormal += (SUBNORMAL_WORK - 1) * (self.counts.work() - begin);
         }
         if self.counts.work() > self.most_work {
             return Err(StepError::Work { step: self.step });

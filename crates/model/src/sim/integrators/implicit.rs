@@ -2,7 +2,7 @@
 //!
 //! The original iterates without limit and hangs when Newton's method does not converge; here the step ends with
 //! [`DoesNotConverge`] instead.
-use super::{DoesNotConverge, ImplicitScratch, system::assemble};
+use super::{DoesNotConverge, Effort, ImplicitScratch, system::assemble};
 use crate::sim::{bodies::Bodies, forces::Forces, state::State};
 use fosssim_num::{
     linear,
@@ -19,6 +19,7 @@ pub(super) fn advance(
     h: f64,
     rhs: &mut [f64],
     scratch: &mut ImplicitScratch,
+    effort: &mut Effort,
     state: &mut State,
 ) -> Result<(), DoesNotConverge> {
     let ImplicitScratch { matrix, workspace, x, v, dx, dv, earlier } = scratch;
@@ -32,7 +33,7 @@ pub(super) fn advance(
     let mut update = f64::INFINITY;
     let mut iteration = 0_u32;
     while update >= NEWTON_UPDATE {
-        if iteration == NEWTON_ITERATIONS {
+        if iteration == NEWTON_ITERATIONS || !effort.iterate(entries) {
             return Err(DoesNotConverge);
         }
         if iteration.is_power_of_two() {
@@ -130,5 +131,11 @@ mod tests {
         scene.collision = Collision::Penalty { stiffness: 1000.0, thickness: 0.1 };
         let mut simulation = Simulation::new(&scene, RootSearch::default());
         assert_eq!(simulation.step(&mut ()), Err(StepError::Newton { step: 1 }));
+        assert!(simulation.work() > 2, "{}", simulation.work());
+
+        let mut simulation = Simulation::new(&scene, RootSearch::default());
+        simulation.limit_work(2);
+        assert_eq!(simulation.step(&mut ()), Err(StepError::Work { step: 1 }));
+        assert!(simulation.work() < 10, "{}", simulation.work());
     }
 }

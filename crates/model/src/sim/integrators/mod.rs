@@ -12,7 +12,8 @@ use super::{bodies::Bodies, forces::Forces, matrix::Matrix, state::State};
 use crate::scene::{Integrator, Scene};
 use fosssim_num::linear::Workspace;
 
-/// The update's norm stays above the bound after too many iterations, or the iterates repeat.
+/// The update's norm stays above the bound after too many iterations, or the iterates repeat; or the work that is allowed
+/// is used up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct DoesNotConverge;
 
@@ -25,6 +26,24 @@ pub(super) struct Stepper {
     minus_one: f64,
     gradient: Vec<f64>,
     implicit: Option<Box<ImplicitScratch>>,
+    effort: Effort,
+}
+
+/// The work of Newton's method over all steps, in the unit of [`SearchCounts::work`](super::search::SearchCounts::work).
+/// Methods that do the same in every step count nothing.
+#[derive(Debug, Clone, Copy)]
+struct Effort {
+    done: u64,
+    most: u64,
+}
+
+impl Effort {
+    /// Counts an iteration with so many unknowns: elimination takes n^3 / 3 operations, of which a detection call does
+    /// some hundred. Whether more is allowed.
+    fn iterate(&mut self, unknowns: usize) -> bool {
+        self.done += 1 + (unknowns as u64).pow(3) / 64;
+        self.done <= self.most
+    }
 }
 
 /// What the implicit methods need on top: memory of size (2N)^2.
@@ -63,7 +82,23 @@ impl Stepper {
             minus_one: std::hint::black_box(-1.0),
             gradient: vec![0.0; entries],
             implicit,
+            effort: Effort { done: 0, most: u64::MAX },
         }
+    }
+
+    /// The work of all steps so far.
+    pub fn work(&self) -> u64 {
+        self.effort.done
+    }
+
+    /// Most work, over all steps.
+    pub fn limit_work(&mut self, most: u64) {
+        self.effort.most = most;
+    }
+
+    /// Whether more work would have been done than was allowed.
+    pub fn is_beyond_limit(&self) -> bool {
+        self.effort.done > self.effort.most
     }
 
     /// Whether the method needs the Hessians of the forces.
@@ -74,11 +109,13 @@ impl Stepper {
     /// Advances `state` by one time step.
     ///
     /// # Errors
-    /// [`DoesNotConverge`] from Newton's method of implicit-euler; the state is unchanged then.
+    /// [`DoesNotConverge`] from Newton's method of implicit-euler, also where the work that is allowed does not suffice
+    /// ([`Stepper::is_beyond_limit`]); the state is unchanged then.
     pub fn advance(&mut self, bodies: &Bodies, forces: &Forces, state: &mut State) -> Result<(), DoesNotConverge> {
         match (self.kind, self.implicit.as_deref_mut()) {
             (Integrator::ImplicitEuler, Some(scratch)) => {
-                implicit::advance(bodies, forces, self.time_step, &mut self.gradient, scratch, state)?;
+                let rhs = &mut self.gradient;
+                implicit::advance(bodies, forces, self.time_step, rhs, scratch, &mut self.effort, state)?;
             }
             (Integrator::LinearizedImplicitEuler, Some(scratch)) => {
                 let rhs = &mut self.gradient;
