@@ -117,6 +117,9 @@ pub(super) struct Grade {
     pub(super) unsafe_no_sandbox: bool,
 }
 
+/// A grading has no more shards.
+pub(super) const MOST_SHARDS: usize = 10_000;
+
 /// A part of the submissions: one of so many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shard {
@@ -132,8 +135,8 @@ impl FromStr for Shard {
     fn from_str(word: &str) -> Result<Self, Self::Err> {
         let parts = word.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
         match parts {
-            Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
-            _ => Err("a shard is I/N: the I-th of N parts, from 1/N to N/N"),
+            Some((number, of)) if (1..=of).contains(&number) && of <= MOST_SHARDS => Ok(Self { number, of }),
+            _ => Err("a shard is I/N: the I-th of N parts, from 1/N to N/N, and N is 10000 at most"),
         }
     }
 }

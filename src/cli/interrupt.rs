@@ -1,10 +1,22 @@
-//! What is cleared up when the user ends the program.
-use super::{exit, screen};
+//! What is cleared up when the user ends the program, and who sees to it that it ends.
+//!
+//! The first signal lets a grading come to its end: programs are ended, and what is known is written. Whoever waits for
+//! something that never comes is not waited for: where nothing moves for some seconds the program ends all the same.
+use super::{console, exit, screen};
+use crate::suite::Cancellation;
 use std::{
     fs,
     path::PathBuf,
-    sync::{Mutex, OnceLock, PoisonError},
+    sync::{
+        Arc, Mutex, OnceLock, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
 };
+
+/// So long nothing may move after the first signal.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Temporary files that an interrupt has to remove.
 pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
@@ -17,16 +29,72 @@ pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
 pub(super) fn clean_up_when_interrupted() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
-        let installed = ctrlc::set_handler(|| {
-            // Held until the end: no rename and no new file in between.
-            let pending = pending();
-            for path in pending.iter() {
-                drop(fs::remove_file(path));
-            }
-            screen::clear_bars();
-            std::process::exit(exit::INTERRUPTED.into());
-        });
         // Without a handler an interrupt leaves a hidden file behind, which is better than not working at all.
-        drop(installed);
+        drop(ctrlc::set_handler(|| end()));
     });
+}
+
+/// Ends the program, and leaves nothing half done behind.
+fn end() -> ! {
+    // Whatever follows could wait, too: for a lock, or for somebody who reads what is written.
+    thread::spawn(|| {
+        thread::sleep(Duration::from_secs(1));
+        std::process::exit(exit::INTERRUPTED.into());
+    });
+    // Held until the end: no rename and no new file in between.
+    let pending = pending();
+    for path in pending.iter() {
+        drop(fs::remove_file(path));
+    }
+    screen::clear_bars();
+    std::process::exit(exit::INTERRUPTED.into());
+}
+
+/// How often something has moved.
+static MOVES: AtomicU64 = AtomicU64::new(0);
+
+/// Says that something moves: that nobody waits in vain.
+pub(super) fn still_at_work() {
+    MOVES.fetch_add(1, Ordering::Relaxed);
+}
+
+/// A cancellation that SIGINT and SIGTERM set off. A second signal ends the program at once, and so does this program
+/// itself where it does not come to its end.
+pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
+    static SHARED: OnceLock<Arc<Cancellation>> = OnceLock::new();
+    SHARED
+        .get_or_init(|| {
+            let cancellation = Arc::new(Cancellation::default());
+            let signalled = cancellation.clone();
+            let mut first = None;
+            // Without a handler a signal ends the program, and the sandbox ends with it.
+            drop(ctrlc::set_handler(move || {
+                // `timeout` and a terminal may send one stop twice.
+                let first = *first.get_or_insert_with(Instant::now);
+                if signalled.is_cancelled() {
+                    if first.elapsed() > Duration::from_secs(1) {
+                        end();
+                    }
+                    return;
+                }
+                // First of all: whatever follows could wait, too.
+                thread::spawn(end_when_nothing_moves);
+                signalled.cancel();
+                console::complain(b"\nstopping (once more to stop at once)\n");
+            }));
+            cancellation
+        })
+        .clone()
+}
+
+fn end_when_nothing_moves() {
+    let (mut moves, mut since) = (MOVES.load(Ordering::Relaxed), Instant::now());
+    while since.elapsed() < PATIENCE {
+        thread::sleep(Duration::from_millis(100));
+        let now = MOVES.load(Ordering::Relaxed);
+        if now != moves {
+            (moves, since) = (now, Instant::now());
+        }
+    }
+    end();
 }

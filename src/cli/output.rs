@@ -2,23 +2,25 @@
 //!
 //! An error, SIGINT and SIGTERM remove the temporary file. Standard output and character devices such as `/dev/null`
 //! are written directly. Pipes, sockets and block devices are refused: a pipe without a reader would block for ever.
+//!
+//! A file that somebody names may be a link: then the file that it leads to is replaced. In a folder for many files the
+//! names are ours, and what has one of them already is replaced, a link, too.
 use super::{
     console,
-    interrupt::{clean_up_when_interrupted, pending},
+    interrupt::{clean_up_when_interrupted, pending, still_at_work},
 };
 use crate::{
-    files::{Identity, open_for_writing},
+    files::{self, Identity, Place, Replacement, open_for_writing},
     report::grade::one_line,
 };
 use anyhow::{Context, Result, bail};
 use std::{
     ffi::OsStr,
-    fs::{self, File, OpenOptions, Permissions},
+    fs::{self, File, OpenOptions},
     io::{self, IoSlice, Write},
     os::unix::fs::{FileTypeExt, PermissionsExt},
     path::{Path, PathBuf},
 };
-use tempfile::{NamedTempFile, TempPath};
 
 /// An output that is being written.
 #[derive(Debug)]
@@ -30,7 +32,7 @@ pub(super) enum Output {
     /// A character device.
     Device(File, PathBuf),
     /// A file, for the moment under another name.
-    File { temporary: NamedTempFile, target: PathBuf },
+    File(Replacement),
 }
 
 impl Output {
@@ -80,8 +82,9 @@ impl Output {
         if folder.symlink_metadata().is_err_and(|error| error.kind() == io::ErrorKind::NotFound) {
             bail!("there is no folder {}; make it first", folder.display());
         }
-        let temporary = temporary(folder, mode)?;
-        Ok(Self::File { temporary, target })
+        let name = target.file_name().context("it names a directory; name a file inside")?;
+        let begin = || files::Folder::to_write(folder)?.replacement(name, mode);
+        Ok(Self::File(begun(begin).with_context(|| format!("no file can be made in {}", folder.display()))?))
     }
 
     /// Whether this is standard output, so that nothing else may be printed there.
@@ -90,9 +93,9 @@ impl Output {
     }
 
     /// Where the bytes of a file lie before it appears under its name, for a program that writes them.
-    pub(super) fn temporary_path(&self) -> Option<&Path> {
+    pub(super) fn temporary_path(&self) -> Option<PathBuf> {
         match self {
-            Self::File { temporary, .. } => Some(temporary.path()),
+            Self::File(file) => Some(file.unfinished()),
             Self::Nowhere | Self::Stdout | Self::Device(..) => None,
         }
     }
@@ -113,7 +116,7 @@ impl Output {
     /// When it can't be written.
     pub(super) fn finish_and_tell(self, bytes: &[u8], is_page: bool) -> Result<()> {
         let file = match &self {
-            Self::File { target, .. } => Some(target.clone()),
+            Self::File(file) => Some(file.target()),
             _ => None,
         };
         self.finish_with(bytes)?;
@@ -127,7 +130,8 @@ impl Output {
         match self {
             Self::Nowhere => "nothing".to_owned(),
             Self::Stdout => "to standard output".to_owned(),
-            Self::Device(_, name) | Self::File { target: name, .. } => name.display().to_string(),
+            Self::Device(_, name) => name.display().to_string(),
+            Self::File(file) => file.target().display().to_string(),
         }
     }
 
@@ -137,15 +141,13 @@ impl Output {
     /// When the last bytes or the rename fail; the target is then as it was before.
     pub(super) fn finish(mut self) -> Result<()> {
         console::unless_closed(self.flush())?;
-        if let Self::File { temporary, target } = self {
-            let mut pending = pending();
-            let path = temporary.into_temp_path();
-            pending.retain(|waiting| waiting.as_path() != <TempPath as AsRef<Path>>::as_ref(&path));
-            path.persist(&target)
-                .map_err(|error| error.error)
-                .with_context(|| format!("cannot write {}", target.display()))?;
+        match self {
+            Self::File(file) => {
+                let target = file.target();
+                finished(file).with_context(|| format!("cannot write {}", target.display()))
+            }
+            _ => Ok(()),
         }
-        Ok(())
     }
 }
 
@@ -165,7 +167,7 @@ impl Write for Output {
                 other => other,
             },
             Self::Device(device, _) => device.write(bytes),
-            Self::File { temporary, .. } => temporary.write(bytes),
+            Self::File(file) => file.write(bytes),
         }
     }
 
@@ -179,7 +181,7 @@ impl Write for Output {
                 other => other,
             },
             Self::Device(device, _) => device.write_vectored(parts),
-            Self::File { temporary, .. } => temporary.write_vectored(parts),
+            Self::File(file) => file.write_vectored(parts),
         }
     }
 
@@ -188,7 +190,7 @@ impl Write for Output {
             Self::Nowhere => Ok(()),
             Self::Stdout => console::unless_closed(io::stdout().flush()),
             Self::Device(device, _) => device.flush(),
-            Self::File { temporary, .. } => temporary.flush(),
+            Self::File(file) => file.flush(),
         }
     }
 }
@@ -201,30 +203,53 @@ pub(super) fn write(name: &Path, inputs: &[Identity], bytes: &[u8]) -> Result<()
     Output::create(name, inputs)?.finish_with(bytes)
 }
 
-/// A temporary file in a folder, which an interrupt removes.
-fn temporary(folder: &Path, mode: Option<u32>) -> Result<NamedTempFile> {
+/// Writes a whole file by rename, below a folder for results: folders on the way are made, and no link is followed.
+///
+/// # Errors
+/// When it can't be written; the old file, if there is one, is unharmed.
+pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
+    let write = || {
+        let mut file = begun(|| place.replacement())?;
+        file.write_all(bytes)?;
+        finished(file)
+    };
+    write().with_context(|| format!("cannot write {}", place.path().display()))
+}
+
+/// As [`write_at`], for what a reader yields.
+///
+/// # Errors
+/// As for [`write_at`], and when it can't be read.
+pub(super) fn copy_at(place: &Place, from: &mut impl io::Read) -> io::Result<()> {
+    let mut file = begun(|| place.replacement())?;
+    io::copy(from, &mut file)?;
+    finished(file)
+}
+
+/// Begins a file, which an interrupt removes.
+fn begun(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
     clean_up_when_interrupted();
+    still_at_work();
     let mut pending = pending();
-    let temporary = tempfile::Builder::new()
-        .prefix(".fosssim-oracle-")
-        .permissions(Permissions::from_mode(mode.unwrap_or(0o666)))
-        .tempfile_in(folder)
-        // The error itself would name the temporary file, which nobody has asked for.
-        .map_err(|error| io::Error::from(error.kind()))
-        .with_context(|| format!("no file can be made in {}", folder.display()))?;
-    pending.push(temporary.path().to_owned());
-    drop(pending);
-    if let Some(mode) = mode {
-        // The mode of a new file loses what the umask forbids; that of a replaced one must stay as it was.
-        temporary.as_file().set_permissions(Permissions::from_mode(mode))?;
-    }
-    Ok(temporary)
+    let file = begin()?;
+    pending.push(file.unfinished());
+    Ok(file)
+}
+
+/// Lets a file appear under its name.
+fn finished(file: Replacement) -> io::Result<()> {
+    let mut pending = pending();
+    let path = file.unfinished();
+    let finished = file.finish();
+    pending.retain(|waiting| *waiting != path);
+    still_at_work();
+    finished
 }
 
 /// A folder that many files of our own names are written into, each by rename. What has such a name already is
 /// replaced, and links are not followed: whoever prepares a folder can't make us write elsewhere.
 #[derive(Debug)]
-pub(super) struct Folder(PathBuf);
+pub(super) struct Folder(files::Folder);
 
 impl Folder {
     /// An existing folder, or a new one.
@@ -240,22 +265,23 @@ impl Folder {
             }
             Err(error) => return Err(error).with_context(|| format!("cannot make the folder {}", name.display())),
         }
-        Ok(Self(name.to_owned()))
+        let opened = files::Folder::to_write(name).with_context(|| format!("cannot open {}", name.display()))?;
+        Ok(Self(opened))
     }
 
     /// An existing folder.
     pub(super) fn existing(name: &Path) -> Option<Self> {
-        name.is_dir().then(|| Self(name.to_owned()))
+        files::Folder::to_write(name).ok().map(Self)
     }
 
     /// Its name as typed, fit for printing.
     pub(super) fn name(&self) -> String {
-        self.0.display().to_string()
+        self.0.shown().display().to_string()
     }
 
     /// Whether there is a file of this name.
     pub(super) fn holds(&self, name: &str) -> bool {
-        self.0.join(name).symlink_metadata().is_ok()
+        self.0.holds(OsStr::new(name))
     }
 
     /// Writes a whole file by rename.
@@ -263,10 +289,12 @@ impl Folder {
     /// # Errors
     /// When it can't be written.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        let target = self.0.join(name);
-        let mut output = Output::File { temporary: temporary(&self.0, None)?, target };
-        output.write_all(bytes).with_context(|| format!("cannot write {}", self.0.join(name).display()))?;
-        output.finish()
+        let write = || {
+            let mut file = begun(|| self.0.replacement(OsStr::new(name), None))?;
+            file.write_all(bytes)?;
+            finished(file)
+        };
+        write().with_context(|| format!("cannot write {}", self.0.shown().join(name).display()))
     }
 }
 

@@ -7,7 +7,7 @@ const CRATES: [(&str, &[&str]); 16] = [
     ("num", &[]),
     ("textdiff", &[]),
     ("files", &[]),
-    ("sandbox", &[]),
+    ("sandbox", &["files"]),
     ("testing", &[]),
     ("model", &["num"]),
     ("judge", &["num", "model"]),
@@ -15,7 +15,7 @@ const CRATES: [(&str, &[&str]); 16] = [
     ("mistakes", &["num", "model", "judge"]),
     ("render", &["num", "model", "judge"]),
     ("evidence", &["model", "judge", "mistakes"]),
-    ("grading", &["num", "textdiff", "testing", "sandbox", "model", "judge", "mistakes", "evidence"]),
+    ("grading", &["num", "textdiff", "files", "testing", "sandbox", "model", "judge", "mistakes", "evidence"]),
     ("report", &["num", "testing", "model", "judge", "mistakes", "render", "evidence", "grading"]),
     (
         "oracle",

@@ -1,8 +1,22 @@
-//! Opens files and pipes without waiting for an end that never comes.
+//! The one way to files.
 //!
-//! A named pipe blocks whoever opens it until somebody opens its other end. Nothing here waits for that: a pipe without
-//! a reader is an error at once, one without a writer after a few seconds.
+//! - **Nothing waits.** A named pipe blocks whoever opens it until somebody opens its other end. Here a pipe without a
+//!   reader is an error at once, one without a writer after a few seconds, and where a file is expected, at once.
+//! - **Nothing is read without a limit.** A device, a file that grows or one full of holes ends at the limit.
+//! - **No link is followed beneath a [`Folder`]**, neither to read nor to write: whoever fills a folder, or fills it
+//!   meanwhile, leads nobody elsewhere.
+//! - **What is written appears whole** ([`Replacement`]), in place of whatever has the name.
 #![forbid(unsafe_code)]
+
+mod error;
+mod folder;
+mod place;
+mod replacement;
+
+pub use error::FileError;
+pub use folder::{Folder, FolderEntry, open_file};
+pub use place::Place;
+pub use replacement::{Replacement, UNFINISHED};
 
 use std::{
     fs::{File, Metadata, OpenOptions},
@@ -14,10 +28,14 @@ use std::{
 };
 
 /// What tells one file from every other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Identity(u64, u64);
 
 impl Identity {
+    const fn new(device: u64, inode: u64) -> Self {
+        Self(device, inode)
+    }
+
     /// The identity of an open or existing file.
     #[must_use]
     pub fn of(metadata: &Metadata) -> Self {
@@ -30,7 +48,11 @@ impl Identity {
 /// # Errors
 /// When it can't be opened.
 pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
-    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name)?;
+    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name);
+    let file = file.map_err(|error| match error.raw_os_error() {
+        Some(libc::ENXIO) => io::Error::other("it is a socket, or a device that is not there; name a file"),
+        _ => error,
+    })?;
     let metadata = file.metadata()?;
     Ok((file, metadata))
 }
@@ -50,17 +72,37 @@ pub fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> 
     Ok(first)
 }
 
-/// Reads an open file, which may have so many bytes at most: those of a scene.
+/// Reads a whole file that somebody names, of so many bytes at most; a pipe is read, too, and links are followed.
+///
+/// # Errors
+/// When it can't be read, is a folder, or is larger.
+pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    let (file, metadata) = open_for_reading(name)?;
+    if metadata.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    read_limited(file, &metadata, limit)
+}
+
+/// As [`read`], for text.
+///
+/// # Errors
+/// As for [`read`]; also where the bytes are no UTF-8.
+pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
+    String::from_utf8(read(name, limit)?)
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, format!("it is no text: {}", error.utf8_error())))
+}
+
+/// Reads an open file, which may have so many bytes at most.
 ///
 /// # Errors
 /// When it can't be read, or is larger.
-pub fn read_limited(file: File, metadata: &Metadata, limit: usize) -> io::Result<Vec<u8>> {
-    let limit = limit as u64;
+pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<Vec<u8>> {
     // One byte more than it should have shows whether it ends there.
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit)).unwrap_or_default() + 1);
     patient(file, metadata)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        let text = format!("it is larger than {limit} bytes, which no scene is");
+        let text = format!("it is larger than {limit} bytes, which is the limit of such a file");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
     }
     Ok(bytes)

@@ -2,12 +2,9 @@
 //! under the digest of what they say, so that the journal's result names them and the trace itself need not be kept.
 use super::{config::Hints, result::SceneResult, task::SceneTask};
 use fosssim_evidence::StepRuling;
+use fosssim_files::Place;
 use fosssim_judge::{Outcome, Rules};
-use std::{
-    fs,
-    io::{self, Write},
-    path::{Path, PathBuf},
-};
+use std::io;
 
 /// Deflating harder gains little: most of a card is packed already.
 const LEVEL: i32 = 3;
@@ -43,7 +40,7 @@ pub type Draw<'a> = dyn Fn(&Judged<'_>) -> Option<String> + Sync + 'a;
 #[derive(Clone, Copy)]
 pub struct Cards<'a> {
     /// The folder; made when it is needed.
-    pub folder: &'a Path,
+    pub folder: &'a Place,
     /// Draws.
     pub draw: &'a Draw<'a>,
 }
@@ -57,12 +54,9 @@ impl Cards<'_> {
         let Some(card) = (self.draw)(judged) else { return Ok(None) };
         let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
         let path = file(self.folder, &name);
-        if !path.exists() {
-            fs::create_dir_all(self.folder)?;
+        if !path.is_file() {
             // By rename: another job may draw the same card now.
-            let mut part = tempfile::Builder::new().prefix(".card-").tempfile_in(self.folder)?;
-            part.write_all(&zstd::encode_all(card.as_bytes(), LEVEL)?)?;
-            part.persist(&path).map_err(|error| error.error)?;
+            path.write(&zstd::encode_all(card.as_bytes(), LEVEL)?)?;
         }
         Ok(Some(name))
     }
@@ -75,16 +69,16 @@ impl Cards<'_> {
 
 /// Reads a card that has been kept in a folder.
 #[must_use]
-pub fn read(folder: &Path, name: &str) -> Option<String> {
+pub fn read(folder: &Place, name: &str) -> Option<String> {
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let packed = is_name.then(|| fs::File::open(file(folder, name)).ok()).flatten()?;
+    let (packed, _) = is_name.then(|| file(folder, name).file(LARGEST).ok()).flatten()?;
     let mut text = String::new();
     io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, LARGEST), &mut text).ok()?;
     // Whoever changed it meanwhile changes nobody's report.
     (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
 }
 
-fn file(folder: &Path, name: &str) -> PathBuf {
+fn file(folder: &Place, name: &str) -> Place {
     folder.join(format!("{name}.zst"))
 }
 
@@ -113,24 +107,24 @@ mod tests {
             hints: Hints::Full,
         };
         let folder = tempfile::tempdir().expect("a folder");
-        let cards = folder.path().join("cards");
+        let cards = Place::new(folder.path(), "cards");
         let keep = |text: &'static str| {
             let draw = move |_: &Judged<'_>| (!text.is_empty()).then(|| text.to_owned());
             Cards { folder: &cards, draw: &draw }.keep(&judged).expect("written")
         };
         assert_eq!(keep(""), None);
-        assert!(!cards.exists(), "no folder for nothing");
+        assert!(!cards.path().exists(), "no folder for nothing");
         let (one, again, other) = (keep("one").expect("a card"), keep("one"), keep("other").expect("a card"));
         assert_eq!((again.as_ref(), one == other), (Some(&one), false));
-        assert_eq!(fs::read_dir(&cards).expect("a folder").count(), 2);
+        assert_eq!(cards.names().expect("a folder").len(), 2);
         assert_eq!((read(&cards, &one).as_deref(), read(&cards, &other).as_deref()), (Some("one"), Some("other")));
         let lacks = |card: &str| {
             let result = SceneResult { card: Some(card.to_owned()), ..result.clone() };
             Cards { folder: &cards, draw: &|_| None }.lack(&result)
         };
         assert!(!lacks(&one));
-        fs::write(file(&cards, &one), zstd::encode_all(&b"another"[..], 1).expect("packed")).expect("written");
-        fs::remove_file(file(&cards, &other)).expect("removed");
+        file(&cards, &one).write(&zstd::encode_all(&b"another"[..], 1).expect("packed")).expect("written");
+        file(&cards, &other).remove().expect("removed");
         assert_eq!((read(&cards, &one), read(&cards, &other), read(&cards, "../x")), (None, None, None));
         assert!(lacks(&other));
     }

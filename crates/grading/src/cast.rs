@@ -6,6 +6,7 @@ use super::{
     grader::{Grader, Options, Submission},
     plan::{self, Plan},
 };
+use fosssim_files::Place;
 use fosssim_model::{
     scene::Scene,
     sim::{Observer, RootSearch, Simulation, Zone},
@@ -124,6 +125,7 @@ fn act(job: &Job) -> FakeRun {
 pub(super) struct Stage {
     pub(super) folder: tempfile::TempDir,
     backend: Backend,
+    faults: Place,
     pub(super) starts: Arc<Mutex<Vec<String>>>,
 }
 
@@ -138,7 +140,8 @@ impl Stage {
             seen.lock().expect("lock").push(begun);
             act(job)
         });
-        Self { folder: tempfile::tempdir().expect("folder"), backend, starts }
+        let folder = tempfile::tempdir().expect("folder");
+        Self { faults: Place::new(folder.path(), ""), folder, backend, starts }
     }
 
     pub(super) fn submissions(&self, names: &[&str]) -> Vec<Submission> {
@@ -154,7 +157,7 @@ impl Stage {
 
     pub(super) fn grader<'a>(&'a self, plan: &'a Plan) -> Grader<'a> {
         let options = Options { jobs: 2, fail_fast: false, recorded: false };
-        let faults = self.folder.path();
+        let faults = &self.faults;
         Grader { plan, backend: &self.backend, options, faults, traces: None, cards: None, rehearse: &|_| {} }
     }
 

@@ -253,6 +253,9 @@ impl Checker<'_> {
     }
 }
 
+/// A group may have so many points.
+pub const MOST_POINTS: Range<f64> = 0.0..1e6;
+
 const MIB: f64 = 1024.0 * 1024.0;
 
 /// Reads and validates a suite.
@@ -410,7 +413,7 @@ fn read_group(checker: &mut Checker<'_>, raw: RawGroup) -> Group {
     if let Some(none) = raw.scenes.as_ref().filter(|scenes| scenes.get_ref().is_empty()) {
         checker.problem(none.span(), format!("group \"{name}\" has no scenes"));
     }
-    let points = checker.number("points", raw.points.as_ref(), 1.0, 0.0..1e6);
+    let points = checker.number("points", raw.points.as_ref(), 1.0, MOST_POINTS);
     let scenes = raw.scenes.map(Spanned::into_inner).unwrap_or_default();
     let positions = scenes.iter().map(|pattern| Position::of(checker.text, pattern.span().start)).collect();
     Group {

@@ -13,6 +13,7 @@ use super::{
     verdict::Verdict,
 };
 use fosssim_evidence::StepRulings;
+use fosssim_files::Place;
 use fosssim_judge::{
     Outcome, Rules,
     kept::Keeper,
@@ -23,7 +24,7 @@ use fosssim_mistakes::diagnose;
 use fosssim_sandbox::{self as sandbox, Backend, Identity, Job, Limits, Policy, Running, SandboxError};
 use std::{
     io::{self, Read},
-    path::{Path, PathBuf},
+    path::Path,
     sync::atomic::{AtomicU64, Ordering},
     time::Instant,
 };
@@ -59,9 +60,9 @@ pub struct Runner<'a> {
     /// Stops everything from outside.
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader itself failed; made when it is needed.
-    pub faults: &'a Path,
+    pub faults: &'a Place,
     /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
-    pub traces: Option<&'a (dyn Fn(&SceneTask) -> PathBuf + Sync)>,
+    pub traces: Option<&'a (dyn Fn(&SceneTask) -> Place + Sync)>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
     /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of
@@ -185,7 +186,7 @@ impl Runner<'_> {
         if let Some(path) = self.traces.map(|path| path(task))
             && !result.verdict.is_accepted()
         {
-            fault::write(&path, &beginning()).map_err(ExecuteError::Folder)?;
+            path.write(&beginning()).map_err(ExecuteError::Folder)?;
         }
         match guarded(|| (self.rehearse)(&result)) {
             Ok(()) => Ok(result),

@@ -6,35 +6,30 @@ use super::{
     task::SceneTask,
     verdict::Verdict,
 };
+use fosssim_files::Place;
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
 };
 
 /// The result of a scene on which the grader failed, with the beginning of its trace.
-pub(super) fn result(task: &SceneTask, folder: &Path, stage: Activity, fault: &Fault, trace: &[u8]) -> SceneResult {
+pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &Fault, trace: &[u8]) -> SceneResult {
     let kept = match keep(folder, task, trace) {
         Ok(path) => KeptTrace::In(path),
-        Err(error) => KeptTrace::Lost { folder: folder.to_owned(), error: error.to_string() },
+        Err(error) => KeptTrace::Lost { folder: folder.path(), error: error.to_string() },
     };
     let failure = Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) };
     SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, Reason::Failed(failure))
 }
 
 /// Writes a trace into the folder under the name of its scene and its own digest.
-fn keep(folder: &Path, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
+fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     let scene: String =
         task.name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
     let digest = blake3::hash(trace).to_hex();
     let path = folder.join(format!("{}-{}.bin", scene.trim_start_matches('.'), &digest[..8]));
-    write(&path, trace)?;
-    Ok(path)
-}
-
-/// Writes a trace, with the folders above it.
-pub(super) fn write(path: &Path, trace: &[u8]) -> io::Result<()> {
-    path.parent().map_or(Ok(()), fs::create_dir_all)?;
-    fs::write(path, trace)
+    path.write(trace)?;
+    Ok(path.path())
 }
 
 /// Lets tests have the grader fail: a program of this name makes it panic at this stage.

@@ -78,6 +78,18 @@ impl Grade {
             .then(|| build.map_or(Unfit::Scene(&first.result), |build| Unfit::Build(&build.end)))
     }
 
+    /// Whether two grades are of one suite: of the same scenes, in the same groups, for the same points.
+    #[must_use]
+    pub fn is_of_the_suite_of(&self, other: &Self) -> bool {
+        let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
+            (&own.name, own.visibility, own.max_points) == (&other.name, other.visibility, other.max_points)
+                && own.scenes.iter().map(|scene| &scene.scene).eq(other.scenes.iter().map(|scene| &scene.scene))
+        };
+        (&self.suite, self.rules, self.shows_output) == (&other.suite, other.rules, other.shows_output)
+            && self.groups.len() == other.groups.len()
+            && self.groups.iter().zip(&other.groups).all(alike)
+    }
+
     /// How many of the results were taken from an earlier run.
     #[must_use]
     pub fn taken_over(&self) -> usize {

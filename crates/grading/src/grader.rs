@@ -20,6 +20,7 @@ use super::{
     temporary::Folders,
     verdict::Verdict,
 };
+use fosssim_files::Place;
 use fosssim_judge::Rules;
 use fosssim_sandbox::Backend;
 use std::{
@@ -60,7 +61,7 @@ pub struct Options {
 }
 
 /// Where to put the trace of a submission's scene.
-pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> PathBuf + Sync + 'a;
+pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> Place + Sync + 'a;
 
 /// Everything that the submissions of one grading have in common.
 #[derive(Clone, Copy)]
@@ -72,7 +73,7 @@ pub struct Grader<'a> {
     /// How.
     pub options: Options,
     /// The folder for traces on which the grader itself failed; made when it is needed.
-    pub faults: &'a Path,
+    pub faults: &'a Place,
     /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
     pub traces: Option<&'a TraceFile<'a>>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
@@ -141,13 +142,13 @@ impl<'a> Shared<'a> {
     }
 
     /// An earlier result. Where traces or cards are wanted, one without them does not count.
-    fn find(&self, key: &Key, trace: Option<&Path>, cards: Option<Cards<'_>>) -> Option<Done> {
+    fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>) -> Option<Done> {
         let results = self.results?;
         if lock(&self.kept).contains(key) {
             return None;
         }
         let result = results.find(key)?;
-        let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.exists());
+        let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
         let lacks_card = cards.is_some_and(|cards| cards.lack(&result));
         (!lacks_trace && !lacks_card).then_some(Done { result, cached: true, key: None })
     }
@@ -255,7 +256,7 @@ impl<'a> Grading<'a> {
         tell(Progress::Begins);
         let (grader, shared, submission) = (self.grader, self.shared, self.submission);
         let trace = grader.traces.map(|path| path(submission, scene));
-        let trace = trace.as_deref();
+        let trace = trace.as_ref();
         let found = self
             .digest()
             .and_then(|digest| shared.find(&shared.key(&digest, scene, &submission.called()), trace, grader.cards));
@@ -288,7 +289,7 @@ impl<'a> Grading<'a> {
         &self,
         staged: &Staged,
         scene: &SceneTask,
-        trace: Option<&Path>,
+        trace: Option<&Place>,
         tell: &mut dyn FnMut(Progress),
     ) -> SceneResult {
         let grader = self.grader;
@@ -300,8 +301,8 @@ impl<'a> Grading<'a> {
                 tell(Progress::Step(step));
             }
         };
-        let to = |_: &SceneTask| trace.map(Path::to_owned).unwrap_or_default();
-        let traces: Option<&(dyn Fn(&SceneTask) -> PathBuf + Sync)> = if trace.is_some() { Some(&to) } else { None };
+        let to = trace.map(|trace| move |_: &SceneTask| trace.clone());
+        let traces = to.as_ref().map(|to| to as &(dyn Fn(&SceneTask) -> Place + Sync));
         let runner = Runner {
             backend: grader.backend,
             run: &grader.plan.run,

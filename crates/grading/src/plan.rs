@@ -5,9 +5,18 @@ use super::{
     library,
     task::SceneTask,
 };
+use fosssim_files::{open_file, read_limited, read_text};
 use fosssim_judge::Rules;
 use fosssim_model::scene;
-use std::{collections::BTreeMap, fs, io, path::Path};
+use std::{collections::BTreeMap, io, path::Path};
+
+/// A suite of more bytes is none.
+pub const LARGEST_SUITE: u64 = 1 << 20;
+
+/// A suite may have so many scenes, of so many bytes together.
+pub const MOST_SCENES: usize = 10_000;
+/// See [`MOST_SCENES`].
+pub const MOST_SCENE_BYTES: u64 = 256 << 20;
 
 /// A suite ready to run.
 #[derive(Debug, Clone)]
@@ -106,6 +115,15 @@ pub enum FindError {
         #[source]
         why: io::Error,
     },
+    /// There is one, but it can't be read.
+    #[error("cannot read the suite {name}")]
+    Unreadable {
+        /// The file.
+        name: String,
+        /// Why.
+        #[source]
+        why: io::Error,
+    },
     /// There is one, but it is not sound; each problem is a line.
     #[error("the suite has {}{}", counted(.error.problems.len()), lines(name, .error))]
     Unsound {
@@ -134,7 +152,11 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
     let loaded = match built_in(name) {
         Some(text) => load(text, Path::new(".")),
         None => {
-            let text = fs::read_to_string(path).map_err(|why| FindError::Unknown { name: name.to_owned(), why })?;
+            let name = name.to_owned();
+            let text = read_text(path, LARGEST_SUITE).map_err(|why| match why.kind() {
+                io::ErrorKind::NotFound => FindError::Unknown { name, why },
+                _ => FindError::Unreadable { name, why },
+            })?;
             load(&text, beside)
         }
     };
@@ -149,12 +171,13 @@ pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
     let mut problems = Vec::new();
     let mut seen = BTreeMap::new();
     let mut groups = Vec::new();
+    let mut room = Room { scenes: MOST_SCENES, bytes: MOST_SCENE_BYTES };
     for group in &suite.groups {
         let mut scenes = Vec::new();
         for (pattern, &position) in group.scenes.iter().zip(&group.positions) {
             let found = match pattern.strip_prefix("asset:") {
                 Some(pattern) => embedded(pattern),
-                None => files(pattern, folder),
+                None => files(pattern, folder, &mut room),
             };
             match found {
                 Ok(found) => {
@@ -227,7 +250,13 @@ fn embedded(pattern: &str) -> Result<Found, String> {
     Ok(found)
 }
 
-fn files(pattern: &str, folder: &Path) -> Result<Found, String> {
+/// What a suite's files may still take.
+struct Room {
+    scenes: usize,
+    bytes: u64,
+}
+
+fn files(pattern: &str, folder: &Path, room: &mut Room) -> Result<Found, String> {
     let path = folder.join(pattern);
     let text = path.to_str().ok_or_else(|| format!("{}: the folder's name is not UTF-8", folder.display()))?;
     let paths = glob::glob(text).map_err(|error| format!("pattern {pattern}: {error}"))?;
@@ -236,18 +265,30 @@ fn files(pattern: &str, folder: &Path) -> Result<Found, String> {
         let path = path.map_err(|error| format!("{}: {}", error.path().display(), error.error()))?;
         let relative = path.strip_prefix(folder).unwrap_or(&path);
         let name = relative.with_extension("").to_string_lossy().into_owned();
-        let size = std::fs::metadata(&path).map(|data| data.len());
-        let size = size.map_err(|error| format!("{}: {error}", path.display()))?;
-        if size > scene::LARGEST_SCENE as u64 {
-            return Err(format!("{} is too large for a scene ({size} bytes)", path.display()));
-        }
-        let xml = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let xml = scene_file(&path)?;
+        room.scenes = room.scenes.checked_sub(1).ok_or_else(|| {
+            format!("pattern {pattern} takes the suite beyond {MOST_SCENES} scenes, which is the limit")
+        })?;
+        room.bytes = room.bytes.checked_sub(xml.len() as u64).ok_or_else(|| {
+            format!("pattern {pattern} takes the suite's scenes beyond {MOST_SCENE_BYTES} bytes, which is the limit")
+        })?;
         found.push((name, xml));
     }
     if found.is_empty() {
         return Err(format!("no scene file matches {pattern} (files are looked up beside the suite)"));
     }
     Ok(found)
+}
+
+/// The bytes of a scene: of a regular file, which nobody has to wait for.
+fn scene_file(path: &Path) -> Result<Vec<u8>, String> {
+    const LARGEST: u64 = scene::LARGEST_SCENE as u64;
+    let (file, size) = open_file(path, true).map_err(|error| error.to_string())?;
+    if size > LARGEST {
+        return Err(format!("{} is too large for a scene ({size} bytes, the limit is {LARGEST})", path.display()));
+    }
+    let read = file.metadata().and_then(|metadata| read_limited(file, &metadata, LARGEST));
+    read.map_err(|error| format!("{}: {error}", path.display()))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! From the results of a submission's scenes to its grade: verdicts, points, and what several scenes say together.
 use super::{
-    config::{Credit, Marking, Visibility},
+    config::{Credit, MOST_POINTS, Marking, Visibility},
     grade::{Grade, GroupGrade, SceneGrade},
     grader::{Grading, lock},
     located::{Contents, Failing, Located, Tried, locate},
@@ -20,8 +20,7 @@ use fosssim_sandbox::Ended;
 /// accepted. Scenes on which the grader failed, or which it did not come to run, have no points, nor has their group.
 #[must_use]
 pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
-    #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-    let each = if results.is_empty() { 0.0 } else { marking.points / results.len() as f64 };
+    let each = worth(marking.points, results.len());
     let all_accepted = results.iter().all(|(result, _)| result.verdict.is_accepted());
     let scenes: Vec<SceneGrade> = results
         .into_iter()
@@ -31,11 +30,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
             SceneGrade { result, points, max_points: each, cached, settled, agreed: 0 }
         })
         .collect();
-    // The full score is exact: sums of rounded shares would make 99.99999 of 100.
-    let points = match all_accepted && !scenes.is_empty() {
-        true => Some(marking.points),
-        false => scenes.iter().map(|scene| scene.points).sum(),
-    };
+    let points = sum(marking.points, all_accepted, &scenes);
     GroupGrade {
         name: name.to_owned(),
         visibility: marking.visibility,
@@ -43,6 +38,20 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         max_points: marking.points,
         verdict: scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun),
         scenes,
+    }
+}
+
+/// What one of so many scenes of a group is worth.
+#[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
+fn worth(points: f64, scenes: usize) -> f64 {
+    if scenes == 0 { 0.0 } else { points / scenes as f64 }
+}
+
+/// The points of a group. The full score is exact: sums of rounded shares would make 99.99999 of 100.
+fn sum(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
+    match all_accepted && !scenes.is_empty() {
+        true => Some(points),
+        false => scenes.iter().map(|scene| scene.points).sum(),
     }
 }
 
@@ -59,6 +68,37 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
         }
         _ => 0.0,
     })
+}
+
+/// What a grade says that its own verdicts deny: points, or a verdict, that do not follow from those of its scenes. A
+/// grade that comes from elsewhere is asked before its points are believed.
+#[must_use]
+pub fn contradiction(grade: &Grade) -> Option<&'static str> {
+    let max_points: f64 = grade.groups.iter().map(|group| group.max_points).sum();
+    let points: Option<f64> = grade.groups.iter().map(|group| group.points).sum();
+    let verdict = grade.groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun);
+    if !grade.groups.iter().all(|group| MOST_POINTS.contains(&group.max_points)) || grade.max_points != max_points {
+        Some("the points that can be reached are none that a suite gives")
+    } else if grade.points != points || !grade.groups.iter().all(follows) {
+        Some("the points do not follow from the verdicts")
+    } else if grade.verdict != verdict {
+        Some("the verdict is not the worst of the scenes' verdicts")
+    } else {
+        None
+    }
+}
+
+/// Whether a group's points and verdict are what some credit makes of its scenes' verdicts.
+fn follows(group: &GroupGrade) -> bool {
+    let all_accepted = group.scenes.iter().all(|scene| scene.verdict.is_accepted());
+    let each = worth(group.max_points, group.scenes.len());
+    let has_its_share = |credit, scene: &SceneGrade| {
+        scene.max_points == each && scene.points == share(credit, &scene.result, all_accepted).map(|share| each * share)
+    };
+    let credits = [Credit::Scenes, Credit::Steps, Credit::All];
+    credits.into_iter().any(|credit| group.scenes.iter().all(|scene| has_its_share(credit, scene)))
+        && group.points == sum(group.max_points, all_accepted, &group.scenes)
+        && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
 /// So many accepted scenes are asked whether they speak against a likely mistake.

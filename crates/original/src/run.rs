@@ -93,7 +93,7 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Option<Identity>), Refu
     let bytes = if metadata.is_dir() {
         Vec::new()
     } else {
-        read_limited(file, &metadata, LARGEST_SCENE).map_err(|error| Refusal {
+        read_limited(file, &metadata, LARGEST_SCENE as u64).map_err(|error| Refusal {
             kind: RefusalKind::Undefined,
             stderr: format!("cannot read the scene {}: {error}\n", name.display()).into_bytes(),
             exit_code: FAILED,

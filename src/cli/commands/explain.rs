@@ -1,6 +1,6 @@
 //! `explain`: what is likely wrong with the program that left a trace, or with a program at hand.
 use super::{
-    grade::{backend, cancelled_by_signals},
+    grade::backend,
     pages::{self, Source},
 };
 use crate::{
@@ -8,10 +8,12 @@ use crate::{
     cli::{
         arguments::{Explain, ExplainFormat},
         console, exit, input,
+        interrupt::cancelled_by_signals,
         output::Output,
     },
     diagnose::{self, Explanation, Keep, examine},
     evidence::StepRulings,
+    files::Place,
     judge::{Rules, fair::FairVerdict, replay::Options},
     report::{
         check::stopped,
@@ -153,6 +155,7 @@ fn program_on_probes(
     let plan = plan::find(Assignment::DEFAULT.key())?;
     let folders = Folders::default();
     let short = RunLimits { cpu: plan.limits.cpu.min(LEAST), wall: plan.limits.wall.min(LEAST), ..plan.limits };
+    let nowhere = Place::new("", "");
     let runner = |limits| Runner {
         folders: &folders,
         backend: &backend,
@@ -162,7 +165,7 @@ fn program_on_probes(
         hints: Hints::Full,
         recorded: false,
         cancellation: &cancellation,
-        faults: Path::new(""),
+        faults: &nowhere,
         traces: None,
         cards: None,
         rehearse: &|_| {},

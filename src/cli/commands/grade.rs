@@ -11,7 +11,14 @@ use super::{
     traces,
 };
 use crate::{
-    cli::{console, exit, grading::Grade as Arguments, output, screen, selection::Selection},
+    cli::{
+        console, exit,
+        grading::Grade as Arguments,
+        interrupt::{cancelled_by_signals, still_at_work},
+        output,
+        selection::Selection,
+    },
+    files::{Folder, Place},
     judge::Rules,
     report::{
         explain,
@@ -34,8 +41,7 @@ use std::{
     fs,
     num::NonZeroUsize,
     path::{Path, PathBuf},
-    sync::{Arc, OnceLock},
-    time::{Duration, Instant, SystemTime},
+    time::{Duration, SystemTime},
 };
 
 /// Where results go when several submissions are graded and no folder is named.
@@ -60,6 +66,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         return traces::run(arguments, plan, &reports);
     }
     let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUTPUT));
+    if arguments.output.is_none() && output.is_symlink() {
+        bail!("{} is a link, which is not followed unless you name it: --output {0}", output.display());
+    }
     let mut submissions = Search::new(arguments, plan.build.as_ref(), &output).run()?;
     let sharding = arguments.shard.map(|shard| Sharding::new(shard, &plan, arguments, &submissions, &output));
     let output = sharding.as_ref().map_or(output, |sharding| sharding.folder.clone());
@@ -126,33 +135,6 @@ pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     )
 }
 
-/// A cancellation that SIGINT and SIGTERM set off; a second signal ends the program at once.
-pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
-    static SHARED: OnceLock<Arc<Cancellation>> = OnceLock::new();
-    SHARED
-        .get_or_init(|| {
-            let cancellation = Arc::new(Cancellation::default());
-            let signalled = cancellation.clone();
-            let mut first = None;
-            // Without a handler a signal ends the program, and the sandbox ends with it.
-            drop(ctrlc::set_handler(move || {
-                // `timeout` and a terminal may send one stop twice.
-                let first = *first.get_or_insert_with(Instant::now);
-                if signalled.is_cancelled() {
-                    if first.elapsed() > Duration::from_secs(1) {
-                        screen::clear_bars();
-                        std::process::exit(exit::INTERRUPTED.into());
-                    }
-                    return;
-                }
-                signalled.cancel();
-                console::complain(b"\nstopping (once more to stop at once)\n");
-            }));
-            cancellation
-        })
-        .clone()
-}
-
 /// Everything that stays the same between two gradings of `--watch`.
 struct Session<'a> {
     arguments: &'a Arguments,
@@ -209,9 +191,9 @@ impl Session<'_> {
     }
 
     /// Where the trace of a scene goes that is not accepted, when traces are kept.
-    fn trace(&self, submission: &str, scene: &str) -> Option<PathBuf> {
+    fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
-        Some(folder.join("traces").join(file_name(submission)).join(format!("{}.bin", file_name(scene))))
+        Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_name(scene))))
     }
 
     /// Draws what a page shows of a trace.
@@ -223,7 +205,7 @@ impl Session<'_> {
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let kept = match &self.folder {
             Some(folder) => {
-                fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+                Folder::make(folder).with_context(|| format!("cannot make {}", folder.display()))?;
                 Some(FolderResults::open(folder, fresh)?)
             }
             None => None,
@@ -234,9 +216,10 @@ impl Session<'_> {
             fail_fast: self.arguments.fail_fast,
             recorded: self.arguments.recorded,
         };
-        let faults = self.folder.as_deref().map_or_else(|| PathBuf::from(FAULTS), |folder| folder.join("faults"));
-        let trace =
-            |submission: &Submission, scene: &SceneTask| self.trace(&submission.name, &scene.name).unwrap_or_default();
+        let faults = self.folder.as_deref().map_or_else(|| Place::new("", FAULTS), |folder| Place::new(folder, "faults"));
+        let trace = |submission: &Submission, scene: &SceneTask| {
+            self.trace(&submission.name, &scene.name).unwrap_or_else(|| faults.clone())
+        };
         if let (Some(pages), true) = (&self.pages, fresh) {
             pages.forget();
         }
@@ -253,6 +236,7 @@ impl Session<'_> {
         let mut display = Display::new(self.plan, submissions);
         let mut log_error = None;
         let mut on_event = |event: batch::Event<'_>| {
+            still_at_work();
             display.event(&event);
             if let (Some(folder), batch::Event::Graded { grade, .. }) = (&self.folder, &event)
                 && log_error.is_none()
@@ -287,7 +271,7 @@ impl Session<'_> {
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let is_class = grades.len() > 1;
         let shown = shown(self.arguments, is_class);
-        let trace = |submission: &str, scene: &str| self.trace(submission, scene);
+        let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: &_| {
             let plot =
@@ -362,11 +346,10 @@ fn newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
 
 /// A log per run: what the program wrote, made harmless, and the verdict.
 fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
-    let folder = folder.join("logs").join(file_name(&grade.submission));
-    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let folder = Place::new(folder, format!("logs/{}", file_name(&grade.submission)));
     if let Some(build) = &grade.build {
         let text = format!("{}\n\n{}\n", words::build(&build.end), grade::printed(&build.output));
-        output::write(&folder.join("build.log"), &[], text.as_bytes())?;
+        output::write_at(&folder.join("build.log"), text.as_bytes())?;
     }
     for scene in grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun) {
         let details: String = grade::difference(scene)
@@ -382,7 +365,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
             grade::printed(&scene.stdout),
             grade::printed(&scene.stderr),
         );
-        output::write(&folder.join(format!("{}.log", file_name(&scene.scene))), &[], text.as_bytes())?;
+        output::write_at(&folder.join(format!("{}.log", file_name(&scene.scene))), text.as_bytes())?;
     }
     Ok(())
 }

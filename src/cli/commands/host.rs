@@ -1,14 +1,16 @@
 //! `doctor`, `selftest` and `demo`: what this machine can do.
 use super::{
-    grade::{backend, cancelled_by_signals},
+    grade::backend,
     pages::{self, Pages},
 };
 use crate::{
     cli::{
         console, exit,
         grading::{Demo, Selftest},
+        interrupt::cancelled_by_signals,
         output,
     },
+    files::{self, Place},
     pin,
     report::{
         grade::{Format, rehearse},
@@ -32,6 +34,9 @@ use std::{
     os::unix::fs::PermissionsExt,
     path::Path,
 };
+
+/// A sample program of more bytes is none of ours.
+const LARGEST_PROGRAM: u64 = 1 << 30;
 
 /// What the wrong sample of the demo gets wrong, unless told otherwise.
 const DEMO_MISTAKE: &str = "pe-square-no-eh";
@@ -99,7 +104,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             plan: &plan,
             backend: &backend,
             options: Options { jobs, fail_fast: false, recorded: false },
-            faults: Path::new("fosssim-faults"),
+            faults: &Place::new("", "fosssim-faults"),
             traces: None,
             cards: Some(Cards { folder: pages.cards(), draw: &draw }),
             rehearse: &rehearse,
@@ -132,7 +137,7 @@ fn write_flawed(sample: &Path, mistake: &str, program: &Path) -> Result<u8> {
     if let Some(unknown) = mistake.split(',').find(|id| student::find(id).is_none()) {
         bail!("there is no mistake '{unknown}'; fosssim-sample --list lists them");
     }
-    let bytes = fs::read(sample).with_context(|| format!("cannot read {}", sample.display()))?;
+    let bytes = files::read(sample, LARGEST_PROGRAM).with_context(|| format!("cannot read {}", sample.display()))?;
     let flawed = pin::write(&bytes, mistake).with_context(|| {
         format!("{} is another version of the sample than this program's, or none", sample.display())
     })?;

@@ -4,16 +4,19 @@
 //! written is forgotten.
 use crate::{
     cli::output,
+    files::Place,
     suite::{Grade, Submission, Verdict},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fs,
     path::{Path, PathBuf},
 };
 
 /// Its file in an output folder.
 const FILE: &str = "last-run.json";
+
+/// A larger one is not read: 10,000 submissions of 85 scenes write a quarter of it.
+const LARGEST: u64 = 256 << 20;
 
 /// By submission and scene, whether it was accepted.
 type Known = BTreeMap<String, BTreeMap<String, bool>>;
@@ -21,14 +24,14 @@ type Known = BTreeMap<String, BTreeMap<String, bool>>;
 /// What is known of the last run.
 #[derive(Debug, Default)]
 pub(super) struct LastRun {
-    file: Option<PathBuf>,
+    file: Option<Place>,
     known: Known,
 }
 
 impl LastRun {
     /// What is known of these submissions on this suite.
     pub(super) fn open(folder: Option<&Path>, submissions: &[Submission], suite: &str) -> Self {
-        let file = folder.map(|folder| folder.join(FILE)).or_else(|| {
+        let file = folder.map(|folder| Place::new(folder, FILE)).or_else(|| {
             let mut hasher = blake3::Hasher::new();
             for submission in submissions {
                 let path = std::path::absolute(&submission.path).unwrap_or_else(|_| submission.path.clone());
@@ -36,9 +39,9 @@ impl LastRun {
                 hasher.update(submission.name.as_bytes()).update(b"\0");
             }
             let name = hasher.update(suite.as_bytes()).finalize().to_hex();
-            Some(cache()?.join("last-run").join(format!("{}.json", &name[..16])))
+            Some(Place::new(cache()?, format!("last-run/{}.json", &name[..16])))
         });
-        let text = file.as_ref().and_then(|file| fs::read(file).ok()).unwrap_or_default();
+        let text = file.as_ref().and_then(|file| file.read(LARGEST).ok()).unwrap_or_default();
         Self { file, known: serde_json::from_slice(&text).unwrap_or_default() }
     }
 
@@ -66,9 +69,8 @@ impl LastRun {
             }
         }
         let Some(file) = &self.file else { return };
-        let written = file.parent().map_or(Ok(()), fs::create_dir_all).map_err(anyhow::Error::from);
         let text = serde_json::to_vec(&self.known).unwrap_or_default();
-        drop(written.and_then(|()| output::write(file, &[], &text)));
+        drop(output::write_at(file, &text));
     }
 }
 

@@ -7,19 +7,21 @@ use super::{
     shard::Part,
 };
 use crate::{
-    cli::{console, grading::Merge},
+    cli::{console, grading::Merge, input, interrupt::clean_up_when_interrupted, output},
+    files::{FileError, Folder, FolderEntry, Place},
     report::{
         grade::{self, Text, TextDetail},
         number::counted,
     },
     suite::{
         Grade,
-        results::{FolderResults, Results as _, read_line},
+        results::{FolderResults, JOURNAL, LARGEST_JOURNAL, Line, Results as _, each_line, read_line},
     },
 };
 use anyhow::{Context, Result, bail};
 use std::{
-    fs,
+    fs::{self, File},
+    io::{self, BufReader, Read},
     path::{Path, PathBuf},
 };
 
@@ -29,8 +31,12 @@ const FOLDERS: [&str; 4] = ["cards", "logs", "traces", "faults"];
 /// Folders within folders are followed so far.
 const DEEPEST: usize = 4;
 
+/// A larger file is none that a grading leaves.
+const LARGEST_FILE: u64 = 2 << 30;
+
 pub(super) fn run(arguments: &Merge) -> Result<u8> {
     let reports = reports(&arguments.format)?;
+    clean_up_when_interrupted();
     let parts = find(&arguments.folders)?;
     let (first, output) = complete(&parts, arguments)?;
     let names = &first.common.submissions;
@@ -39,12 +45,19 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     {
         bail!("--format {} holds one submission, and there are {}", report.name, names.len());
     }
-    fs::create_dir_all(&output).with_context(|| format!("cannot make {}", output.display()))?;
+    Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
     // Held to the end: nobody else works in this folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in FOLDERS {
-            copy(&folder.join(name), &output.join(name), DEEPEST)?;
+            let place = Place::new(folder, name);
+            match place.folder() {
+                Ok(from) => copy(&from, &Place::new(&output, name), DEEPEST)?,
+                Err(FileError::Missing { .. }) => {}
+                Err(error) => {
+                    return Err(error).with_context(|| format!("cannot read {}", place.path().display()));
+                }
+            }
         }
         keep_results(folder, &kept)?;
     }
@@ -91,6 +104,12 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &Merge) -> Result<(&'a 
             bail!("{} and {} belong to different gradings: {what}", place.display(), other.display());
         }
     }
+    let mut grades = parts.iter().flat_map(|(place, part)| part.grades.iter().map(move |grade| (place, grade)));
+    if let Some((_, one)) = grades.next()
+        && let Some((other, grade)) = grades.find(|(_, grade)| !one.is_of_the_suite_of(grade))
+    {
+        bail!("{} grades {} by another suite than the others: grade this shard again", other.display(), grade.submission);
+    }
     let of = first.common.of;
     let mut missing = Vec::new();
     for number in 1..=of {
@@ -126,37 +145,50 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &Merge) -> Result<(&'a 
 
 /// Keeps a shard's results in the merged folder, so that a grading in one go finds them there.
 fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
-    let file = folder.join("journal.jsonl");
-    let text = match fs::read(&file) {
-        Ok(text) => text,
+    let place = Place::new(folder, JOURNAL);
+    let (file, length) = match place.file(LARGEST_JOURNAL) {
+        Ok(opened) => opened,
         // A shard without submissions has none.
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
+        Err(FileError::Missing { .. }) => return Ok(()),
+        Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
-    for line in text.split_inclusive(|byte| *byte == b'\n') {
+    each_line(BufReader::new(file.take(length)), |line| {
         // What somebody damaged is graded again, as in any folder.
-        if let Some(entry) = read_line(line) {
+        if let Line::Whole(line) = line
+            && let Some(entry) = read_line(line)
+        {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;
+        }
+        Ok(())
+    })
+}
+
+/// Copies the files of a folder. Links are not followed, on neither side.
+fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
+    for name in from.names().with_context(|| format!("cannot read {}", from.shown().display()))? {
+        let (source, target) = (from.shown().join(&name), to.join(&name));
+        match from.entry(&name) {
+            Ok(FolderEntry::Folder(inner)) if depth > 0 => copy(&inner, &target, depth - 1)?,
+            Ok(FolderEntry::File(file)) => {
+                let copy = || copy_file(file, &target);
+                copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;
+            }
+            Ok(FolderEntry::Folder(_) | FolderEntry::Other) => {
+                console::complain(format!("passed over {}: it is no file\n", input::shown(&source)).as_bytes());
+            }
+            Err(error) => return Err(error).with_context(|| format!("cannot read {}", source.display())),
         }
     }
     Ok(())
 }
 
-/// Copies the files of a folder that are not there yet. Links are not followed.
-fn copy(from: &Path, to: &Path, depth: usize) -> Result<()> {
-    let Ok(listing) = fs::read_dir(from) else { return Ok(()) };
-    fs::create_dir_all(to).with_context(|| format!("cannot make {}", to.display()))?;
-    for entry in listing.flatten() {
-        let (from, to) = (entry.path(), to.join(entry.file_name()));
-        match entry.file_type() {
-            Ok(kind) if kind.is_dir() && depth > 0 => copy(&from, &to, depth - 1)?,
-            Ok(kind) if kind.is_file() => {
-                fs::copy(&from, &to).with_context(|| format!("cannot copy {} to {}", from.display(), to.display()))?;
-            }
-            _ => {}
-        }
+fn copy_file(file: File, target: &Place) -> io::Result<()> {
+    let length = file.metadata()?.len();
+    if length > LARGEST_FILE {
+        return Err(io::Error::other(format!("it has {length} bytes, the limit is {LARGEST_FILE}")));
     }
-    Ok(())
+    // Whoever lets it grow meanwhile does not keep us.
+    output::copy_at(target, &mut file.take(length))
 }
 
 /// The report for people who look at it now.

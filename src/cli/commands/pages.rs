@@ -2,6 +2,7 @@
 use super::ending::file_name;
 use crate::{
     cli::output,
+    files::Place,
     diagnose::Explanation,
     evidence::{self, Evidence, Focus, StepRulings, Track},
     judge::{Outcome, Rules, replay},
@@ -21,7 +22,7 @@ use crate::{
 };
 use anyhow::{Context, Result};
 use std::{
-    fs,
+    ffi::OsString,
     path::{Path, PathBuf},
 };
 
@@ -31,7 +32,7 @@ const BUDGET: usize = 1 << 19;
 
 /// The cards of a grading, and where the pages go.
 pub(super) struct Pages {
-    cards: PathBuf,
+    cards: Place,
     /// The folder for pages, when there is one.
     folder: Option<PathBuf>,
     _temporary: Option<tempfile::TempDir>,
@@ -45,26 +46,24 @@ impl Pages {
             None => Some(tempfile::Builder::new().prefix("fosssim-cards-").tempdir().context("no temporary folder")?),
         };
         let cards = match (folder, &temporary) {
-            (Some(folder), _) => folder.join("cards"),
-            (None, Some(temporary)) => temporary.path().to_owned(),
-            (None, None) => PathBuf::new(),
+            (Some(folder), _) => Place::new(folder, "cards"),
+            (None, Some(temporary)) => Place::new(temporary.path(), ""),
+            (None, None) => Place::new("", ""),
         };
         Ok(Self { cards, folder: folder.map(Path::to_owned), _temporary: temporary })
     }
 
     /// Where cards are kept.
-    pub(super) fn cards(&self) -> &Path {
+    pub(super) fn cards(&self) -> &Place {
         &self.cards
     }
 
     /// Forgets the cards of earlier gradings.
     pub(super) fn forget(&self) {
-        let is_card = |path: &Path| path.extension().is_some_and(|extension| extension == "zst");
-        for entry in fs::read_dir(&self.cards).into_iter().flatten().flatten() {
-            if is_card(&entry.path()) {
-                // What stays behind costs room and nothing else.
-                let _ = fs::remove_file(entry.path());
-            }
+        let is_card = |name: &OsString| Path::new(name).extension().is_some_and(|extension| extension == "zst");
+        for name in self.cards.names().unwrap_or_default().iter().filter(|name| is_card(name)) {
+            // What stays behind costs room and nothing else.
+            drop(self.cards.join(name).remove());
         }
     }
 
@@ -83,29 +82,25 @@ impl Pages {
     pub(super) fn write(&self, grades: &[Grade], reader: Audience) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
         if reader == Audience::Student {
-            let students = folder.join("students");
-            fs::create_dir_all(&students).with_context(|| format!("cannot make {}", students.display()))?;
             for grade in grades {
-                let path = students.join(format!("{}.html", file_name(&grade.submission)));
-                output::write(&path, &[], self.of_one(grade, None, Audience::Student).as_bytes())?;
+                let place = Place::new(folder, format!("students/{}.html", file_name(&grade.submission)));
+                output::write_at(&place, self.of_one(grade, None, Audience::Student).as_bytes())?;
             }
         }
         if let [grade] = grades {
-            let path = folder.join("report.html");
-            output::write(&path, &[], self.of_one(grade, None, Audience::Staff).as_bytes())?;
-            return Ok(Some(path));
+            let place = Place::new(folder, "report.html");
+            output::write_at(&place, self.of_one(grade, None, Audience::Staff).as_bytes())?;
+            return Ok(Some(place.path()));
         }
-        let reports = folder.join("reports");
-        fs::create_dir_all(&reports).with_context(|| format!("cannot make {}", reports.display()))?;
         for grade in grades {
-            let path = reports.join(format!("{}.html", file_name(&grade.submission)));
-            output::write(&path, &[], self.of_one(grade, Some("../index.html"), Audience::Staff).as_bytes())?;
+            let place = Place::new(folder, format!("reports/{}.html", file_name(&grade.submission)));
+            output::write_at(&place, self.of_one(grade, Some("../index.html"), Audience::Staff).as_bytes())?;
         }
         // Names of files hold nothing that an address would have to write otherwise, but blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
-        let index = folder.join("index.html");
-        output::write(&index, &[], ClassPage { grades, page: &page }.html().as_bytes())?;
-        Ok(Some(index))
+        let index = Place::new(folder, "index.html");
+        output::write_at(&index, ClassPage { grades, page: &page }.html().as_bytes())?;
+        Ok(Some(index.path()))
     }
 }
 

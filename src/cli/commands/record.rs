@@ -1,7 +1,9 @@
 //! `record`: the recordings of a folder of scenes.
 use crate::{
     cli::{arguments::Record, console, exit, output},
+    files::{self, FileError, Place},
     report::number::counted,
+    scene::LARGEST_SCENE,
     suite::{
         library,
         recording::{self, Recording},
@@ -10,9 +12,12 @@ use crate::{
 };
 use anyhow::{Context, Result, bail};
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
 };
+
+/// A recording of more bytes is none.
+const LARGEST_RECORDING: u64 = 1 << 30;
 
 pub(super) fn run(arguments: &Record) -> Result<u8> {
     // Whoever names a folder means that folder.
@@ -58,7 +63,7 @@ fn scenes(folder: &Path) -> Result<Vec<Input>> {
         }
     }
     let read = |SceneFile { name, stem, path }: SceneFile| {
-        let xml = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let xml = files::read(&path, LARGEST_SCENE as u64).with_context(|| format!("cannot read {}", path.display()))?;
         Ok(Input { name, stem, xml })
     };
     files.into_iter().map(read).collect()
@@ -87,10 +92,10 @@ struct Folder(PathBuf);
 
 impl Old for Folder {
     fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>> {
-        match fs::read(self.0.join(path)) {
+        match Place::new(&self.0, path).read(LARGEST_RECORDING) {
             Ok(bytes) => Ok(Some(bytes)),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error),
+            Err(FileError::Missing { .. }) => Ok(None),
+            Err(error) => Err(io::Error::other(error)),
         }
     }
 
@@ -131,24 +136,21 @@ fn check(recordings: &[(String, Recording)], old: &dyn Old) -> Result<u8> {
 fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     let mut bytes = 0;
     for (stem, recording) in recordings {
-        let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
+        let place = |extension: &str| Place::new(folder, format!("{stem}.{extension}"));
         let packed = recording.packed().with_context(|| format!("cannot compress {}", recording.name))?;
         bytes += packed.len() as u64;
-        if let Some(parent) = path("steps").parent() {
-            fs::create_dir_all(parent).with_context(|| format!("cannot make the folder {}", parent.display()))?;
-        }
-        replace(&path("bin.zst"), &packed)?;
-        replace(&path("steps"), recording.digests.as_bytes())?;
+        replace(&place("bin.zst"), &packed)?;
+        replace(&place("steps"), recording.digests.as_bytes())?;
     }
     // The folder holds what the scenes give and nothing else.
     for stem in Folder(folder.to_owned()).stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
             for extension in ["bin.zst", "steps"] {
-                drop(fs::remove_file(folder.join(format!("{stem}.{extension}"))));
+                drop(Place::new(folder, format!("{stem}.{extension}")).remove());
             }
         }
     }
-    replace(&folder.join("manifest.txt"), manifest(recordings).as_bytes())?;
+    replace(&Place::new(folder, "manifest.txt"), manifest(recordings).as_bytes())?;
     let (recordings, bytes) = (counted(recordings.len() as u64, "recording"), counted(bytes, "byte"));
     let line = format!("{recordings}, {bytes}, in {}\n", folder.display());
     console::print(line.as_bytes())?;
@@ -160,9 +162,9 @@ fn manifest(recordings: &[(String, Recording)]) -> String {
     recording::manifest(recordings.iter().map(|(_, recording)| recording))
 }
 
-fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
-    if fs::read(path).is_ok_and(|old| old == bytes) {
+fn replace(place: &Place, bytes: &[u8]) -> Result<()> {
+    if place.read(bytes.len() as u64).is_ok_and(|old| old == bytes) {
         return Ok(());
     }
-    output::write(path, &[], bytes)
+    output::write_at(place, bytes)
 }

@@ -2,6 +2,7 @@
 use super::pages::Pages;
 use crate::{
     cli::{console, output},
+    files::{Place, open_for_writing},
     report::{
         grade::{self, Format},
         page::Audience,
@@ -88,12 +89,12 @@ impl Results<'_> {
             );
         } else if let Some(folder) = self.folder {
             let lines = || grades.iter().map(grade::json_line).collect();
-            keep(write(&folder.join("grades.csv"), || grade::csv_of_submissions(grades)));
-            keep(write(&folder.join("scenes.csv"), || Format::Csv.render(grades)));
-            keep(write(&folder.join("grades.jsonl"), lines));
+            keep(write_in(folder, "grades.csv", || grade::csv_of_submissions(grades)));
+            keep(write_in(folder, "scenes.csv", || Format::Csv.render(grades)));
+            keep(write_in(folder, "grades.jsonl", lines));
             if grades.len() > 1 {
                 let class = || wrap::wrapped(&grade::class(grades, usize::MAX, Style::Plain), CLASS_WIDTH);
-                keep(write(&folder.join("class.txt"), class));
+                keep(write_in(folder, "class.txt", class));
             }
             if let Some(pages) = self.pages {
                 keep(made("the pages", || pages.write(grades, self.reader)).and_then(|written| written).map(|first| {
@@ -134,7 +135,7 @@ fn is_step_summary(file: &Path) -> bool {
 /// Makes a text and adds it to what a file holds already.
 fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
     let text = made(&file.display().to_string(), text)?;
-    let opened = fs::OpenOptions::new().create(true).append(true).open(file);
+    let opened = open_for_writing(fs::OpenOptions::new().create(true).append(true), file);
     let written = opened.and_then(|mut file| file.write_all(text.as_bytes()));
     written.with_context(|| format!("cannot write {}", file.display()))
 }
@@ -143,6 +144,13 @@ fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
 fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
     let text = made(&file.display().to_string(), text)?;
     output::write(file, &[], text.as_bytes())
+}
+
+/// Makes a text and writes it into the folder for results.
+fn write_in(folder: &Path, name: &str, text: impl FnOnce() -> String) -> Result<()> {
+    let place = Place::new(folder, name);
+    let text = made(&place.path().display().to_string(), text)?;
+    output::write_at(&place, text.as_bytes())
 }
 
 /// A text, or what the grader failed on while it made it.

@@ -5,12 +5,12 @@ use crate::{
         scenes::{Scene, SceneExport, SceneList, SceneShow},
         selection::Selection,
     },
+    files::{FileError, Place},
     report::{number::counted, scene as report},
     scene::{self, LARGEST_SCENE},
     suite::library,
 };
 use anyhow::{Context, Result, bail};
-use std::{fs, path::Path};
 
 pub(super) fn run(command: &Scene) -> Result<u8> {
     match command {
@@ -64,14 +64,12 @@ fn export(arguments: &SceneExport) -> Result<u8> {
     let (mut written, mut kept, mut other) = (0_u64, 0_u64, Vec::new());
     for name in names {
         let xml = library::scene(name).context("a scene that was just listed")?;
-        let path = arguments.output.join(format!("{name}.xml"));
-        match holds(&path, xml) {
+        let place = Place::new(&arguments.output, format!("{name}.xml"));
+        match holds(&place, xml) {
             Some(true) => kept += 1,
-            Some(false) if !arguments.force => other.push(path),
+            Some(false) if !arguments.force => other.push(place.path()),
             _ => {
-                let folder = path.parent().unwrap_or(&arguments.output);
-                fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-                output::write(&path, &[], xml)?;
+                output::write_at(&place, xml)?;
                 written += 1;
             }
         }
@@ -89,10 +87,12 @@ fn export(arguments: &SceneExport) -> Result<u8> {
 }
 
 /// Whether a file holds these bytes; nothing when there is none.
-fn holds(path: &Path, bytes: &[u8]) -> Option<bool> {
-    let data = fs::symlink_metadata(path).ok()?;
-    let alike = data.is_file() && data.len() <= LARGEST_SCENE as u64;
-    Some(alike && fs::read(path).is_ok_and(|old| old == bytes))
+fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
+    match place.read(LARGEST_SCENE as u64) {
+        Ok(old) => Some(old == bytes),
+        Err(FileError::Missing { .. }) => None,
+        Err(_) => Some(false),
+    }
 }
 
 /// The names of the embedded scenes that these patterns select.

@@ -3,20 +3,24 @@
 use crate::{
     cli::{
         console,
-        grading::{Grade as Arguments, Shard},
+        grading::{Grade as Arguments, MOST_SHARDS, Shard},
         output,
     },
-    suite::{Grade, Submission, plan::Plan, this_build},
+    files::{FileError, Place},
+    suite::{Grade, Submission, plan::Plan, score, this_build},
 };
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use std::{
-    fs,
+    io::{BufReader, Read},
     path::{Path, PathBuf},
 };
 
 /// The file that tells that a shard is done, and how it ended.
 const FILE: &str = "shard.json";
+
+/// A larger one is not read: ten thousand submissions of 85 scenes that are all wrong leave half of it.
+const LARGEST: u64 = 4 << 30;
 
 /// The version of what stands in it.
 const SCHEMA: u32 = 1;
@@ -74,19 +78,37 @@ impl Part {
     /// When it can't be read, or was left by another version.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
         let file = folder.join(FILE);
-        let text = match fs::read(&file) {
-            Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        let opened = match Place::new(folder, FILE).file(LARGEST) {
+            Ok((opened, length)) => opened.take(length),
+            Err(FileError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
         };
-        let part: Self = serde_json::from_slice(&text)
+        // Read as a stream: what is no JSON ends at its first byte, however long it is.
+        let part: Self = serde_json::from_reader(BufReader::new(opened))
             .with_context(|| format!("{} is damaged, or another version's: grade this shard again", file.display()))?;
-        let common = &part.common;
-        let own: Vec<&String> = own(part.number, common.of, &common.submissions).collect();
-        if common.schema != SCHEMA || !own.iter().copied().eq(part.grades.iter().map(|grade| &grade.submission)) {
-            bail!("{} does not hold what it should: grade this shard again", file.display());
-        }
+        part.check().with_context(|| format!("{} does not hold what it should: grade this shard again", file.display()))?;
         Ok(Some(part))
+    }
+
+    /// Whether it holds the grades of its own submissions, and points that follow from its verdicts.
+    fn check(&self) -> Result<()> {
+        let common = &self.common;
+        if common.schema != SCHEMA {
+            bail!("it is of schema {}, and this program reads {SCHEMA}", common.schema);
+        }
+        if !(1..=MOST_SHARDS).contains(&common.of) || !(1..=common.of).contains(&self.number) {
+            bail!("there is no shard {} of {}; there are at most {MOST_SHARDS}", self.number, common.of);
+        }
+        let own = own(self.number, common.of, &common.submissions);
+        if !own.eq(self.grades.iter().map(|grade| &grade.submission)) {
+            bail!("it grades other submissions than its own");
+        }
+        for grade in &self.grades {
+            if let Some(what) = score::contradiction(grade) {
+                bail!("the grade of {}: {what}", grade.submission);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -102,6 +124,8 @@ pub(super) struct Sharding {
     common: Common,
     /// The shard's own folder.
     pub(super) folder: PathBuf,
+    /// The same as a place that no link leads to.
+    begun: Place,
 }
 
 impl Sharding {
@@ -116,8 +140,8 @@ impl Sharding {
             plan: digest(plan, arguments),
             submissions: all.iter().map(|submission| submission.name.clone()).collect(),
         };
-        let folder = output.join(format!("shard-{}-of-{}", shard.number, shard.of));
-        Self { shard, common, folder }
+        let begun = Place::new(output, format!("shard-{}-of-{}", shard.number, shard.of));
+        Self { shard, common, folder: begun.path(), begun }
     }
 
     /// The shard's own submissions.
@@ -130,13 +154,9 @@ impl Sharding {
     /// # Errors
     /// When it can't be made.
     pub(super) fn begin(&self) -> Result<()> {
-        fs::create_dir_all(&self.folder).with_context(|| format!("cannot make {}", self.folder.display()))?;
-        match fs::remove_file(self.folder.join(FILE)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                Err(error).with_context(|| format!("cannot remove {}", self.folder.join(FILE).display()))
-            }
-            _ => Ok(()),
-        }
+        self.begun.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
+        let place = Place::new(&self.folder, FILE);
+        place.remove().with_context(|| format!("cannot remove {}", place.path().display()))
     }
 
     /// Leaves the grades for `merge`.
@@ -145,7 +165,7 @@ impl Sharding {
     /// When they can't be written.
     pub(super) fn end(&self, grades: &[Grade]) -> Result<()> {
         let part = Part { common: self.common.clone(), number: self.shard.number, grades: grades.to_vec() };
-        output::write(&self.folder.join(FILE), &[], &serde_json::to_vec(&part)?)?;
+        output::write_at(&Place::new(&self.folder, FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
         let line = format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.of);
         console::remark(line.as_bytes());

@@ -9,6 +9,7 @@ use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
     diagnose::{self, Keep, examine},
     evidence::StepRulings,
+    files::{FileError, Folder},
     judge::replay::Options,
     report::grade::{Format, Text, rehearse},
     sandbox::RunOutcome,
@@ -26,9 +27,9 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use std::{
-    fs::{self, File},
+    ffi::OsStr,
     io::{self, Read},
-    path::{Path, PathBuf},
+    path::Path,
     time::Duration,
 };
 
@@ -55,7 +56,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
         bail!("--format {} holds one submission, and there are {}", report.name, arguments.programs.len());
     }
     if let Some(output) = &arguments.output {
-        fs::create_dir_all(output).with_context(|| format!("cannot make {}", output.display()))?;
+        Folder::make(output).with_context(|| format!("cannot make {}", output.display()))?;
     }
     let draws = arguments.output.is_some() || reports.iter().any(|report| report.format == Format::Html);
     let pages = if draws { Some(Pages::new(arguments.output.as_deref())?) } else { None };
@@ -75,7 +76,10 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
 fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
     // In the plan's order, whatever the number of threads.
-    let mut results = tasks.par_iter().map(|task| scene(plan, task, folder, pages)).collect::<Vec<_>>().into_iter();
+    let opened = Folder::open(folder);
+    let judged: Vec<Judgement> = tasks.par_iter().map(|task| scene(plan, task, &opened, pages)).collect();
+    let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
+    let mut results = results.into_iter();
     let groups: Vec<_> = plan
         .groups
         .iter()
@@ -105,7 +109,7 @@ fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
         shows_output: plan.show_output || groups.iter().all(|group| group.visibility == Visibility::Visible),
         groups,
         build: None,
-        warnings: Vec::new(),
+        warnings: passed_over.into_iter().flatten().collect(),
         layers: Vec::new(),
         wall: Duration::ZERO,
         refuted,
@@ -115,21 +119,27 @@ fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
     grade
 }
 
+/// The result of one scene, and what of it was passed over.
+type Judgement = (SceneResult, Option<String>);
+
 /// The result of one scene. A panic is its judge error.
-fn scene(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) -> SceneResult {
+fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> Judgement {
     let failed = |failure| {
         SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, Reason::Failed(failure))
     };
-    let judged = guarded(|| judge(plan, task, folder, pages));
-    match judged {
-        Ok(Ok(result)) => result,
-        Ok(Err(error)) => failed(Failure::Machine(error.to_string())),
-        Err(fault) => failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }),
+    let folder = match folder {
+        Ok(folder) => folder,
+        Err(error) => return (failed(Failure::Machine(error.to_string())), None),
+    };
+    match guarded(|| judge(plan, task, folder, pages)) {
+        Ok(Ok(judged)) => judged,
+        Ok(Err(error)) => (failed(Failure::Machine(error.to_string())), None),
+        Err(fault) => (failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }), None),
     }
 }
 
-fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) -> io::Result<SceneResult> {
-    let trace = read(folder, &task.name, plan.limits.trace)?;
+fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) -> io::Result<Judgement> {
+    let (trace, passed_over) = read(folder, &task.name, plan.limits.trace)?;
     let options =
         Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
     let mut quiet = ();
@@ -176,24 +186,26 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Path, pages: Option<&Pages>) ->
         result.card = card;
     }
     rehearse(&result);
-    Ok(result)
+    Ok((result, passed_over))
 }
 
-/// The trace of a scene, under its whole name or the name behind its group; nothing when there is none. More than
-/// `most` bytes are not read: what is cut there is a bad trace.
-fn read(folder: &Path, scene: &str, most: u64) -> io::Result<Vec<u8>> {
+/// The trace of a scene, under its whole name or the name behind its group; nothing when there is none, and then in
+/// words what lies there that is no file, or is reached by a link: that may be another's. More than `most` bytes are not
+/// read: what is cut there is a bad trace.
+fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
+    let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);
-    let places: [PathBuf; 2] = [scene, last].map(|name| folder.join(format!("{name}.bin")));
-    for place in places {
-        // A link may lead anywhere, and a pipe nowhere.
-        match fs::symlink_metadata(&place) {
-            Ok(data) if data.is_file() => {
+    for name in [scene, last].map(|name| format!("{name}.bin")) {
+        match folder.file(OsStr::new(&name), u64::MAX) {
+            Ok((file, _)) => {
                 let mut trace = Vec::new();
-                File::open(&place)?.take(most).read_to_end(&mut trace)?;
-                return Ok(trace);
+                file.take(most).read_to_end(&mut trace)?;
+                return Ok((trace, None));
             }
-            _ => {}
+            Err(FileError::Missing { .. }) => {}
+            Err(FileError::System { source, .. }) => return Err(source),
+            Err(error) => passed_over = passed_over.or_else(|| Some(format!("a trace is passed over: {error}"))),
         }
     }
-    Ok(Vec::new())
+    Ok((Vec::new(), passed_over))
 }

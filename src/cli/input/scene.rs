@@ -62,6 +62,6 @@ fn is_binary(bytes: &[u8]) -> bool {
 /// The bytes of a scene file, which may not be larger than any sensible scene.
 fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
     let (file, metadata) = open(name)?;
-    let bytes = read_limited(file, &metadata, LARGEST_SCENE)?;
+    let bytes = read_limited(file, &metadata, LARGEST_SCENE as u64)?;
     Ok((bytes, Some(Identity::of(&metadata))))
 }

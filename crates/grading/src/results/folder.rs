@@ -8,14 +8,30 @@ use crate::{
     key::Key,
     result::SceneResult,
 };
+use fosssim_files::{FileError, Folder};
 use std::{
     collections::BTreeMap,
     error::Error,
-    fs::{File, OpenOptions},
-    io::{self, BufRead, BufReader, Seek, Write},
+    ffi::OsStr,
+    fs::File,
+    io::{self, BufRead, BufReader, Read, Seek, Write},
+    os::unix::fs::MetadataExt,
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
 };
+
+/// The file that keeps results.
+pub const JOURNAL: &str = "journal.jsonl";
+
+/// The file that a grader at work holds locked.
+pub const LOCK: &str = ".lock";
+
+/// A journal of more bytes is not read: 10,000 submissions of 85 scenes that are all wrong and well explained write a
+/// quarter of it.
+pub const LARGEST_JOURNAL: u64 = 16 << 30;
+
+/// A line of more bytes keeps no result; those of grading have some thousand.
+pub const LONGEST_LINE: usize = 16 << 20;
 
 /// Why a folder can't be used for results.
 #[derive(Debug, thiserror::Error)]
@@ -56,52 +72,129 @@ impl FolderResults {
     /// # Errors
     /// When another grader holds the folder, or files can't be read or written.
     pub fn open(folder: &Path, fresh: bool) -> Result<Self, OpenError> {
-        let lock_path = folder.join(".lock");
-        let at = |path: &Path| {
-            let path = path.to_owned();
+        let at = |name: &str| {
+            let path = folder.join(name);
             move |source| OpenError::Io { path, source }
         };
-        let path = folder.join("journal.jsonl");
-        for path in [&lock_path, &path] {
-            // A link would have another file of ours cut and written to.
-            if path.is_symlink() {
-                return Err(at(path)(io::Error::other("it is a link, which is not followed: remove it")));
-            }
-        }
-        let lock = OpenOptions::new().create(true).append(true).open(&lock_path).map_err(at(&lock_path))?;
+        let opened = Folder::to_write(folder).map_err(at(""))?;
+        let lock = own_file(&opened, LOCK).map_err(at(LOCK))?;
         lock.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => OpenError::Locked { folder: folder.to_owned() },
-            std::fs::TryLockError::Error(source) => OpenError::Io { path: lock_path.clone(), source },
+            std::fs::TryLockError::Error(source) => at(LOCK)(source),
         })?;
-        let mut file =
-            OpenOptions::new().create(true).read(true).write(true).truncate(false).open(&path).map_err(at(&path))?;
+        let mut file = own_file(&opened, JOURNAL).map_err(at(JOURNAL))?;
+        let metadata = file.metadata().map_err(at(JOURNAL))?;
+        if metadata.len() > LARGEST_JOURNAL && !fresh {
+            let text = format!("it has more than {LARGEST_JOURNAL} bytes, which no journal has; --fresh begins a new one");
+            return Err(at(JOURNAL)(io::Error::other(text)));
+        }
         let mut found = BTreeMap::new();
-        let mut sound = 0;
-        if !fresh {
-            let mut reader = BufReader::new(&mut file);
-            let mut line = Vec::new();
-            loop {
-                line.clear();
-                let length = reader.read_until(b'\n', &mut line).map_err(at(&path))?;
-                if length == 0 || line.last() != Some(&b'\n') {
-                    break;
-                }
-                sound += length as u64;
-                // A line that somebody damaged costs its own result only.
-                if let Some(entry) = read_line(&line) {
-                    found.insert(entry.key, entry.result);
-                }
-            }
+        let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL))? };
+        if metadata.nlink() > 1 {
+            // A backup, or whoever linked another's file here: what has the other names stays as it is.
+            file = copy(&file, sound, &opened).map_err(at(JOURNAL))?;
         }
         // What a crash left behind the last whole line goes away.
-        file.set_len(sound).map_err(at(&path))?;
-        file.seek(io::SeekFrom::Start(sound)).map_err(at(&path))?;
+        file.set_len(sound).map_err(at(JOURNAL))?;
+        file.seek(io::SeekFrom::Start(sound)).map_err(at(JOURNAL))?;
+        let path = folder.join(JOURNAL);
         Ok(Self { journal: Mutex::new(Journal { path, file, found }), _lock: lock })
     }
 
     fn journal(&self) -> MutexGuard<'_, Journal> {
         self.journal.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
+    folder.own_file(name).map_err(|error| match error {
+        FileError::System { source, .. } => source,
+        FileError::NotRegular { what, .. } => io::Error::other(format!("it is {what}, which is not followed: remove it")),
+        error => io::Error::other(error),
+    })
+}
+
+/// The results of a journal, and where its last whole line ends.
+fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> {
+    let mut sound = 0;
+    each_line(BufReader::new(file), |line| -> io::Result<()> {
+        sound += line.len() as u64;
+        if let Line::Whole(bytes) = line
+            && let Some(entry) = read_line(bytes)
+        {
+            found.insert(entry.key, entry.result);
+        }
+        Ok(())
+    })?;
+    Ok(sound)
+}
+
+/// A line of a journal that has its end.
+pub enum Line<'a> {
+    /// Its bytes.
+    Whole(&'a [u8]),
+    /// How many bytes it has, which are too many.
+    TooLong(u64),
+}
+
+impl Line<'_> {
+    const fn len(&self) -> usize {
+        match self {
+            Self::Whole(bytes) => bytes.len(),
+            #[expect(clippy::cast_possible_truncation, reason = "graders run on 64 bits")]
+            Self::TooLong(length) => *length as usize,
+        }
+    }
+}
+
+/// Hands over the whole lines of a journal. A line that somebody damaged, or that is too long, costs its own result
+/// only.
+///
+/// # Errors
+/// When it can't be read; what `take` returns.
+pub fn each_line<E: From<io::Error>>(
+    mut journal: impl BufRead,
+    mut take: impl FnMut(Line<'_>) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let read = journal.by_ref().take(LONGEST_LINE as u64).read_until(b'\n', &mut line)?;
+        if line.last() == Some(&b'\n') {
+            take(Line::Whole(&line))?;
+        } else if read < LONGEST_LINE {
+            return Ok(());
+        } else {
+            let Some(rest) = skip_line(&mut journal)? else { return Ok(()) };
+            take(Line::TooLong(read as u64 + rest))?;
+        }
+    }
+}
+
+/// Passes over the rest of a line, and says how long that is; `None` where it has no end.
+fn skip_line(journal: &mut impl BufRead) -> io::Result<Option<u64>> {
+    let mut passed = 0;
+    loop {
+        let bytes = journal.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(None);
+        }
+        let end = bytes.iter().position(|byte| *byte == b'\n').map(|at| at + 1);
+        let length = end.unwrap_or(bytes.len());
+        journal.consume(length);
+        passed += length as u64;
+        if end.is_some() {
+            return Ok(Some(passed));
+        }
+    }
+}
+
+/// A journal of our own with the first bytes of another.
+fn copy(mut file: &File, length: u64, folder: &Folder) -> io::Result<File> {
+    let mut own = folder.replacement(OsStr::new(JOURNAL), None)?;
+    file.rewind()?;
+    io::copy(&mut file.take(length), &mut own)?;
+    own.finish_open()
 }
 
 impl Results for FolderResults {
@@ -193,9 +286,44 @@ mod tests {
             let output = tempfile::tempdir().expect("folder");
             std::os::unix::fs::symlink(&other, output.path().join(name)).expect("a link");
             let refused = FolderResults::open(output.path(), true).expect_err("it is a link").to_string();
-            assert!(refused.contains(name) && refused.contains("is a link"), "{refused}");
+            assert!(refused.contains(name) && refused.contains("is a symbolic link"), "{refused}");
         }
         assert_eq!(std::fs::read(&other).expect("a file"), b"something else");
+    }
+
+    #[test]
+    fn a_journal_with_a_second_name_is_read_and_not_changed() {
+        let folder = tempfile::tempdir().expect("folder");
+        let journal = FolderResults::open(folder.path(), false).expect("journal");
+        journal.keep(&key("a"), "sub", &result(Verdict::TimeLimit)).expect("kept");
+        drop(journal);
+        let (path, backup) = (folder.path().join(JOURNAL), folder.path().join("backup"));
+        std::fs::hard_link(&path, &backup).expect("a backup");
+        let before = std::fs::read(&backup).expect("bytes");
+        let journal = FolderResults::open(folder.path(), false).expect("journal");
+        assert!(journal.find(&key("a")).is_some());
+        journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
+        drop(journal);
+        assert_eq!(std::fs::read(&backup).expect("bytes"), before);
+        assert!(FolderResults::open(folder.path(), false).expect("journal").find(&key("b")).is_some());
+        drop(FolderResults::open(folder.path(), true).expect("journal"));
+        assert_eq!(std::fs::read(&backup).expect("bytes"), before);
+    }
+
+    #[test]
+    fn what_no_grader_writes_takes_no_memory_and_no_time() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join(JOURNAL);
+        let journal = File::create(&path).expect("a file");
+        journal.set_len(LARGEST_JOURNAL + 1).expect("a hole");
+        let refused = FolderResults::open(folder.path(), false).expect_err("too large").to_string();
+        assert!(refused.contains("journal.jsonl") && refused.contains("--fresh"), "{refused}");
+        // A line without end, and one that is too long before a sound one.
+        let good = line(&key("a"), "sub", &result(Verdict::Accepted));
+        let long = [vec![b'x'; LONGEST_LINE + 5], vec![b'\n'], good.clone(), vec![0; 100]].concat();
+        std::fs::write(&path, &long).expect("written");
+        assert!(FolderResults::open(folder.path(), false).expect("journal").find(&key("a")).is_some());
+        assert_eq!(std::fs::metadata(&path).expect("data").len(), long.len() as u64 - 100);
     }
 
     #[test]
@@ -213,7 +341,7 @@ mod tests {
         let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.keep(&key("a"), "sub", &result(Verdict::Accepted)).expect("kept");
         // Whatever is written here finds no room.
-        journal.journal().file = OpenOptions::new().write(true).open("/dev/full").expect("a full device");
+        journal.journal().file = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
         let error = journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect_err("full").to_string();
         assert!(error.contains("journal.jsonl") && error.contains("No space left"), "{error}");
         assert_eq!(journal.find(&key("b")), None);

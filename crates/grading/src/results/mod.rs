@@ -5,7 +5,9 @@
 mod folder;
 mod memory;
 
-pub use folder::{FolderResults, OpenError, line, read_line};
+pub use folder::{
+    FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, Line, OpenError, each_line, line, read_line,
+};
 pub use memory::MemoryResults;
 
 pub use super::form::Entry;

@@ -88,7 +88,7 @@ impl Ffmpeg {
         let (encoder, options) = Self::find()?;
         let Some(path) = output.temporary_path() else { bail!("an MP4 is written into a file; name one") };
         let mut file = OsString::from("file:");
-        file.push(path);
+        file.push(&path);
         let size = size.to_string();
         let rate = rate.per_second().to_string();
         let mut child = Command::new(FFMPEG)

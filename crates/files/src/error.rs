@@ -1,0 +1,87 @@
+//! Why a file was not taken.
+use std::{
+    ffi::OsStr,
+    fs::{File, Metadata},
+    io,
+    os::unix::fs::FileTypeExt,
+};
+
+/// Why a file was not taken. Except for [`FileError::System`] these are the doing of whoever filled the folder.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// Nothing lies there.
+    #[error("there is no file {name}")]
+    Missing {
+        /// The file's name, escaped.
+        name: String,
+    },
+    /// Something else lies there.
+    #[error("{name} is {what}, not a regular file")]
+    NotRegular {
+        /// The file's name, escaped.
+        name: String,
+        /// What it is instead.
+        what: &'static str,
+    },
+    /// The file has further names, perhaps outside the folder.
+    #[error("{name} is a hard link: the file has {links} names")]
+    Linked {
+        /// The file's name, escaped.
+        name: String,
+        /// How many names it has.
+        links: u64,
+    },
+    /// The file is too long.
+    #[error("{name} is {length} bytes long, the limit is {limit}")]
+    TooLong {
+        /// The file's name, escaped.
+        name: String,
+        /// Its length in bytes.
+        length: u64,
+        /// The limit in bytes.
+        limit: u64,
+    },
+    /// The folder or the file cannot be read.
+    #[error("cannot read {name}: {source}")]
+    System {
+        /// The file's name, escaped.
+        name: String,
+        /// The system's reason.
+        source: io::Error,
+    },
+}
+
+impl FileError {
+    /// Why a file could not be opened.
+    pub(crate) fn not_opened(name: String, error: io::Error) -> Self {
+        match error.raw_os_error() {
+            Some(libc::ENOENT | libc::ENOTDIR) => Self::Missing { name },
+            Some(libc::ELOOP) => Self::NotRegular { name, what: "a symbolic link" },
+            Some(libc::EXDEV) => Self::NotRegular { name, what: "outside the folder" },
+            Some(libc::ENXIO) => Self::NotRegular { name, what: "a socket" },
+            Some(libc::EISDIR) => Self::NotRegular { name, what: "a folder" },
+            _ => Self::System { name, source: error },
+        }
+    }
+}
+
+/// A name as messages show it.
+pub(crate) fn escaped(name: &OsStr) -> String {
+    name.to_string_lossy().escape_debug().to_string()
+}
+
+/// The facts of an open file, which must be a regular one.
+pub(crate) fn regular(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
+    let metadata = file.metadata().map_err(|source| FileError::System { name: shown(), source })?;
+    let kind = metadata.file_type();
+    if kind.is_file() {
+        return Ok(metadata);
+    }
+    let what = match () {
+        () if kind.is_dir() => "a folder",
+        () if kind.is_fifo() => "a pipe",
+        () if kind.is_socket() => "a socket",
+        () => "a device",
+    };
+    Err(FileError::NotRegular { name: shown(), what })
+}

@@ -1,0 +1,355 @@
+//! Files beneath a folder that somebody else may have filled, or fills meanwhile.
+use super::{
+    Identity,
+    error::{FileError, escaped, regular},
+    replacement::Replacement,
+};
+use rustix::{
+    fs::{AtFlags, CWD, Dir, FileType, Mode, OFlags, mkdirat, openat, statat, unlinkat},
+    io::Errno,
+};
+use std::{
+    ffi::{OsStr, OsString},
+    fs::{File, OpenOptions},
+    io::{self, Read},
+    os::{
+        fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd},
+        unix::{ffi::OsStrExt, fs::MetadataExt, fs::OpenOptionsExt},
+    },
+    path::{Component, Path, PathBuf},
+    sync::Arc,
+};
+
+/// How everything is opened: never through a link, never waiting, never handed on.
+const CLOSED: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags::CLOEXEC);
+
+/// The bits of a new folder's mode, before the mask.
+const FOLDER_MODE: u32 = 0o777;
+
+/// A folder that is held open. What lies in it is reached by its own names only: no link leads out, and nobody who
+/// exchanges a path meanwhile leads elsewhere.
+#[derive(Debug, Clone)]
+pub struct Folder {
+    fd: Arc<OwnedFd>,
+    /// As it was called when it was opened, for messages.
+    shown: PathBuf,
+}
+
+/// What lies in a [`Folder`].
+#[derive(Debug)]
+pub enum FolderEntry {
+    /// A regular file, open.
+    File(File),
+    /// A folder, open.
+    Folder(Folder),
+    /// Neither: a link, a pipe, a socket or a device.
+    Other,
+}
+
+impl From<OwnedFd> for Folder {
+    fn from(folder: OwnedFd) -> Self {
+        Self { fd: Arc::new(folder), shown: PathBuf::new() }
+    }
+}
+
+impl Folder {
+    /// Opens the folder at the path, to read what lies in it. The path itself may lead over links.
+    ///
+    /// # Errors
+    /// When there is none or it is closed to us.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        let options = || {
+            let mut options = OpenOptions::new();
+            options.read(true).custom_flags(libc::O_DIRECTORY | libc::O_NONBLOCK);
+            options
+        };
+        Ok(Self { fd: Arc::new(options().open(path)?.into()), shown: path.to_owned() })
+    }
+
+    /// Opens a folder to write files into, which nobody need be able to list.
+    ///
+    /// # Errors
+    /// When there is none or it is closed to us.
+    pub fn to_write(path: &Path) -> io::Result<Self> {
+        let flags = OFlags::PATH | OFlags::DIRECTORY | OFlags::CLOEXEC;
+        Ok(Self { fd: Arc::new(openat(CWD, path, flags, Mode::empty())?), shown: path.to_owned() })
+    }
+
+    /// As [`Folder::to_write`], made with all folders above it where there is none.
+    ///
+    /// # Errors
+    /// When it can't be made or opened.
+    pub fn make(path: &Path) -> io::Result<Self> {
+        std::fs::create_dir_all(path)?;
+        Self::to_write(path)
+    }
+
+    /// What it was called when it was opened.
+    #[must_use]
+    pub fn shown(&self) -> &Path {
+        &self.shown
+    }
+
+    /// The names of what lies in it.
+    ///
+    /// # Errors
+    /// When it can't be read.
+    pub fn names(&self) -> io::Result<Vec<OsString>> {
+        let flags = OFlags::RDONLY | OFlags::DIRECTORY | CLOSED;
+        let mut names = Vec::new();
+        for entry in Dir::new(openat(&*self.fd, ".", flags, Mode::empty())?)? {
+            let entry = entry?;
+            let name = entry.file_name().to_bytes();
+            if !matches!(name, b"." | b"..") {
+                names.push(OsStr::from_bytes(name).to_owned());
+            }
+        }
+        Ok(names)
+    }
+
+    /// What lies under this name, opened once.
+    ///
+    /// # Errors
+    /// When it can't be opened; [`io::ErrorKind::NotFound`] when it has gone.
+    pub fn entry(&self, name: &OsStr) -> io::Result<FolderEntry> {
+        let file = match openat(&*self.fd, single(name)?, OFlags::RDONLY | CLOSED, Mode::empty()) {
+            Ok(fd) => File::from(fd),
+            Err(Errno::LOOP | Errno::NXIO | Errno::NODEV) => return Ok(FolderEntry::Other),
+            Err(error) => return Err(error.into()),
+        };
+        let kind = file.metadata()?.file_type();
+        Ok(match () {
+            () if kind.is_file() => FolderEntry::File(file),
+            () if kind.is_dir() => FolderEntry::Folder(self.inner(file.into(), name)),
+            () => FolderEntry::Other,
+        })
+    }
+
+    /// The folder of this name in it, to write into.
+    ///
+    /// # Errors
+    /// When there is none, or it is a link.
+    pub fn folder(&self, name: &OsStr) -> io::Result<Self> {
+        let flags = OFlags::PATH | OFlags::DIRECTORY | CLOSED;
+        match openat(&*self.fd, single(name)?, flags, Mode::empty()) {
+            Ok(fd) => Ok(self.inner(fd, name)),
+            Err(Errno::NOTDIR | Errno::LOOP) if self.is_link(name) => {
+                Err(io::Error::other("it is a link, which is not followed: remove it"))
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// As [`Folder::folder`], made where there is none.
+    ///
+    /// # Errors
+    /// When it can't be made, or something else has its name.
+    pub fn make_folder(&self, name: &OsStr) -> io::Result<Self> {
+        match mkdirat(&*self.fd, single(name)?, Mode::from_raw_mode(FOLDER_MODE)) {
+            Ok(()) | Err(Errno::EXIST) => self.folder(name),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The regular file `name` (which may contain `/`, but leads out of nowhere), open, with its length in bytes.
+    ///
+    /// # Errors
+    /// When it is missing, not a regular file, reached through a link, or longer than `max_bytes`.
+    pub fn file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
+        let shown = || escaped(name);
+        let file = self.open_beneath(name).map_err(|error| FileError::not_opened(shown(), error))?;
+        let length = regular(&file, shown)?.len();
+        if length > max_bytes {
+            return Err(FileError::TooLong { name: shown(), length, limit: max_bytes });
+        }
+        Ok((file, length))
+    }
+
+    /// As [`Folder::file`], for a file that must have no other name.
+    ///
+    /// # Errors
+    /// As for [`Folder::file`], and when it has a second name.
+    pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), FileError> {
+        let (file, length) = self.file(OsStr::new(name), max_bytes)?;
+        let links = regular(&file, || escaped(OsStr::new(name)))?.nlink();
+        if links != 1 {
+            return Err(FileError::Linked { name: escaped(OsStr::new(name)), links });
+        }
+        Ok((file, length))
+    }
+
+    /// The contents of a regular file.
+    ///
+    /// # Errors
+    /// As for [`Folder::file`]; also when it grows beyond `max_bytes` while it is read.
+    pub fn read(&self, name: &OsStr, max_bytes: u64) -> Result<Vec<u8>, FileError> {
+        let (file, length) = self.file(name, max_bytes)?;
+        let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or_default() + 1);
+        file.take(max_bytes + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|source| FileError::System { name: escaped(name), source })?;
+        match bytes.len() as u64 {
+            length if length > max_bytes => {
+                Err(FileError::TooLong { name: escaped(name), length, limit: max_bytes })
+            }
+            _ => Ok(bytes),
+        }
+    }
+
+    /// Opens a file of our own to read and to write in place, and makes it where there is none.
+    ///
+    /// # Errors
+    /// When something else has its name.
+    pub fn own_file(&self, name: &str) -> Result<File, FileError> {
+        let flags = OFlags::RDWR | OFlags::CREATE | CLOSED;
+        let opened = openat(&*self.fd, name, flags, Mode::from_raw_mode(0o666));
+        let file = opened.map_err(|error| FileError::not_opened(name.to_owned(), error.into()))?;
+        let file = File::from(file);
+        regular(&file, || name.to_owned())?;
+        Ok(file)
+    }
+
+    /// A file that will take this name when it is finished, whatever has the name by then.
+    ///
+    /// # Errors
+    /// When no file can be made here.
+    pub fn replacement(&self, name: &OsStr, mode: Option<u32>) -> io::Result<Replacement> {
+        Replacement::new(self.clone(), single(name)?, mode)
+    }
+
+    /// Writes a whole file by rename: it appears with all its bytes or not at all. What has its name is replaced, and no
+    /// link is followed.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub fn write(&self, name: &OsStr, bytes: &[u8]) -> io::Result<()> {
+        let mut file = self.replacement(name, None)?;
+        io::Write::write_all(&mut file, bytes)?;
+        file.finish()
+    }
+
+    /// Removes a file or a link; that there is none is no error.
+    ///
+    /// # Errors
+    /// When it can't be removed.
+    pub fn remove(&self, name: &OsStr) -> io::Result<()> {
+        match unlinkat(&*self.fd, single(name)?, AtFlags::empty()) {
+            Ok(()) | Err(Errno::NOENT) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Whether anything has this name.
+    #[must_use]
+    pub fn holds(&self, name: &OsStr) -> bool {
+        statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
+    }
+
+    /// Which file a name stands for, without opening it; `None` for what is no regular file, or is reached by a link.
+    #[must_use]
+    pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
+        let (folder, last) = self.above(Path::new(name)).ok()?;
+        let stat = statat(folder.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd), last, AtFlags::SYMLINK_NOFOLLOW);
+        let stat = stat.ok().filter(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::RegularFile)?;
+        Some((Identity::new(stat.st_dev, stat.st_ino), stat.st_uid))
+    }
+
+    /// A path that leads to this very folder as long as it is open, wherever it lies by now.
+    #[must_use]
+    pub fn path(&self) -> PathBuf {
+        PathBuf::from(format!("/proc/self/fd/{}", self.fd.as_raw_fd()))
+    }
+
+    /// The folder under a path of names, to look into or to write into.
+    pub(crate) fn beneath(&self, path: &Path) -> Result<Self, FileError> {
+        let open = || -> io::Result<Self> {
+            let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
+            let above = above.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd);
+            Ok(Self { fd: Arc::new(step(above, last)?), shown: self.shown.join(path) })
+        };
+        open().map_err(|error| FileError::not_opened(escaped(path.as_os_str()), error))
+    }
+
+    fn inner(&self, fd: OwnedFd, name: &OsStr) -> Self {
+        Self { fd: Arc::new(fd), shown: self.shown.join(name) }
+    }
+
+    fn is_link(&self, name: &OsStr) -> bool {
+        statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW)
+            .is_ok_and(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::Symlink)
+    }
+
+    /// Opens what lies under a path of names, each of which is looked up in the folder before it.
+    fn open_beneath(&self, name: &OsStr) -> io::Result<File> {
+        let (above, last) = self.above(Path::new(name))?;
+        let above = above.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd);
+        Ok(openat(above, last, OFlags::RDONLY | CLOSED, Mode::empty())?.into())
+    }
+
+    /// The folder that the last name of a path lies in, if it is not this one, and that name.
+    fn above<'a>(&self, path: &'a Path) -> io::Result<(Option<OwnedFd>, &'a OsStr)> {
+        let (folder, last) = self.names_of(path)?;
+        Ok((folder, last.ok_or_else(|| io::Error::from_raw_os_error(libc::EISDIR))?))
+    }
+
+    /// As [`Folder::above`], without a last name where the path has none.
+    fn names_of<'a>(&self, path: &'a Path) -> io::Result<(Option<OwnedFd>, Option<&'a OsStr>)> {
+        let mut names = Vec::new();
+        for component in path.components() {
+            match component {
+                Component::Normal(name) => names.push(name),
+                Component::CurDir => {}
+                _ => return Err(io::Error::from_raw_os_error(libc::EXDEV)),
+            }
+        }
+        let last = names.pop();
+        let mut folder: Option<OwnedFd> = None;
+        for name in names {
+            let above = folder.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd);
+            folder = Some(step(above, name)?);
+        }
+        Ok((folder, last))
+    }
+}
+
+impl AsFd for Folder {
+    fn as_fd(&self) -> BorrowedFd<'_> {
+        self.fd.as_fd()
+    }
+}
+
+/// The folder of this name in another.
+fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
+    openat(above, name, OFlags::PATH | OFlags::DIRECTORY | CLOSED, Mode::empty()).map_err(|error| {
+        let is_link = statat(above, name, AtFlags::SYMLINK_NOFOLLOW)
+            .is_ok_and(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::Symlink);
+        if is_link { io::Error::from_raw_os_error(libc::ELOOP) } else { error.into() }
+    })
+}
+
+/// A name that stays in its folder.
+fn single(name: &OsStr) -> io::Result<&OsStr> {
+    let mut components = Path::new(name).components();
+    match (components.next(), components.next()) {
+        (Some(Component::Normal(only)), None) if only == name => Ok(name),
+        _ => Err(io::Error::from_raw_os_error(libc::EXDEV)),
+    }
+}
+
+/// Opens the regular file at `path` once, without waiting, and says how long it is. A link at its end is followed only
+/// when `follow` says so; how many names the file has does not matter.
+///
+/// # Errors
+/// When it is missing, not a regular file, or closed to us.
+pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
+    let shown = || escaped(path.as_os_str());
+    let no_link = if follow { 0 } else { libc::O_NOFOLLOW };
+    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK | no_link).open(path);
+    let file = file.map_err(|error| FileError::not_opened(shown(), error))?;
+    let length = regular(&file, shown)?.len();
+    Ok((file, length))
+}
+
+#[cfg(test)]
+#[path = "folder_tests.rs"]
+mod tests;

@@ -1,0 +1,132 @@
+//! Places in a folder of results: the folder is as somebody named it, what is below it are names of ours.
+use super::{FileError, Folder, Replacement, error::escaped};
+use std::{
+    ffi::OsStr,
+    fs::File,
+    io,
+    path::{Path, PathBuf},
+};
+
+/// A file or a folder below a folder that somebody named. The folder may be reached over links; below it no link is
+/// followed, whoever put it there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    folder: PathBuf,
+    below: PathBuf,
+}
+
+impl Place {
+    /// The place of these names, with `/` between them, below the folder; below the working folder where that is empty.
+    pub fn new(folder: impl Into<PathBuf>, below: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into(), below: below.into() }
+    }
+
+    /// A place in this one.
+    #[must_use]
+    pub fn join(&self, name: impl AsRef<Path>) -> Self {
+        Self { folder: self.folder.clone(), below: self.below.join(name) }
+    }
+
+    /// The whole path, for messages and for others to find it.
+    #[must_use]
+    pub fn path(&self) -> PathBuf {
+        if self.below.as_os_str().is_empty() { self.folder.clone() } else { self.folder.join(&self.below) }
+    }
+
+    /// The regular file that lies here, open, with its length.
+    ///
+    /// # Errors
+    /// As for [`Folder::file`].
+    pub fn file(&self, most: u64) -> Result<(File, u64), FileError> {
+        self.base().and_then(|folder| folder.file(self.below.as_os_str(), most))
+    }
+
+    /// The contents of the regular file that lies here.
+    ///
+    /// # Errors
+    /// As for [`Folder::read`].
+    pub fn read(&self, most: u64) -> Result<Vec<u8>, FileError> {
+        self.base().and_then(|folder| folder.read(self.below.as_os_str(), most))
+    }
+
+    /// Whether a regular file lies here.
+    #[must_use]
+    pub fn is_file(&self) -> bool {
+        self.base().is_ok_and(|folder| folder.identity(self.below.as_os_str()).is_some())
+    }
+
+    /// This place as a folder, made with all folders above it where there is none.
+    ///
+    /// # Errors
+    /// When it can't be made, or something else lies in the way: a link, for example.
+    pub fn make_folder(&self) -> io::Result<Folder> {
+        self.below.iter().try_fold(Folder::make(self.start())?, |folder, name| {
+            let inner = folder.make_folder(name);
+            inner.map_err(|error| named(&folder.shown().join(name), &error))
+        })
+    }
+
+    /// A file that will lie here when it is finished. Folders above it are made.
+    ///
+    /// # Errors
+    /// As for [`Place::make_folder`], and when no file can be made there.
+    pub fn replacement(&self) -> io::Result<Replacement> {
+        let above = Self::new(&self.folder, self.below.parent().unwrap_or(Path::new("")));
+        above.make_folder()?.replacement(self.below.file_name().unwrap_or_default(), None)
+    }
+
+    /// Writes a whole file by rename. Folders above it are made.
+    ///
+    /// # Errors
+    /// As for [`Place::replacement`], and when it can't be written.
+    pub fn write(&self, bytes: &[u8]) -> io::Result<()> {
+        let mut file = self.replacement()?;
+        io::Write::write_all(&mut file, bytes)?;
+        file.finish()
+    }
+
+    /// Removes the file or link that lies here; that there is none is no error.
+    ///
+    /// # Errors
+    /// When it can't be removed.
+    pub fn remove(&self) -> io::Result<()> {
+        let above = self.below.parent().unwrap_or(Path::new(""));
+        match self.base().and_then(|folder| folder.beneath(above)) {
+            Ok(folder) => folder.remove(self.below.file_name().unwrap_or_default()),
+            Err(FileError::Missing { .. }) => Ok(()),
+            Err(error) => Err(io::Error::other(error)),
+        }
+    }
+
+    /// The names of what lies here; none where there is no folder.
+    ///
+    /// # Errors
+    /// When it can't be read, or is reached by a link.
+    pub fn names(&self) -> io::Result<Vec<std::ffi::OsString>> {
+        match self.folder() {
+            Ok(folder) => folder.names(),
+            Err(FileError::Missing { .. }) => Ok(Vec::new()),
+            Err(error) => Err(io::Error::other(error)),
+        }
+    }
+
+    /// The folder that lies here.
+    ///
+    /// # Errors
+    /// When there is none, or it is reached by a link.
+    pub fn folder(&self) -> Result<Folder, FileError> {
+        self.base().and_then(|folder| folder.beneath(&self.below))
+    }
+
+    fn start(&self) -> &Path {
+        if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder }
+    }
+
+    fn base(&self) -> Result<Folder, FileError> {
+        Folder::to_write(self.start()).map_err(|error| FileError::not_opened(escaped(self.folder.as_os_str()), error))
+    }
+}
+
+fn named(path: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{}: {error}", escaped(OsStr::new(path))))
+}

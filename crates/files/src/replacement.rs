@@ -1,0 +1,118 @@
+//! Files that appear whole: written beside their place under a name that nobody asks for, and renamed.
+use super::Folder;
+use rustix::{
+    fs::{AtFlags, Mode, OFlags, openat, renameat, unlinkat},
+    io::Errno,
+};
+use std::{
+    ffi::{OsStr, OsString},
+    fs::{File, Permissions},
+    io::{self, IoSlice, Write},
+    os::unix::fs::PermissionsExt,
+    path::PathBuf,
+    process,
+    sync::atomic::{AtomicU64, Ordering},
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+/// How the names of unfinished files begin.
+pub const UNFINISHED: &str = ".fosssim-oracle-";
+
+/// Names of unfinished files that are tried.
+const TRIES: u32 = 100;
+
+/// A file that is being written. It takes its name with [`Replacement::finish`], and is gone without.
+#[derive(Debug)]
+pub struct Replacement {
+    folder: Folder,
+    file: File,
+    unfinished: OsString,
+    name: OsString,
+    finished: bool,
+}
+
+impl Replacement {
+    pub(crate) fn new(folder: Folder, name: &OsStr, mode: Option<u32>) -> io::Result<Self> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let flags = OFlags::RDWR | OFlags::CREATE | OFlags::EXCL | OFlags::NOFOLLOW | OFlags::CLOEXEC;
+        let mut problem = Errno::EXIST;
+        for _ in 0..TRIES {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.subsec_nanos());
+            let unfinished = OsString::from(format!("{UNFINISHED}{:x}-{count:x}-{now:x}", process::id()));
+            match openat(&folder, &unfinished, flags, Mode::from_raw_mode(mode.unwrap_or(0o666))) {
+                Ok(fd) => {
+                    let made = Self { folder, file: fd.into(), unfinished, name: name.to_owned(), finished: false };
+                    if let Some(mode) = mode {
+                        // The mode of a new file loses what the mask forbids; that of a replaced one must stay.
+                        made.file.set_permissions(Permissions::from_mode(mode))?;
+                    }
+                    return Ok(made);
+                }
+                Err(Errno::EXIST) => {}
+                Err(error) => {
+                    problem = error;
+                    break;
+                }
+            }
+        }
+        Err(problem.into())
+    }
+
+    /// Where the bytes lie before the file is finished, as its folder was called when it was opened.
+    #[must_use]
+    pub fn unfinished(&self) -> PathBuf {
+        self.folder.shown().join(&self.unfinished)
+    }
+
+    /// Where the file will be.
+    #[must_use]
+    pub fn target(&self) -> PathBuf {
+        self.folder.shown().join(&self.name)
+    }
+
+    /// Lets the file appear under its name. What has the name already is replaced; a link is, too, and not what it leads
+    /// to.
+    ///
+    /// # Errors
+    /// When it can't be renamed; what had the name is then as it was.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.file.flush()?;
+        renameat(&self.folder, &self.unfinished, &self.folder, &self.name)?;
+        self.finished = true;
+        Ok(())
+    }
+
+    /// As [`Replacement::finish`], and goes on with the open file.
+    ///
+    /// # Errors
+    /// As for [`Replacement::finish`].
+    pub fn finish_open(self) -> io::Result<File> {
+        let file = self.file.try_clone()?;
+        self.finish()?;
+        Ok(file)
+    }
+}
+
+impl Drop for Replacement {
+    fn drop(&mut self) {
+        if !self.finished {
+            // What stays behind is hidden and of no use to anybody.
+            let _ = unlinkat(&self.folder, &self.unfinished, AtFlags::empty());
+        }
+    }
+}
+
+impl Write for Replacement {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn write_vectored(&mut self, parts: &[IoSlice<'_>]) -> io::Result<usize> {
+        self.file.write_vectored(parts)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
