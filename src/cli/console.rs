@@ -3,7 +3,7 @@
 use super::{
     arguments::Colour,
     interrupt,
-    screen::{clear_bars, on_screen},
+    screen::{clear_bars, on_screen, write_above_bars},
     values::TextOrJson,
 };
 use crate::{
@@ -110,11 +110,7 @@ pub(super) fn print(text: &[u8]) -> Result<()> {
 
 /// Prints to standard error, above the bars; there is nowhere left to report a failure.
 pub(super) fn complain(text: &[u8]) {
-    let write = || drop(io::stderr().lock().write_all(text));
-    match &*on_screen() {
-        Some(bars) => bars.suspend(write),
-        None => write(),
-    }
+    write_above_bars(text);
 }
 
 /// Prints what is worth knowing, but no error, to standard error.

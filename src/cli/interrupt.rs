@@ -2,7 +2,7 @@
 //!
 //! The first signal lets a grading come to its end: programs are ended, and what is known is written. Whoever waits for
 //! something that never comes is not waited for: where nothing moves for some seconds the program ends all the same.
-use super::{console, exit, screen};
+use super::{exit, screen};
 use crate::suite::Cancellation;
 use std::{
     fs,
@@ -80,7 +80,7 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                 // First of all: whatever follows could wait, too.
                 thread::spawn(end_when_nothing_moves);
                 signalled.cancel();
-                console::complain(b"\nstopping (once more to stop at once)\n");
+                screen::write_above_bars(b"\nstopping (once more to stop at once)\n");
             }));
             cancellation
         })

@@ -12,6 +12,15 @@ pub(super) fn on_screen() -> MutexGuard<'static, Option<MultiProgress>> {
     ON_SCREEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Writes to standard error, above the bars; there is nowhere left to report a failure.
+pub(super) fn write_above_bars(text: &[u8]) {
+    let write = || drop(io::stderr().lock().write_all(text));
+    match &*on_screen() {
+        Some(bars) => bars.suspend(write),
+        None => write(),
+    }
+}
+
 /// Takes the bars away.
 pub(super) fn clear_bars() {
     if let Some(bars) = on_screen().take() {

@@ -189,9 +189,7 @@ impl Folder {
             .read_to_end(&mut bytes)
             .map_err(|source| FileError::System { name: escaped(name), source })?;
         match bytes.len() as u64 {
-            length if length > max_bytes => {
-                Err(FileError::TooLong { name: escaped(name), length, limit: max_bytes })
-            }
+            length if length > max_bytes => Err(FileError::TooLong { name: escaped(name), length, limit: max_bytes }),
             _ => Ok(bytes),
         }
     }
@@ -249,7 +247,8 @@ impl Folder {
     #[must_use]
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.above(Path::new(name)).ok()?;
-        let stat = statat(folder.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd), last, AtFlags::SYMLINK_NOFOLLOW);
+        let stat =
+            statat(folder.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd), last, AtFlags::SYMLINK_NOFOLLOW);
         let stat = stat.ok().filter(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::RegularFile)?;
         Some((Identity::new(stat.st_dev, stat.st_ino), stat.st_uid))
     }

@@ -150,7 +150,7 @@ impl Stage {
             .map(|name| {
                 let path = self.folder.path().join(name);
                 std::fs::write(&path, name).expect("a program");
-                Submission { name: (*name).to_owned(), path, program: None }
+                Submission { name: (*name).to_owned(), path, program: None, file: None }
             })
             .collect()
     }

@@ -148,6 +148,15 @@ impl Grade {
     }
 }
 
+/// An entry of a class's folder that is no submission, and why: nobody is left out in silence.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PassedOver {
+    /// Its name, as that of a submission ([`names`](crate::names)).
+    pub name: String,
+    /// Why, in words.
+    pub why: String,
+}
+
 /// The build step's end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Build {

@@ -11,6 +11,7 @@ use super::{
     guard::guarded,
     key::Key,
     located::{Content, Contents},
+    one_file::OneFile,
     patience,
     plan::Plan,
     result::{Failure, NotRunReason, Reason, SceneResult},
@@ -40,6 +41,8 @@ pub struct Submission {
     /// The program's name in the folder `path`, which somebody else filled. Links are not followed, and nothing is
     /// built.
     pub program: Option<String>,
+    /// Which file the program was when submissions were looked for.
+    pub file: Option<OneFile>,
 }
 
 impl Submission {
@@ -339,7 +342,7 @@ impl<'a> Grading<'a> {
     fn digest(&self) -> Option<blake3::Hash> {
         *self.digest.get_or_init(|| match &self.submission.program {
             _ if self.builds() => None,
-            Some(program) => staging::digest_in(&self.submission.path, program),
+            Some(program) => staging::digest_in(&self.submission.path, program, self.submission.file.as_ref()),
             None => staging::digest(&self.submission.path),
         })
     }
@@ -356,12 +359,12 @@ impl<'a> Grading<'a> {
     }
 
     fn stage(&self) -> Result<Staged, StagingError> {
-        let Submission { path, program, .. } = self.submission;
+        let Submission { path, program, file, .. } = self.submission;
         match (&self.grader.plan.build, program) {
             (Some(step), None) if self.builds() => {
                 staging::build(path, step, self.grader.backend, self.shared.cancellation)
             }
-            (_, Some(program)) => staging::program_in(path, program),
+            (_, Some(program)) => staging::program_in(path, program, file.as_ref()),
             (_, None) => staging::program(path),
         }
     }

@@ -331,6 +331,25 @@ mod tests {
     }
 
     #[test]
+    fn files_of_a_suite_are_regular_and_limited() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for name in ["a.xml", "b.xml", "c.xml"] {
+            std::fs::write(folder.path().join(name), "<scene/>").expect("written");
+        }
+        let found = |pattern: &str, scenes, bytes| {
+            let found = files(pattern, folder.path(), &mut Room { scenes, bytes });
+            found.map(|found| found.len())
+        };
+        assert_eq!(found("*.xml", 3, 24), Ok(3));
+        assert!(found("*.xml", 2, 24).expect_err("one too many").contains("beyond 10000 scenes"));
+        assert!(found("*.xml", 3, 23).expect_err("too large").contains("beyond 268435456 bytes"));
+        std::fs::File::create(folder.path().join("hole")).expect("a file").set_len(1 << 40).expect("a hole");
+        std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero")).expect("a link");
+        assert!(found("hole", 3, 24).expect_err("a hole").contains("too large for a scene"));
+        assert!(found("zero", 3, 24).expect_err("a device").contains("a device"));
+    }
+
+    #[test]
     fn missing_and_doubled_scenes_are_told_at_their_patterns() {
         let text = "schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:NoSuchTests/*\",\n \"no/*.xml\"]\n\
                     [[group]]\nname = \"b\"\nscenes = [\"asset:SimpleTests/*\", \"asset:SimpleTests/*\"]\n";

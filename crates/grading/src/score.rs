@@ -4,7 +4,7 @@ use super::{
     grade::{Grade, GroupGrade, SceneGrade},
     grader::{Grading, lock},
     located::{Contents, Failing, Located, Tried, locate},
-    patience,
+    one_file, patience,
     result::{Reason, SceneResult},
     verdict::Verdict,
 };
@@ -129,6 +129,10 @@ impl Grading<'_> {
             .map(|planned| group(&planned.name, planned.marking, results.by_ref().take(planned.scenes.len()).collect()))
             .collect();
         let refuted = self.refuted(&groups);
+        let mut warnings = self.grader.backend.weaknesses();
+        if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.is_anothers) {
+            warnings.push(one_file::SHARED.to_owned());
+        }
         let active = self.grader.backend.layers().iter().filter(|report| report.active);
         let mut grade = Grade {
             submission: self.submission.name.clone(),
@@ -140,7 +144,7 @@ impl Grading<'_> {
             shows_output: plan.show_output || groups.iter().all(|group| group.visibility == Visibility::Visible),
             groups,
             build,
-            warnings: self.grader.backend.weaknesses(),
+            warnings,
             layers: active.map(|report| report.layer.name().to_owned()).collect(),
             wall,
             refuted,

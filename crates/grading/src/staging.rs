@@ -8,6 +8,7 @@ use super::{
     cancellation::Cancellation,
     config::BuildStep,
     grade::Build,
+    one_file::{ANOTHERS, OneFile, Whose, whose},
     result::{BuildEnd, Unusable},
     temporary::Temporary,
     upload,
@@ -126,14 +127,18 @@ pub fn program(path: &Path) -> Result<Staged, StagingError> {
 }
 
 /// As [`program`], for a program at `name` in a folder that somebody else filled: a link that leads elsewhere, to
-/// another's submission perhaps, is refused.
+/// another's submission perhaps, is refused, and so is a file that is `noted` to be another's.
 ///
 /// # Errors
 /// As for [`program`].
-pub fn program_in(folder: &Path, name: &str) -> Result<Staged, StagingError> {
+pub fn program_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<Staged, StagingError> {
     let path = folder.join(name);
-    match collect::open_regular_file(folder, name, LARGEST_FOLDER) {
-        Ok((file, _)) => copied(file, &path),
+    match open_in(folder, name) {
+        Ok(file) => match whose(&file, noted) {
+            Ok(Whose::Own) => copied(file, &path),
+            Ok(Whose::Anothers) => Ok(Staged::refused(&path, Unusable::Unreadable(ANOTHERS.to_owned()))),
+            Err(error) => Err(at(&path)(error)),
+        },
         Err(CollectError::Missing { .. }) => Ok(Staged::refused(&path, upload::without(name, folder))),
         Err(CollectError::System { source, .. })
             if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
@@ -142,6 +147,11 @@ pub fn program_in(folder: &Path, name: &str) -> Result<Staged, StagingError> {
         }
         Err(error) => Ok(Staged::refused(&path, Unusable::Unreadable(error.to_string()))),
     }
+}
+
+fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
+    let opened = OpenFolder::open(folder).map_err(|source| CollectError::System { name: name.to_owned(), source })?;
+    opened.file(OsStr::new(name), LARGEST_FOLDER).map(|(file, _)| file)
 }
 
 /// The digest of a program as it lies there, without a copy; `None` for what [`program`] refuses, and for links.
@@ -154,8 +164,9 @@ pub fn digest(path: &Path) -> Option<blake3::Hash> {
 
 /// As [`digest`], for what [`program_in`] takes.
 #[must_use]
-pub fn digest_in(folder: &Path, name: &str) -> Option<blake3::Hash> {
-    let (file, _) = collect::open_regular_file(folder, name, LARGEST_FOLDER).ok()?;
+pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<blake3::Hash> {
+    let file = open_in(folder, name).ok()?;
+    whose(&file, noted).ok().filter(|whose| *whose == Whose::Own)?;
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok().then(|| hasher.finalize())
 }
@@ -418,7 +429,7 @@ mod tests {
             assert!(staged.refused.is_some() && digest(&sources.join(name)).is_none(), "{name}");
         }
         assert!(
-            program_in(&sources, "link")
+            program_in(&sources, "link", None)
                 .unwrap()
                 .refused
                 .is_some_and(|why| format!("{why:?}").contains("symbolic link"))

@@ -1,5 +1,8 @@
 //! What a submission's folder holds, for whoever looks for a program in it and finds none.
-use super::result::{FolderContents, Unusable};
+use super::{
+    names,
+    result::{FolderContents, Unusable},
+};
 use fosssim_sandbox::collect::{FolderEntry, OpenFolder};
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
@@ -8,19 +11,6 @@ const NAMED: usize = 6;
 /// So many are looked at, so deep, to find the program where it is not looked for.
 const LOOKED_AT: u32 = 2000;
 const DEEPEST: u32 = 3;
-
-/// A file's name as text: bytes that are no text stay apart as `\xff`, so that two names never look the same for them.
-#[must_use]
-pub fn name(name: &OsStr) -> String {
-    let mut text = String::new();
-    for chunk in name.as_bytes().utf8_chunks() {
-        text.push_str(chunk.valid());
-        for byte in chunk.invalid() {
-            text.push_str(&format!("\\x{byte:02x}"));
-        }
-    }
-    text
-}
 
 /// Why there is nothing to run: what was looked for, and what is there instead.
 pub(super) fn without(program: &str, folder: &Path) -> Unusable {
@@ -52,7 +42,7 @@ fn entry(folder: &OpenFolder, name: &OsStr) -> String {
 }
 
 fn shown_path(path: &Path) -> String {
-    name(path.as_os_str()).chars().flat_map(|c| if c == '\\' { vec![c] } else { c.escape_debug().collect() }).collect()
+    names::shown(path.as_os_str())
 }
 
 /// The path of a file of this name beneath a folder, the shallowest of each folder first.
@@ -106,12 +96,5 @@ mod tests {
         assert_eq!((names[0].as_str(), names[1].as_str(), more), ("a0\\n", "a1\\n", 6));
         let nowhere = without("FOSSSim", Path::new("/nowhere"));
         assert!(matches!(nowhere, Unusable::NoProgram { found: FolderContents::Unreadable(_), .. }));
-    }
-
-    #[test]
-    fn names_that_are_no_text_stay_apart() {
-        let shown = |bytes: &[u8]| name(OsStr::from_bytes(bytes));
-        assert_eq!((shown(b"a\xff"), shown(b"a\xfe")), ("a\\xff".to_owned(), "a\\xfe".to_owned()));
-        assert_eq!(shown("Zoë".as_bytes()), "Zoë");
     }
 }

@@ -1,7 +1,7 @@
 //! How a grading goes, on standard error: bars on a terminal, otherwise a line per finished submission.
 use crate::{
     cli::{console, screen},
-    report::grade::{no_points, one_line, score},
+    report::grade::{no_points, one_line, score, shortened},
     suite::{Submission, batch::Event, plan::Plan},
 };
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
@@ -67,7 +67,7 @@ impl<'a> Display<'a> {
                     "[{}/{}] {}: {}, {}",
                     self.graded,
                     self.submissions.len(),
-                    one_line(&grade.submission),
+                    shortened(&one_line(&grade.submission)),
                     grade.verdict,
                     reached.or_else(|| no_points(grade)).unwrap_or_default(),
                 );
@@ -86,7 +86,7 @@ impl<'a> Display<'a> {
         if let Ok(style) = ProgressStyle::with_template("  {msg:<60!} step {pos} of {len}") {
             bar.set_style(style);
         }
-        bar.set_message(format!("{} {}", one_line(&self.submissions[submission].name), task.name));
+        bar.set_message(format!("{} {}", shortened(&one_line(&self.submissions[submission].name)), task.name));
         bars.running.insert((submission, scene), bar);
     }
 }

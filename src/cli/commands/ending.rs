@@ -22,15 +22,30 @@ pub(super) fn exit_code(grades: &[Grade]) -> u8 {
     }
 }
 
+/// A scene's name as a file name.
+pub(super) fn file_of_scene(name: &str) -> String {
+    file_name(&name.replace('/', "_"))
+}
+
 /// A name as a file name: no separators, no leading dot, not too long, and another for every other name.
 pub(super) fn file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
-    let plain: String = name.replace('/', "_").chars().map(safe).take(100).collect();
-    let plain = plain.trim_start_matches('.').trim();
-    if !plain.is_empty() && plain == name.replace('/', "_") {
+    let plain: String = name.chars().map(safe).take(100).collect();
+    // Nor what is an option to whoever types a pattern, or a device or no name where results are handed on to Windows.
+    let plain = plain.trim_start_matches(['.', '-']).trim().trim_end_matches('.');
+    if !plain.is_empty() && plain == name && !is_device(plain) {
         return plain.to_owned();
     }
-    format!("{plain}-{}", &blake3::hash(name.as_bytes()).to_hex()[..8])
+    let digest = &blake3::hash(name.as_bytes()).to_hex()[..8];
+    // The mark stands in no name that is taken as it is, or somebody could be called like another's file.
+    format!("{}{plain}~{digest}", if is_device(plain) { "_" } else { "" })
+}
+
+/// Whether Windows takes a name for a device, whatever follows its first dot.
+fn is_device(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
+    let numbered = |device: &str| stem.strip_prefix(device).is_some_and(|number| "0123456789".contains(number));
+    matches!(stem.as_str(), "con" | "prn" | "aux" | "nul") || numbered("com") || numbered("lpt")
 }
 
 /// How much is shown of each submission.
@@ -48,5 +63,54 @@ pub(super) fn with_class(text: String, grades: &[Grade], shown: TextDetail, styl
     match grades.len() > 1 && shown > TextDetail::Line {
         true => text + "\n" + &grade::class(grades, HARDEST, style),
         false => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{file_name, file_of_scene};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn a_file_has_a_name_that_every_system_takes_and_no_other_has() {
+        assert_eq!(file_name("smith-12345678"), "smith-12345678");
+        assert_eq!(file_of_scene("Group/scene 1"), "Group_scene 1");
+        let names = [
+            "alice",
+            "alice\\r",
+            "-rf",
+            "rf",
+            "=cmd",
+            "a,b",
+            "a\"b",
+            "..",
+            ".",
+            "...",
+            "con",
+            "CON",
+            "con.",
+            "nul.txt",
+            "com1",
+            "common",
+            "alice.",
+            "alice\\u{20}",
+            "\u{e9}",
+            "e\\u{301}",
+            "Zo\u{eb}",
+            &file_name("Zo\u{eb}"),
+            "a/b",
+            "a_b",
+            "~",
+            "",
+        ]
+        .map(str::to_owned);
+        let long = ["x".repeat(255), "\u{754c}".repeat(180), "x".repeat(101)];
+        let files: BTreeSet<String> = names.iter().chain(&long).map(|name| file_name(name)).collect();
+        assert_eq!(files.len(), names.len() + long.len(), "{files:?}");
+        for file in &files {
+            assert!(file.len() < 120 && !file.starts_with(['-', '.']) && !file.ends_with(['.', ' ']), "{file}");
+            let stem = file.split('.').next().unwrap_or_default().to_ascii_lowercase();
+            assert!(!["con", "nul", "com1"].contains(&stem.as_str()), "{file}");
+        }
     }
 }

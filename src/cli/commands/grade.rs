@@ -2,12 +2,12 @@
 use super::{
     closer::Closer,
     display::Display,
-    ending::{exit_code, file_name, shown, with_class},
+    ending::{exit_code, file_name, file_of_scene, shown, with_class},
     last_run::LastRun,
     pages::{self, Pages},
     results::{Report, Results, reports},
     shard::Sharding,
-    submissions::Search,
+    submissions::{Found, Search},
     traces,
 };
 use crate::{
@@ -29,7 +29,7 @@ use crate::{
     },
     sandbox::{Backend, Supervisor},
     suite::{
-        Cancellation, Grade, Grader, SceneTask, Submission, Verdict, batch,
+        Cancellation, Grade, Grader, PassedOver, SceneTask, Submission, Verdict, batch,
         cards::{Cards, Judged},
         grader::Options,
         plan::{self, Plan},
@@ -69,14 +69,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     if arguments.output.is_none() && output.is_symlink() {
         bail!("{} is a link, which is not followed unless you name it: --output {0}", output.display());
     }
-    let mut submissions = Search::new(arguments, plan.build.as_ref(), &output).run()?;
+    let Found { mut submissions, passed_over } = Search::new(arguments, plan.build.as_ref(), &output).run()?;
     let sharding = arguments.shard.map(|shard| Sharding::new(shard, &plan, arguments, &submissions, &output));
     let output = sharding.as_ref().map_or(output, |sharding| sharding.folder.clone());
     if let Some(sharding) = &sharding {
         sharding.begin()?;
         submissions = sharding.part(submissions);
         if submissions.is_empty() {
-            return sharding.end(&[]).map(|()| exit::ACCEPTED);
+            return sharding.end(&[], &passed_over).map(|()| exit::ACCEPTED);
         }
     }
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let draws = pictures || folder.is_some() || reports.iter().any(|report| report.format == Format::Html);
     let pages = if draws { Some(Pages::new(folder.as_deref())?) } else { None };
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
-    let session = Session { arguments, plan, backend, cancellation, folder, pages, is_part, sharding };
+    let session = Session { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over };
     if arguments.watch {
         return session.watch(&submissions, &reports, &mut last_run);
     }
@@ -147,6 +147,8 @@ struct Session<'a> {
     is_part: bool,
     /// The part of the submissions that this is, if it is one.
     sharding: Option<Sharding>,
+    /// The entries that are no submissions.
+    passed_over: Vec<PassedOver>,
 }
 
 impl Session<'_> {
@@ -164,7 +166,7 @@ impl Session<'_> {
             Some(fault) => Err(fault),
             None => {
                 if let Some(sharding) = self.sharding.as_ref().filter(|_| !self.cancellation.is_cancelled()) {
-                    sharding.end(&grades)?;
+                    sharding.end(&grades, &self.passed_over)?;
                 }
                 let code = self.exit_code(&grades);
                 Ok((grades, code))
@@ -193,7 +195,7 @@ impl Session<'_> {
     /// Where the trace of a scene goes that is not accepted, when traces are kept.
     fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
-        Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_name(scene))))
+        Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_of_scene(scene))))
     }
 
     /// Draws what a page shows of a trace.
@@ -216,7 +218,8 @@ impl Session<'_> {
             fail_fast: self.arguments.fail_fast,
             recorded: self.arguments.recorded,
         };
-        let faults = self.folder.as_deref().map_or_else(|| Place::new("", FAULTS), |folder| Place::new(folder, "faults"));
+        let faults =
+            self.folder.as_deref().map_or_else(|| Place::new("", FAULTS), |folder| Place::new(folder, "faults"));
         let trace = |submission: &Submission, scene: &SceneTask| {
             self.trace(&submission.name, &scene.name).unwrap_or_else(|| faults.clone())
         };
@@ -246,7 +249,7 @@ impl Session<'_> {
             }
         };
         let results = kept.as_ref().map(|kept| kept as &dyn crate::suite::results::Results);
-        let (grades, fault) = match submissions {
+        let (mut grades, fault) = match submissions {
             [submission] => {
                 let (grade, fault) = grader.grade_submission(submission, results, self.cancellation, &mut on_event);
                 (Vec::from_iter(grade), fault)
@@ -257,13 +260,20 @@ impl Session<'_> {
             }
         };
         drop(display);
+        grade::warn_of(&mut grades, self.passed_over());
         Ok((grades, fault.map(anyhow::Error::from).or(log_error)))
+    }
+
+    /// The entries that are no submissions. Of a shard, `merge` tells them.
+    fn passed_over(&self) -> &[PassedOver] {
+        if self.sharding.is_some() { &[] } else { &self.passed_over }
     }
 
     /// Writes the reports and, into the folder, the files that a batch ends with.
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
         let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader.into());
-        let results = Results { folder, pages, reader, is_part: self.is_part, grades };
+        let passed_over = self.passed_over();
+        let results = Results { folder, pages, reader, is_part: self.is_part, grades, passed_over };
         results.write(reports, || self.text(grades, submissions))
     }
 
@@ -281,7 +291,7 @@ impl Session<'_> {
         };
         let (style, width) = (console::style(), console::width());
         let text = Text { style, shown, width, again: None, closer: Some(&closer) }.render(grades);
-        with_class(text, grades, shown, style)
+        with_class(text, grades, shown, style) + &grade::not_graded(grades, self.passed_over(), style)
     }
 
     fn exit_code(&self, grades: &[Grade]) -> u8 {
@@ -365,7 +375,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
             grade::printed(&scene.stdout),
             grade::printed(&scene.stderr),
         );
-        output::write_at(&folder.join(format!("{}.log", file_name(&scene.scene))), text.as_bytes())?;
+        output::write_at(&folder.join(format!("{}.log", file_of_scene(&scene.scene))), text.as_bytes())?;
     }
     Ok(())
 }

@@ -99,7 +99,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
         ),
     ] {
         let plan = plan::Plan { run, ..plan.clone() };
-        let submission = Submission { name, path: sample.clone(), program: None };
+        let submission = Submission { name, path: sample.clone(), program: None, file: None };
         let grader = Grader {
             plan: &plan,
             backend: &backend,

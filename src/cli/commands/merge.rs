@@ -15,7 +15,7 @@ use crate::{
     },
     suite::{
         Grade,
-        results::{FolderResults, JOURNAL, LARGEST_JOURNAL, Line, Results as _, each_line, read_line},
+        results::{FolderResults, JOURNAL, LARGEST_JOURNAL, Results as _, each_line, read_line},
     },
 };
 use anyhow::{Context, Result, bail};
@@ -61,16 +61,26 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
         }
         keep_results(folder, &kept)?;
     }
-    let suite = first.common.suite.clone();
+    let (suite, passed_over) = (first.common.suite.clone(), first.passed_over.clone());
     let order = names.clone();
     let mut grades: Vec<Grade> = parts.into_iter().flat_map(|(_, part)| part.grades).collect();
     let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
     grades.sort_by_key(place);
+    grade::warn_of(&mut grades, &passed_over);
     let pages = Pages::new(Some(&output))?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);
     let reader = arguments.reader.into();
-    let results = Results { folder: Some(&output), pages: Some(&pages), reader, is_part: false, grades: &grades };
-    results.write(&reports, || text(&grades, arguments.quiet))?;
+    let results = Results {
+        folder: Some(&output),
+        pages: Some(&pages),
+        reader,
+        is_part: false,
+        grades: &grades,
+        passed_over: &passed_over,
+    };
+    results.write(&reports, || {
+        text(&grades, arguments.quiet) + &grade::not_graded(&grades, &passed_over, console::style())
+    })?;
     Ok(exit_code(&grades))
 }
 
@@ -108,7 +118,11 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &Merge) -> Result<(&'a 
     if let Some((_, one)) = grades.next()
         && let Some((other, grade)) = grades.find(|(_, grade)| !one.is_of_the_suite_of(grade))
     {
-        bail!("{} grades {} by another suite than the others: grade this shard again", other.display(), grade.submission);
+        bail!(
+            "{} grades {} by another suite than the others: grade this shard again",
+            other.display(),
+            grade.submission
+        );
     }
     let of = first.common.of;
     let mut missing = Vec::new();
@@ -152,15 +166,14 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
         Err(FileError::Missing { .. }) => return Ok(()),
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
-    each_line(BufReader::new(file.take(length)), |line| {
+    each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
         // What somebody damaged is graded again, as in any folder.
-        if let Line::Whole(line) = line
-            && let Some(entry) = read_line(line)
-        {
+        if let Some(entry) = read_line(line) {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;
         }
         Ok(())
     })
+    .with_context(|| format!("cannot read {}", place.path().display()))
 }
 
 /// Copies the files of a folder. Links are not followed, on neither side.

@@ -2,9 +2,9 @@
 use super::ending::file_name;
 use crate::{
     cli::output,
-    files::Place,
     diagnose::Explanation,
     evidence::{self, Evidence, Focus, StepRulings, Track},
+    files::Place,
     judge::{Outcome, Rules, replay},
     report::{
         check::{Check, StepChoice, WrongSteps},
@@ -14,7 +14,7 @@ use crate::{
     scene::Scene,
     student,
     suite::{
-        Grade, SceneGrade,
+        Grade, PassedOver, SceneGrade,
         cards::{self, Judged},
         config::Hints,
         guarded,
@@ -79,7 +79,12 @@ impl Pages {
 
     /// Writes the pages for staff into the folder for results, and those to hand out beside them where they are asked
     /// for; the one to begin with.
-    pub(super) fn write(&self, grades: &[Grade], reader: Audience) -> Result<Option<PathBuf>> {
+    pub(super) fn write(
+        &self,
+        grades: &[Grade],
+        passed_over: &[PassedOver],
+        reader: Audience,
+    ) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
         if reader == Audience::Student {
             for grade in grades {
@@ -99,7 +104,7 @@ impl Pages {
         // Names of files hold nothing that an address would have to write otherwise, but blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
         let index = Place::new(folder, "index.html");
-        output::write_at(&index, ClassPage { grades, page: &page }.html().as_bytes())?;
+        output::write_at(&index, ClassPage { grades, passed_over, page: &page }.html().as_bytes())?;
         Ok(Some(index.path()))
     }
 }

@@ -63,7 +63,8 @@ fn scenes(folder: &Path) -> Result<Vec<Input>> {
         }
     }
     let read = |SceneFile { name, stem, path }: SceneFile| {
-        let xml = files::read(&path, LARGEST_SCENE as u64).with_context(|| format!("cannot read {}", path.display()))?;
+        let xml =
+            files::read(&path, LARGEST_SCENE as u64).with_context(|| format!("cannot read {}", path.display()))?;
         Ok(Input { name, stem, xml })
     };
     files.into_iter().map(read).collect()

@@ -9,7 +9,7 @@ use crate::{
         style::Style,
         wrap,
     },
-    suite::{Grade, guarded},
+    suite::{Grade, PassedOver, guarded},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -70,6 +70,8 @@ pub(super) struct Results<'a> {
     /// Whether scenes of the suite were left out on purpose.
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],
+    /// The entries that are no submissions.
+    pub(super) passed_over: &'a [PassedOver],
 }
 
 impl Results<'_> {
@@ -79,7 +81,7 @@ impl Results<'_> {
     /// # Errors
     /// The first file that can't be written; the others are written all the same.
     pub(super) fn write(&self, reports: &[Report], text: impl Fn() -> String) -> Result<()> {
-        let grades = self.grades;
+        let (grades, passed_over) = (self.grades, self.passed_over);
         // One file that can't be written must not cost the others.
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
@@ -88,26 +90,34 @@ impl Results<'_> {
                 b"a part of the suite is no grade: grades.csv and the other tables are left as they are\n",
             );
         } else if let Some(folder) = self.folder {
-            let lines = || grades.iter().map(grade::json_line).collect();
-            keep(write_in(folder, "grades.csv", || grade::csv_of_submissions(grades)));
-            keep(write_in(folder, "scenes.csv", || Format::Csv.render(grades)));
+            let lines = || grade::json_lines(grades, passed_over);
+            keep(write_in(folder, "grades.csv", || grade::csv_of_submissions(grades, passed_over)));
+            keep(write_in(folder, "scenes.csv", || Format::Csv.render_class(grades, passed_over)));
             keep(write_in(folder, "grades.jsonl", lines));
             if grades.len() > 1 {
-                let class = || wrap::wrapped(&grade::class(grades, usize::MAX, Style::Plain), CLASS_WIDTH);
+                let text = || {
+                    grade::class(grades, usize::MAX, Style::Plain)
+                        + &grade::not_graded(grades, passed_over, Style::Plain)
+                };
+                let class = || wrap::wrapped(&text(), CLASS_WIDTH);
                 keep(write_in(folder, "class.txt", class));
             }
             if let Some(pages) = self.pages {
-                keep(made("the pages", || pages.write(grades, self.reader)).and_then(|written| written).map(|first| {
-                    if let Some(first) = first {
-                        console::remark(format!("to look at: {}\n", first.display()).as_bytes());
-                    }
-                }));
+                keep(
+                    made("the pages", || pages.write(grades, passed_over, self.reader))
+                        .and_then(|written| written)
+                        .map(|first| {
+                            if let Some(first) = first {
+                                console::remark(format!("to look at: {}\n", first.display()).as_bytes());
+                            }
+                        }),
+                );
             }
         }
         for report in reports {
             let render = || match (report.format, self.pages, grades) {
                 (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None, self.reader),
-                _ => report.format.render(grades),
+                _ => report.format.render_class(grades, passed_over),
             };
             match (&report.file, report.format) {
                 (None, Format::Text) => {

@@ -7,7 +7,7 @@ use crate::{
         output,
     },
     files::{FileError, Place},
-    suite::{Grade, Submission, plan::Plan, score, this_build},
+    suite::{Grade, PassedOver, Submission, plan::Plan, score, this_build},
 };
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
@@ -69,6 +69,9 @@ pub(super) struct Part {
     pub(super) number: usize,
     /// The grades of its own submissions, in order.
     pub(super) grades: Vec<Grade>,
+    /// The entries of the class that are no submissions.
+    #[serde(default)]
+    pub(super) passed_over: Vec<PassedOver>,
 }
 
 impl Part {
@@ -86,7 +89,8 @@ impl Part {
         // Read as a stream: what is no JSON ends at its first byte, however long it is.
         let part: Self = serde_json::from_reader(BufReader::new(opened))
             .with_context(|| format!("{} is damaged, or another version's: grade this shard again", file.display()))?;
-        part.check().with_context(|| format!("{} does not hold what it should: grade this shard again", file.display()))?;
+        part.check()
+            .with_context(|| format!("{} does not hold what it should: grade this shard again", file.display()))?;
         Ok(Some(part))
     }
 
@@ -163,8 +167,9 @@ impl Sharding {
     ///
     /// # Errors
     /// When they can't be written.
-    pub(super) fn end(&self, grades: &[Grade]) -> Result<()> {
-        let part = Part { common: self.common.clone(), number: self.shard.number, grades: grades.to_vec() };
+    pub(super) fn end(&self, grades: &[Grade], passed_over: &[PassedOver]) -> Result<()> {
+        let (common, number, passed_over) = (self.common.clone(), self.shard.number, passed_over.to_vec());
+        let part = Part { common, number, grades: grades.to_vec(), passed_over };
         output::write_at(&Place::new(&self.folder, FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
         let line = format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.of);

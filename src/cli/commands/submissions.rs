@@ -1,13 +1,15 @@
 //! Finds the submissions that the arguments of `grade` mean.
 use crate::{
     cli::{console, grading::Grade, input},
-    suite::{Submission, config::BuildStep, upload},
+    files::{Folder, Identity},
+    suite::{OneFile, PassedOver, Submission, config::BuildStep, names},
 };
 use anyhow::{Context, Result, bail};
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
+    ffi::{OsStr, OsString},
     fs,
-    os::unix::fs::PermissionsExt,
+    os::unix::fs::{MetadataExt, PermissionsExt},
     path::{Path, PathBuf},
 };
 
@@ -16,6 +18,30 @@ const RESULTS: [&str; 2] = [".lock", "journal.jsonl"];
 
 /// The folders in it.
 const OWN: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
+
+/// Why a folder of results is no submission.
+const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
+
+/// A class has no more entries.
+const MOST_ENTRIES: usize = 100_000;
+
+/// What was found.
+pub(super) struct Found {
+    pub(super) submissions: Vec<Submission>,
+    pub(super) passed_over: Vec<PassedOver>,
+}
+
+/// A submission that has no name yet.
+struct Entry {
+    /// Where it lies.
+    path: PathBuf,
+    /// The folder, or the file itself.
+    folder: PathBuf,
+    /// The program in the folder.
+    program: Option<String>,
+    /// Whether the folder is the submission's own.
+    is_folder: bool,
+}
 
 /// Where submissions are looked for, and what is none.
 pub(super) struct Search<'a> {
@@ -36,34 +62,41 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// Paths that are not there, folders without any submission.
-    pub(super) fn run(&self) -> Result<Vec<Submission>> {
-        let mut found = Vec::new();
+    pub(super) fn run(&self) -> Result<Found> {
+        let (mut found, mut passed_over) = (Vec::new(), Vec::new());
         for path in &self.arguments.programs {
             let data = fs::metadata(path).with_context(|| format!("no submission at {}", path.display()))?;
             if !data.is_dir() {
                 refuse_scene(path)?;
-                found.push(Submission { name: name_of(path), path: path.clone(), program: None });
+                found.push(Entry { path: path.clone(), folder: path.clone(), program: None, is_folder: false });
             } else if self.arguments.single {
                 found.push(self.folder(path));
             } else if self.arguments.programs.len() > 1 && self.is_results(path) {
-                pass_over(path, "it holds the results of a grading");
+                pass_over(&mut passed_over, path, RESULTS_OF_A_GRADING);
             } else if self.is_one(path) {
                 found.push(self.folder(path));
             } else {
-                found.extend(self.entries(path)?);
+                self.entries(path, &mut found, &mut passed_over)?;
             }
         }
         if found.is_empty() {
             bail!("there is no submission: neither programs nor folders");
         }
-        Ok(with_distinct_names(found))
+        let paths: Vec<&Path> = found.iter().map(|entry| entry.path.as_path()).collect();
+        let names = distinct_names(&paths);
+        let files = one_files(&found, &names);
+        let submissions = found.into_iter().zip(names).zip(files);
+        let submissions = submissions
+            .map(|((entry, name), file)| Submission { name, path: entry.folder, program: entry.program, file })
+            .collect();
+        Ok(Found { submissions, passed_over })
     }
 
     /// The submission that a folder is: its sources when they are to be built, else the program inside. A program that
     /// is missing is the submission's fault: its grade says so.
-    fn folder(&self, path: &Path) -> Submission {
+    fn folder(&self, path: &Path) -> Entry {
         let program = self.build.is_none().then(|| self.arguments.program.clone());
-        Submission { name: name_of(path), path: path.to_owned(), program }
+        Entry { path: path.to_owned(), folder: path.to_owned(), program, is_folder: true }
     }
 
     /// Whether a folder is a submission itself: it holds the program, or what the suite's build begins with.
@@ -89,37 +122,36 @@ impl<'a> Search<'a> {
 
     /// One submission per entry, in alphabetical order. With a word about each are passed over hidden entries, what
     /// can't be run, results of gradings, and links: they could lead to another's submission.
-    fn entries(&self, folder: &Path) -> Result<Vec<Submission>> {
-        let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
-        let mut paths: Vec<PathBuf> = listing
-            .map(|entry| entry.map(|entry| entry.path()))
-            .collect::<Result<_, _>>()
-            .with_context(|| format!("cannot read {}", folder.display()))?;
-        paths.sort();
-        if self.is_results(folder) {
-            paths.retain(|path| !OWN.iter().any(|own| path.file_name().is_some_and(|name| name == *own)));
-        }
-        let mut submissions = Vec::new();
+    fn entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
+        let paths = listed(folder, MOST_ENTRIES)?;
+        let holds_results = self.is_results(folder);
+        let before = found.len();
         for path in &paths {
-            match fs::symlink_metadata(path) {
+            let is = |own: &&str| path.file_name().is_some_and(|name| name == *own);
+            let why = match fs::symlink_metadata(path) {
+                _ if holds_results && OWN.iter().any(is) => RESULTS_OF_A_GRADING.to_owned(),
                 _ if path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".")) => {
-                    pass_over(path, "its name begins with a dot; name it to grade it");
+                    "its name begins with a dot; name it to grade it".to_owned()
                 }
-                Ok(data) if data.is_dir() && self.is_results(path) => {
-                    pass_over(path, "it holds the results of a grading");
+                Ok(data) if data.is_dir() && self.is_results(path) => RESULTS_OF_A_GRADING.to_owned(),
+                Ok(data) if data.is_dir() => {
+                    found.push(self.folder(path));
+                    continue;
                 }
-                Ok(data) if data.is_dir() => submissions.push(self.folder(path)),
                 Ok(data) if data.is_symlink() => {
-                    pass_over(path, "it is a link, which may lead to another's submission; name it to grade it");
+                    "it is a link, which may lead to another's submission; name it to grade it".to_owned()
                 }
                 Ok(data) if data.is_file() && data.permissions().mode() & 0o111 != 0 => {
-                    submissions.push(entry(folder, path));
+                    found.push(entry(folder, path));
+                    continue;
                 }
-                Ok(_) => pass_over(path, "it is not executable"),
-                Err(error) => pass_over(path, &error.to_string()),
-            }
+                Ok(data) if data.is_file() => "it is not executable".to_owned(),
+                Ok(_) => "it is neither a file nor a folder".to_owned(),
+                Err(error) => error.to_string(),
+            };
+            pass_over(passed_over, path, &why);
         }
-        if submissions.is_empty() {
+        if found.len() == before {
             bail!(
                 "{} holds no submission: neither programs nor folders, and no {} of its own; with --single the folder \
                  is one all the same",
@@ -127,15 +159,33 @@ impl<'a> Search<'a> {
                 self.arguments.program
             );
         }
-        Ok(submissions)
+        Ok(())
     }
 }
 
-/// A program among others. It is opened beneath the folder, where another name for another's program is refused.
-fn entry(folder: &Path, path: &Path) -> Submission {
+/// The paths of a folder's entries, in alphabetical order.
+fn listed(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
+    let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let mut paths: Vec<PathBuf> = listing
+        .take(most + 1)
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<_, _>>()
+        .with_context(|| format!("cannot read {}", folder.display()))?;
+    if paths.len() > most {
+        bail!("{} has more than {most} entries, which is the limit: grade it in parts", folder.display());
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+/// A program among others. It is opened beneath the folder, where no link is followed.
+fn entry(folder: &Path, path: &Path) -> Entry {
     match path.file_name().and_then(|name| name.to_str()) {
-        Some(name) => Submission { name: name_of(path), path: folder.to_owned(), program: Some(name.to_owned()) },
-        None => Submission { name: name_of(path), path: path.to_owned(), program: None },
+        Some(name) => {
+            let program = Some(name.to_owned());
+            Entry { path: path.to_owned(), folder: folder.to_owned(), program, is_folder: false }
+        }
+        None => Entry { path: path.to_owned(), folder: path.to_owned(), program: None, is_folder: false },
     }
 }
 
@@ -151,35 +201,96 @@ fn refuse_scene(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn pass_over(path: &Path, why: &str) {
-    let name = path.file_name().map_or_else(|| path.display().to_string(), upload::name);
-    console::complain(format!("passed over {}: {why}\n", name.escape_debug()).as_bytes());
+fn pass_over(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
+    let name = names::shown(path.file_name().unwrap_or(path.as_os_str()));
+    console::complain(format!("passed over {name}: {why}\n").as_bytes());
+    passed_over.push(PassedOver { name, why: why.to_owned() });
 }
 
-fn name_of(path: &Path) -> String {
-    let absolute = path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned());
-    let given = path.file_name().map(upload::name);
-    given.unwrap_or_else(|| upload::name(absolute.file_name().unwrap_or(absolute.as_os_str())))
+/// The last name of a path.
+fn last_name(path: &Path) -> OsString {
+    let absolute = || path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned());
+    let name = path.file_name().map(OsStr::to_owned);
+    name.unwrap_or_else(|| {
+        let absolute = absolute();
+        absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
+    })
 }
 
-/// Submissions of one name get their paths as names; where even these look the same, a number.
-fn with_distinct_names(mut submissions: Vec<Submission>) -> Vec<Submission> {
-    let names: Vec<String> = submissions.iter().map(|submission| submission.name.clone()).collect();
-    let mut taken = BTreeSet::new();
-    for submission in &mut submissions {
-        if names.iter().filter(|name| **name == submission.name).count() > 1 {
-            let path = match &submission.program {
-                Some(program) if submission.name == *program => submission.path.join(program),
-                _ => submission.path.clone(),
-            };
-            submission.name = upload::name(path.as_os_str());
-        }
-        let plain = submission.name.clone();
-        let mut number = 1;
-        while !taken.insert(submission.name.clone()) {
-            number += 1;
-            submission.name = format!("{plain} ({number})");
-        }
+/// The names of what lies at these paths, none twice: the last names; where several of these look the same, those that
+/// only look so are told exactly, those that are the same get their paths, and what looks the same then a number.
+pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
+    let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
+    let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
+    for name in &own {
+        *alike.entry(names::shown(name)).or_default().entry(name).or_default() += 1;
     }
-    submissions
+    let mut taken = BTreeSet::new();
+    let mut name = |(path, own): (&&Path, &OsString)| {
+        let shown = names::shown(own);
+        let plain = match &alike[&shown] {
+            same if same[own.as_os_str()] > 1 => names::shown(path.as_os_str()),
+            same if same.len() > 1 => names::exact(own),
+            _ => shown,
+        };
+        let mut name = plain.clone();
+        let mut number = 1;
+        while !taken.insert(name.clone()) {
+            number += 1;
+            name = format!("{plain} ({number})");
+        }
+        name
+    };
+    paths.iter().zip(&own).map(&mut name).collect()
+}
+
+/// Which file each program is. Where several are one file, who owns it has handed it in: the owner of a folder, in which
+/// alone an entry of a class has an owner of its own.
+fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
+    let file = |entry: &Entry| {
+        let program = entry.program.as_ref()?;
+        let (identity, owner) = Folder::to_write(&entry.folder).ok()?.identity(OsStr::new(program))?;
+        let folder = entry.is_folder.then(|| fs::metadata(&entry.folder).ok()).flatten();
+        Some((identity, folder.map(|folder| folder.uid() == owner)))
+    };
+    let files: Vec<Option<(Identity, Option<bool>)>> = entries.iter().map(file).collect();
+    let mut owners: BTreeMap<Identity, Vec<usize>> = BTreeMap::new();
+    for (number, (identity, _)) in files.iter().enumerate().filter_map(|(number, file)| Some((number, (*file)?))) {
+        owners.entry(identity).or_default().push(number);
+    }
+    for same in owners.values().filter(|same| same.len() > 1) {
+        let names: Vec<&str> = same.iter().map(|&number| names[number].as_str()).collect();
+        console::complain(format!("one file under several names (hard links): {}\n", names.join(", ")).as_bytes());
+    }
+    let of = |(identity, is_owner): (Identity, Option<bool>)| {
+        let same = &owners[&identity];
+        let is_owned = same.iter().any(|&other| matches!(files[other], Some((_, Some(true)))));
+        OneFile { identity, is_shared: same.len() > 1, is_anothers: is_owned && is_owner != Some(true) }
+    };
+    files.iter().map(|file| file.map(of)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_class_has_so_many_entries_at_most() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["c", "a", "b"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        assert_eq!(listed(folder.path(), 3).unwrap(), ["a", "b", "c"].map(|name| folder.path().join(name)));
+        assert!(listed(folder.path(), 2).unwrap_err().to_string().contains("more than 2 entries"));
+    }
+
+    #[test]
+    fn every_entry_has_a_name_of_its_own() {
+        let names = |paths: &[&str]| distinct_names(&paths.iter().map(Path::new).collect::<Vec<_>>());
+        assert_eq!(names(&["c/alice", "c/alice\r", "c/bob"]), ["alice", "alice\\r", "bob"]);
+        assert_eq!(names(&["c/\u{e9}", "c/e\u{301}"]), ["\u{e9}", "e\\u{301}"]);
+        assert_eq!(names(&["c/e\u{301}"]), ["\u{e9}"]);
+        assert_eq!(names(&["one/x", "two/x", "x"]), ["one/x", "two/x", "x"]);
+        assert_eq!(names(&["x", "x", "x (2)"]), ["x", "x (2)", "x (2) (2)"]);
+    }
 }

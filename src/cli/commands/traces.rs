@@ -4,6 +4,7 @@ use super::{
     ending::{exit_code, shown, with_class},
     pages::{self, Pages},
     results::{Report, Results},
+    submissions::distinct_names,
 };
 use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
@@ -21,7 +22,7 @@ use crate::{
         guarded,
         plan::Plan,
         result::Failure,
-        score, upload,
+        score,
     },
 };
 use anyhow::{Context, Result, bail};
@@ -29,7 +30,7 @@ use rayon::prelude::*;
 use std::{
     ffi::OsStr,
     io::{self, Read},
-    path::Path,
+    path::{Path, PathBuf},
     time::Duration,
 };
 
@@ -60,9 +61,11 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     }
     let draws = arguments.output.is_some() || reports.iter().any(|report| report.format == Format::Html);
     let pages = if draws { Some(Pages::new(arguments.output.as_deref())?) } else { None };
-    let grades: Vec<Grade> = arguments.programs.iter().map(|folder| grade(&plan, folder, pages.as_ref())).collect();
+    let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
+    let named = paths.iter().zip(distinct_names(&paths));
+    let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
     let (folder, reader) = (arguments.output.as_deref(), arguments.reader.into());
-    let results = Results { folder, pages: pages.as_ref(), reader, is_part, grades: &grades };
+    let results = Results { folder, pages: pages.as_ref(), reader, is_part, grades: &grades, passed_over: &[] };
     results.write(reports, || {
         let shown = shown(arguments, grades.len() > 1);
         let (style, width) = (console::style(), console::width());
@@ -73,7 +76,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
 }
 
 /// The grade of a folder of traces.
-fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
+fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
     // In the plan's order, whatever the number of threads.
     let opened = Folder::open(folder);
@@ -98,9 +101,8 @@ fn grade(plan: &Plan, folder: &Path, pages: Option<&Pages>) -> Grade {
     right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
     right.truncate(WITNESSES);
     let refuted = if wrong.len() < 2 { Vec::new() } else { diagnose::refuted(&wrong, &right) };
-    let name = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let mut grade = Grade {
-        submission: upload::name(folder.file_name().or(name.file_name()).unwrap_or(folder.as_os_str())),
+        submission,
         suite: plan.name.clone(),
         rules: plan.rules,
         verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),

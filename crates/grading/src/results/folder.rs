@@ -30,7 +30,7 @@ pub const LOCK: &str = ".lock";
 /// quarter of it.
 pub const LARGEST_JOURNAL: u64 = 16 << 30;
 
-/// A line of more bytes keeps no result; those of grading have some thousand.
+/// A journal with a line of more bytes is damaged; results have some thousand.
 pub const LONGEST_LINE: usize = 16 << 20;
 
 /// Why a folder can't be used for results.
@@ -43,12 +43,12 @@ pub enum OpenError {
         folder: PathBuf,
     },
     /// The operating system refuses.
-    #[error("{path}: {source}")]
+    #[error("{path}: {reason}")]
     Io {
         /// The file.
         path: PathBuf,
         /// The reason.
-        source: io::Error,
+        reason: io::Error,
     },
 }
 
@@ -74,18 +74,19 @@ impl FolderResults {
     pub fn open(folder: &Path, fresh: bool) -> Result<Self, OpenError> {
         let at = |name: &str| {
             let path = folder.join(name);
-            move |source| OpenError::Io { path, source }
+            move |reason| OpenError::Io { path, reason }
         };
         let opened = Folder::to_write(folder).map_err(at(""))?;
         let lock = own_file(&opened, LOCK).map_err(at(LOCK))?;
         lock.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => OpenError::Locked { folder: folder.to_owned() },
-            std::fs::TryLockError::Error(source) => at(LOCK)(source),
+            std::fs::TryLockError::Error(reason) => at(LOCK)(reason),
         })?;
         let mut file = own_file(&opened, JOURNAL).map_err(at(JOURNAL))?;
         let metadata = file.metadata().map_err(at(JOURNAL))?;
         if metadata.len() > LARGEST_JOURNAL && !fresh {
-            let text = format!("it has more than {LARGEST_JOURNAL} bytes, which no journal has; --fresh begins a new one");
+            let text =
+                format!("it has more than {LARGEST_JOURNAL} bytes, which no journal has; --fresh begins a new one");
             return Err(at(JOURNAL)(io::Error::other(text)));
         }
         let mut found = BTreeMap::new();
@@ -109,7 +110,9 @@ impl FolderResults {
 fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
     folder.own_file(name).map_err(|error| match error {
         FileError::System { source, .. } => source,
-        FileError::NotRegular { what, .. } => io::Error::other(format!("it is {what}, which is not followed: remove it")),
+        FileError::NotRegular { what, .. } => {
+            io::Error::other(format!("it is {what} and no file of the grader's: remove it"))
+        }
         error => io::Error::other(error),
     })
 }
@@ -119,9 +122,8 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
     let mut sound = 0;
     each_line(BufReader::new(file), |line| -> io::Result<()> {
         sound += line.len() as u64;
-        if let Line::Whole(bytes) = line
-            && let Some(entry) = read_line(bytes)
-        {
+        // A line that somebody damaged costs its own result only.
+        if let Some(entry) = read_line(line) {
             found.insert(entry.key, entry.result);
         }
         Ok(())
@@ -129,62 +131,25 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
     Ok(sound)
 }
 
-/// A line of a journal that has its end.
-pub enum Line<'a> {
-    /// Its bytes.
-    Whole(&'a [u8]),
-    /// How many bytes it has, which are too many.
-    TooLong(u64),
-}
-
-impl Line<'_> {
-    const fn len(&self) -> usize {
-        match self {
-            Self::Whole(bytes) => bytes.len(),
-            #[expect(clippy::cast_possible_truncation, reason = "graders run on 64 bits")]
-            Self::TooLong(length) => *length as usize,
-        }
-    }
-}
-
-/// Hands over the whole lines of a journal. A line that somebody damaged, or that is too long, costs its own result
-/// only.
+/// Hands over the whole lines of a journal.
 ///
 /// # Errors
-/// When it can't be read; what `take` returns.
+/// When it can't be read, or has a line that is longer than any result; what `take` returns.
 pub fn each_line<E: From<io::Error>>(
     mut journal: impl BufRead,
-    mut take: impl FnMut(Line<'_>) -> Result<(), E>,
+    mut take: impl FnMut(&[u8]) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut line = Vec::new();
     loop {
         line.clear();
         let read = journal.by_ref().take(LONGEST_LINE as u64).read_until(b'\n', &mut line)?;
         if line.last() == Some(&b'\n') {
-            take(Line::Whole(&line))?;
+            take(&line)?;
         } else if read < LONGEST_LINE {
             return Ok(());
         } else {
-            let Some(rest) = skip_line(&mut journal)? else { return Ok(()) };
-            take(Line::TooLong(read as u64 + rest))?;
-        }
-    }
-}
-
-/// Passes over the rest of a line, and says how long that is; `None` where it has no end.
-fn skip_line(journal: &mut impl BufRead) -> io::Result<Option<u64>> {
-    let mut passed = 0;
-    loop {
-        let bytes = journal.fill_buf()?;
-        if bytes.is_empty() {
-            return Ok(None);
-        }
-        let end = bytes.iter().position(|byte| *byte == b'\n').map(|at| at + 1);
-        let length = end.unwrap_or(bytes.len());
-        journal.consume(length);
-        passed += length as u64;
-        if end.is_some() {
-            return Ok(Some(passed));
+            let text = format!("it has a line of more than {LONGEST_LINE} bytes, which no result has: it is damaged");
+            return Err(io::Error::other(text).into());
         }
     }
 }
@@ -205,8 +170,8 @@ impl Results for FolderResults {
     fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError> {
         let line = line(key, submission, result);
         let Journal { path, file, found } = &mut *self.journal();
-        append(file, &line).map_err(|source| {
-            let error: Box<dyn Error + Send + Sync> = Box::new(OpenError::Io { path: path.clone(), source });
+        append(file, &line).map_err(|reason| {
+            let error: Box<dyn Error + Send + Sync> = Box::new(OpenError::Io { path: path.clone(), reason });
             KeepError::from(error)
         })?;
         found.insert(key.clone(), result.clone());
@@ -318,12 +283,12 @@ mod tests {
         journal.set_len(LARGEST_JOURNAL + 1).expect("a hole");
         let refused = FolderResults::open(folder.path(), false).expect_err("too large").to_string();
         assert!(refused.contains("journal.jsonl") && refused.contains("--fresh"), "{refused}");
-        // A line without end, and one that is too long before a sound one.
-        let good = line(&key("a"), "sub", &result(Verdict::Accepted));
-        let long = [vec![b'x'; LONGEST_LINE + 5], vec![b'\n'], good.clone(), vec![0; 100]].concat();
-        std::fs::write(&path, &long).expect("written");
-        assert!(FolderResults::open(folder.path(), false).expect("journal").find(&key("a")).is_some());
-        assert_eq!(std::fs::metadata(&path).expect("data").len(), long.len() as u64 - 100);
+        // A line without end takes neither memory nor time, and nothing is changed.
+        journal.set_len(4 << 30).expect("a hole");
+        let refused = FolderResults::open(folder.path(), false).expect_err("damaged").to_string();
+        assert!(refused.contains("a line of more than 16777216 bytes"), "{refused}");
+        assert_eq!(journal.metadata().expect("data").len(), 4 << 30);
+        assert!(FolderResults::open(folder.path(), true).is_ok(), "what is forgotten is not read");
     }
 
     #[test]

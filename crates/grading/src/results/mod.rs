@@ -5,9 +5,7 @@
 mod folder;
 mod memory;
 
-pub use folder::{
-    FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, Line, OpenError, each_line, line, read_line,
-};
+pub use folder::{FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, OpenError, each_line, line, read_line};
 pub use memory::MemoryResults;
 
 pub use super::form::Entry;

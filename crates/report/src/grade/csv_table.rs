@@ -1,11 +1,11 @@
 //! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
-use super::{likely_mistakes, no_points, one_line, points};
+use super::{likely_mistakes, no_points, one_line, phrases::NOT_GRADED, points};
 use crate::words;
-use fosssim_grading::Grade;
+use fosssim_grading::{Grade, PassedOver};
 use fosssim_judge::fair::Cause;
 
 /// One row per scene.
-pub(super) fn scenes(grades: &[Grade]) -> String {
+pub(super) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,rules_differ,likely_mistake";
     let rows = grades.iter().flat_map(|grade| {
         grade.groups.iter().flat_map(move |group| {
@@ -28,14 +28,16 @@ pub(super) fn scenes(grades: &[Grade]) -> String {
             })
         })
     });
-    write(head.split(',').map(str::to_owned).collect(), rows)
+    let head: Vec<String> = head.split(',').map(str::to_owned).collect();
+    let rest = empty_rows(passed_over, &head, "summary");
+    write(head, rows.chain(rest))
 }
 
 /// One row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge differently.
 /// Points are empty where the grader failed or was stopped; `reason` says in one sentence why not everything is
-/// accepted.
+/// accepted. Entries that are no submissions have rows with nothing but that.
 #[must_use]
-pub fn submissions(grades: &[Grade]) -> String {
+pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let mut head: Vec<String> =
         "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,reason"
             .split(',')
@@ -62,7 +64,22 @@ pub fn submissions(grades: &[Grade]) -> String {
         row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
         row
     });
-    write(head, rows)
+    let rest = empty_rows(passed_over, &head, "reason");
+    write(head, rows.chain(rest))
+}
+
+/// Rows that say why an entry is not graded, in the column for reasons.
+fn empty_rows(passed_over: &[PassedOver], head: &[String], reasons: &str) -> Vec<Vec<String>> {
+    let cell = |entry: &PassedOver, column: &str| match column {
+        "submission" => safe(&entry.name),
+        "verdict" => NOT_GRADED.to_owned(),
+        column if column == reasons => safe(&entry.why),
+        _ => String::new(),
+    };
+    // A group may be called like a column of ours.
+    let own = head.iter().position(|column| column == reasons).unwrap_or_default();
+    let column = |number: usize| if number <= own { head[number].as_str() } else { "" };
+    passed_over.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()
 }
 
 fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
@@ -74,10 +91,13 @@ fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// Text that no spreadsheet takes for a formula.
+/// Text that no spreadsheet takes for a formula. What begins with an apostrophe and goes on like one gets another: two
+/// texts never become the same cell.
 fn safe(text: &str) -> String {
+    const FORMULAS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
     let text = one_line(text);
-    if text.trim_start().starts_with(['=', '+', '-', '@', '|', '%']) { format!("'{text}") } else { text }
+    let begins = |c: char| c == '\'' || c.is_whitespace();
+    if text.trim_start_matches(begins).starts_with(FORMULAS) { format!("'{text}") } else { text }
 }
 
 #[cfg(test)]
@@ -89,5 +109,7 @@ mod tests {
         assert_eq!(safe("=HYPERLINK(\"x\")"), "'=HYPERLINK(\"x\")");
         assert_eq!(safe(" @SUM(A1)"), "' @SUM(A1)");
         assert_eq!(safe("a=b"), "a=b");
+        assert_eq!(safe("\u{ff1d}cmd"), "'\u{ff1d}cmd");
+        assert_eq!((safe("'=cmd").as_str(), safe("'").as_str(), safe("O'-x").as_str()), ("''=cmd", "'", "O'-x"));
     }
 }

@@ -1,7 +1,7 @@
 //! Every format: against its schema, and as a snapshot that people read.
-use super::{Format, csv_of_submissions, json_line, samples};
+use super::{Format, csv_of_submissions, json_lines, samples, warn_of};
 use fosssim_grading::{
-    Grade, Verdict,
+    Grade, PassedOver, Verdict,
     config::Visibility,
     located::{Content, Failing, Located},
 };
@@ -41,7 +41,7 @@ fn nothing_hostile_gets_through_any_format() {
             assert!(!document.is_empty() || name == "github", "{name}");
         }
     }
-    assert_harmless(&csv_of_submissions(&all()));
+    assert_harmless(&csv_of_submissions(&all(), &[]));
     let annotations = Format::Github.render(&[samples::bad()]);
     assert!(annotations.lines().all(|line| line.starts_with("::error ") || line.starts_with("::warning ")));
     let csv = Format::Csv.render(&all());
@@ -52,7 +52,34 @@ fn nothing_hostile_gets_through_any_format() {
 fn json_follows_its_schema() {
     assert_valid("grade.schema.json", &Format::Json.render(&all()));
     insta::assert_snapshot!("grade_json", Format::Json.render(&all()).replace(env!("CARGO_PKG_VERSION"), "VERSION"));
-    assert_eq!(json_line(&samples::good()).lines().count(), 1);
+    assert_eq!(json_lines(&[samples::good()], &[]).lines().count(), 1);
+}
+
+#[test]
+fn who_is_passed_over_is_told_of_a_class_in_every_format_and_once() {
+    let entry = |name: &str, why: &str| PassedOver { name: name.to_owned(), why: why.to_owned() };
+    let passed_over = [entry(".hidden", "its name begins with a dot"), entry("=a|b,<c>::d", "it is a link")];
+    for format in Format::ALL.iter().filter(|format| format.takes_several()) {
+        let document = format.render_class(&all(), &passed_over);
+        assert_harmless(&document);
+        assert_eq!(document.matches(".hidden").count(), 1, "{}", format.name());
+        assert!(
+            !document.contains("<c>") || matches!(format, Format::Csv | Format::Text | Format::Github | Format::Json)
+        );
+        assert_eq!(format.render_class(&all(), &[]), format.render(&all()));
+    }
+    assert_valid("grade.schema.json", &Format::Json.render_class(&all(), &passed_over));
+    // A class has one suite, and so the same groups.
+    let csv = csv_of_submissions(&[samples::good(), samples::good()], &passed_over);
+    let mut rows = csv::Reader::from_reader(csv.as_bytes());
+    let names: Vec<String> = rows.records().map(|row| row.expect("rows of one length")[0].to_owned()).collect();
+    assert_eq!(names[2..], [".hidden", "'=a|b,<c>::d"]);
+    assert_eq!(json_lines(&all(), &passed_over).lines().count(), 5);
+    let mut one = [samples::good()];
+    warn_of(&mut one, &passed_over);
+    for format in Format::ALL.iter().filter(|format| **format != Format::Csv) {
+        assert!(format.render(&one).contains(".hidden"), "{}", format.name());
+    }
 }
 
 #[test]
@@ -97,7 +124,7 @@ fn what_is_wrong_with_a_submission_itself_is_said_once() {
     assert!(gradescope["output"].as_str().is_some_and(|output| output.contains(sentence)), "{gradescope:#}");
     assert_valid("gradescope.schema.json", &gradescope.to_string());
     assert_valid("grade.schema.json", &Format::Json.render(&[samples::unfit()]));
-    let csv = csv_of_submissions(&[samples::unfit()]);
+    let csv = csv_of_submissions(&[samples::unfit()], &[]);
     assert!(csv.contains("dan,unusable submission,0,20,0,3,"), "{csv}");
     insta::assert_snapshot!("grade_unfit_text", Format::Text.render(&[samples::unfit()]));
 }
@@ -116,7 +143,11 @@ fn an_untouched_template_is_told_in_ten_lines() {
         assert!(document.to_lowercase().contains("nothing written"), "{format:?}: {document}");
     }
     assert_valid("grade.schema.json", &Format::Json.render(&grades));
-    assert!(csv_of_submissions(&grades).contains("template,nothing written,0,20,"), "{}", csv_of_submissions(&grades));
+    assert!(
+        csv_of_submissions(&grades, &[]).contains("template,nothing written,0,20,"),
+        "{}",
+        csv_of_submissions(&grades, &[])
+    );
 }
 
 /// One scene alone takes a loop that is one round short for an empty one: no format says what all scenes together deny.
@@ -171,7 +202,7 @@ fn what_failing_scenes_have_in_common_is_told_in_every_format() {
         let document = format.render(std::slice::from_ref(&grade));
         assert!(document.contains(sentence), "{format:?}: {document}");
     }
-    assert!(csv_of_submissions(std::slice::from_ref(&grade)).contains(sentence));
+    assert!(csv_of_submissions(std::slice::from_ref(&grade), &[]).contains(sentence));
     assert_valid("grade.schema.json", &Format::Json.render(&[grade]));
 }
 
@@ -197,7 +228,7 @@ fn a_stopped_grading_has_points_in_no_format() {
     let prairielearn = json(Format::Prairielearn);
     assert_valid("prairielearn.schema.json", &prairielearn.to_string());
     assert_eq!((&prairielearn["gradable"], prairielearn.get("score")), (&serde_json::json!(false), None));
-    let csv = csv_of_submissions(&grades);
+    let csv = csv_of_submissions(&grades, &[]);
     assert!(csv.lines().nth(1).expect("a row").starts_with("kim,not run,,10,1,3,"), "{csv}");
     assert!(csv.ends_with(",\n"), "nor has the group points: {csv}");
     let scenes = Format::Csv.render(&grades);
@@ -233,7 +264,7 @@ fn junit_follows_its_schema() {
 fn text_csv_and_github_read_well() {
     insta::assert_snapshot!("grade_text", Format::Text.render(&all()));
     insta::assert_snapshot!("grade_csv", Format::Csv.render(&all()));
-    insta::assert_snapshot!("grade_submissions_csv", csv_of_submissions(&[samples::good(), samples::good()]));
+    insta::assert_snapshot!("grade_submissions_csv", csv_of_submissions(&[samples::good(), samples::good()], &[]));
     insta::assert_snapshot!("grade_github", Format::Github.render(&all()));
     insta::assert_snapshot!("grade_markdown", Format::Markdown.render(&all()));
 }

@@ -1,7 +1,10 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
-use super::{super::explain, difference, head_lines, no_points, one_line, points, printed, reached, wrong_first};
+use super::{
+    super::explain, difference, head_lines, no_points, one_line, phrases::NOT_GRADED, points, printed, reached,
+    wrong_first,
+};
 use crate::words;
-use fosssim_grading::{Grade, Verdict};
+use fosssim_grading::{Grade, PassedOver, Verdict};
 use std::fmt::Write;
 
 /// Annotations; the words are escaped as workflow commands want it.
@@ -47,6 +50,18 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
 /// One annotation: `error` or `warning`, its title and its words.
 pub(crate) fn annotation(level: &str, title: &str, words: &str) -> String {
     format!("::{level} title={}::{}\n", property(title), data(words))
+}
+
+/// A warning per entry that is no submission.
+pub(super) fn passed_over(entries: &[PassedOver]) -> String {
+    let warning = |entry: &PassedOver| annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
+    entries.iter().map(warning).collect()
+}
+
+/// The same as a list in Markdown.
+pub(super) fn list_of_passed_over(entries: &[PassedOver]) -> String {
+    let item = |entry: &PassedOver| format!("- {}: {}\n", cell(&entry.name), cell(&entry.why));
+    format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
 
 /// What follows `::` in a workflow command.

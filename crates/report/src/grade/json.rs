@@ -1,7 +1,7 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
-use super::{super::explain::ExplanationView, plain, printed};
+use super::{super::explain::ExplanationView, phrases::NOT_GRADED, plain, printed};
 use crate::words;
-use fosssim_grading::{Grade, GroupGrade, SceneGrade};
+use fosssim_grading::{Grade, GroupGrade, PassedOver, SceneGrade};
 use serde::Serialize;
 
 /// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
@@ -12,6 +12,15 @@ struct Document {
     schema: u32,
     version: &'static str,
     grades: Vec<GradeView>,
+    /// Entries of the class that are no submissions; left out where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    passed_over: Vec<PassedOverView>,
+}
+
+#[derive(Serialize)]
+struct PassedOverView {
+    name: String,
+    why: String,
 }
 
 #[derive(Serialize)]
@@ -95,20 +104,28 @@ struct DifferenceView {
 }
 
 /// All grades in one document.
-pub(super) fn render(grades: &[Grade]) -> String {
-    let document =
-        Document { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades: grades.iter().map(view).collect() };
+pub(super) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+    let (grades, passed_over) = (grades.iter().map(view).collect(), passed_over.iter().map(passed).collect());
+    let document = Document { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over };
     let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
     text.push('\n');
     text
 }
 
-/// One grade as one line, for JSON lines files.
+fn passed(entry: &PassedOver) -> PassedOverView {
+    PassedOverView { name: plain(&entry.name), why: plain(&entry.why) }
+}
+
+/// A line per grade, and one per entry that is no submission, which has no points either.
 #[must_use]
-pub fn line(grade: &Grade) -> String {
-    let mut text = serde_json::to_string(&view(grade)).unwrap_or_default();
-    text.push('\n');
-    text
+pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+    let grades = grades.iter().map(|grade| serde_json::to_string(&view(grade)));
+    let passed_over = passed_over.iter().map(|entry| {
+        let PassedOverView { name, why } = passed(entry);
+        let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": why });
+        serde_json::to_string(&line)
+    });
+    grades.chain(passed_over).map(|line| line.unwrap_or_default() + "\n").collect()
 }
 
 fn view(grade: &Grade) -> GradeView {

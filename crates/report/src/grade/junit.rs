@@ -1,11 +1,11 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
-use super::{super::explain, difference, head_lines, plain, printed, wrong_first};
+use super::{super::explain, difference, head_lines, phrases::NOT_GRADED, plain, printed, wrong_first};
 use crate::words;
-use fosssim_grading::{Grade, SceneGrade, Verdict};
+use fosssim_grading::{Grade, PassedOver, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// All grades in one report.
-pub(super) fn render(grades: &[Grade]) -> String {
+pub(super) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
         if let Some(unfit) = words::unfit(grade) {
@@ -29,6 +29,15 @@ pub(super) fn render(grades: &[Grade]) -> String {
             }
             report.add_test_suite(suite);
         }
+    }
+    if !passed_over.is_empty() {
+        let mut suite = TestSuite::new(NOT_GRADED);
+        for PassedOver { name, why } in passed_over {
+            let mut status = TestCaseStatus::skipped();
+            status.set_message(plain(why));
+            suite.add_test_case(TestCase::new(plain(name), status));
+        }
+        report.add_test_suite(suite);
     }
     report.to_string().unwrap_or_default()
 }

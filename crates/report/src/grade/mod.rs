@@ -10,6 +10,7 @@ mod github;
 mod gradescope;
 mod json;
 mod junit;
+mod passed_over;
 mod phrases;
 mod prairielearn;
 mod text;
@@ -86,9 +87,9 @@ formats! {
     /// For people.
     Text, "text", several without_colours;
     /// Our own, versioned (`schemas/grade.schema.json`).
-    Json, "json", several json::render;
+    Json, "json", several |grades| json::render(grades, &[]);
     /// JUnit XML (`schemas/junit.xsd`).
-    Junit, "junit", several junit::render;
+    Junit, "junit", several |grades| junit::render(grades, &[]);
     /// Gradescope's results.json (`schemas/gradescope.schema.json`).
     Gradescope, "gradescope", one gradescope::render;
     /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
@@ -98,7 +99,7 @@ formats! {
     /// A Markdown summary, for GitHub's step summary.
     Markdown, "markdown", several github::summary;
     /// One row per scene, for spreadsheets.
-    Csv, "csv", several csv_table::scenes;
+    Csv, "csv", several |grades| csv_table::scenes(grades, &[]);
     /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a
     /// disk.
     Html, "html", one page;
@@ -137,11 +138,12 @@ pub use class::class;
 pub(crate) use class::{hardest, head as class_head};
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use github::annotation;
-pub use json::line as json_line;
+pub use json::lines as json_lines;
+pub use passed_over::{not_graded, warn_of};
 pub(crate) use phrases::without_codes;
 pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, plain, points, printed, reached};
 use phrases::{see_above, wrong_first};
-pub use text::{Advice, Text, TextDetail, changes, score, table as text_table};
+pub use text::{Advice, Text, TextDetail, changes, score, shortened, table as text_table};
 
 /// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at
 /// hand, and not when a whole class's reports are written. One that differs from the last one in nothing that could
@@ -200,7 +202,7 @@ fn render_in_every_format(result: &SceneResult) {
     for format in Format::ALL {
         drop(format.render(&grades));
     }
-    drop(csv_of_submissions(&grades));
+    drop(csv_of_submissions(&grades, &[]));
 }
 
 #[cfg(test)]

@@ -83,6 +83,9 @@ pub fn plain(text: &str) -> String {
     plain
 }
 
+/// What stands in the place of a verdict where an entry is no submission.
+pub(super) const NOT_GRADED: &str = "not graded";
+
 /// The likely mistakes, the one that explains most wrong scenes first, and how many scenes each explains.
 #[must_use]
 pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {

@@ -5,7 +5,7 @@ use crate::{
     number::counted,
     words,
 };
-use fosssim_grading::{Grade, SceneGrade, Verdict};
+use fosssim_grading::{Grade, PassedOver, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
 const SCRIPT: &str = include_str!("class.js");
@@ -24,6 +24,8 @@ const NAMES: usize = 400;
 pub struct ClassPage<'a> {
     /// The grades.
     pub grades: &'a [Grade],
+    /// The entries that are no submissions.
+    pub passed_over: &'a [PassedOver],
     /// The address of a submission's page, seen from this one.
     pub page: &'a dyn Fn(&Grade) -> String,
 }
@@ -37,6 +39,7 @@ impl ClassPage<'_> {
             format!("<h1>Class: {}</h1>\n<p>{}</p>\n", text(&one_line(suite)), text(&class_head(self.grades)));
         body += &histogram(self.grades);
         body += &self.table();
+        body += &self.not_graded();
         body += &self.clusters();
         body += &scenes(self.grades);
         body += &self.differing();
@@ -44,7 +47,23 @@ impl ClassPage<'_> {
     }
 
     fn link(&self, grade: &Grade) -> String {
-        format!("<a href=\"{}\">{}</a>", text(&(self.page)(grade)), text(&one_line(&grade.submission)))
+        // A name that is written from right to left turns nothing around that stands beside it.
+        format!("<a href=\"{}\"><bdi>{}</bdi></a>", text(&(self.page)(grade)), text(&one_line(&grade.submission)))
+    }
+
+    fn not_graded(&self) -> String {
+        if self.passed_over.is_empty() {
+            return String::new();
+        }
+        let row = |entry: &PassedOver| {
+            let (name, why) = (text(&one_line(&entry.name)), text(&one_line(&entry.why)));
+            format!("<tr><th scope=\"row\"><bdi>{name}</bdi></th><td>{why}</td></tr>\n")
+        };
+        let rows: String = self.passed_over.iter().map(row).collect();
+        format!(
+            "<h2>Not graded</h2>\n<table><thead><tr><th scope=\"col\">entry</th><th scope=\"col\">why</th></tr></thead>\
+             <tbody>\n{rows}</tbody></table>\n"
+        )
     }
 
     fn links(&self, members: &[usize]) -> String {
@@ -321,7 +340,7 @@ mod tests {
     }
 
     fn page(grades: &[Grade]) -> String {
-        ClassPage { grades, page: &|grade| format!("reports/{}.html", grade.submission) }.html()
+        ClassPage { grades, passed_over: &[], page: &|grade| format!("reports/{}.html", grade.submission) }.html()
     }
 
     #[test]

@@ -6,7 +6,7 @@ mod scenes;
 mod table;
 
 pub use changes::changes;
-pub use table::table;
+pub use table::{shortened, table};
 
 use super::{super::style::Style, no_points, one_line, plain, points, printed};
 use crate::{number::counted, style::Look, words};

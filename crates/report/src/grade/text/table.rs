@@ -48,7 +48,8 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
 const NAME: usize = 40;
 
 /// A name that widens no table.
-pub(super) fn shortened(name: &str) -> String {
+#[must_use]
+pub fn shortened(name: &str) -> String {
     const ENDS: usize = NAME / 2 - 2;
     if columns(name) <= NAME {
         return name.to_owned();

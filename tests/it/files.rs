@@ -1,0 +1,76 @@
+//! Files are opened in one way, by `crates/files`: without waiting, beneath their folder, with a limit. Whoever opens one
+//! otherwise is listed here with the reason, and how often.
+use crate::layers::{root, rust_files};
+use std::collections::BTreeMap;
+
+/// What opens, makes or lists files on its own.
+const WORDS: [&str; 10] = [
+    "File::open(",
+    "File::create(",
+    "File::options(",
+    "OpenOptions::new(",
+    "fs::read(",
+    "fs::read_to_string(",
+    "fs::write(",
+    "fs::copy(",
+    "read_dir(",
+    "tempfile_in(",
+];
+
+/// The rooms that are held to it. The sandbox has its own ways, and tests of its own.
+const ROOMS: [&str; 9] = [
+    "src",
+    "crates/evidence/src",
+    "crates/grading/src",
+    "crates/judge/src",
+    "crates/mistakes/src",
+    "crates/model/src",
+    "crates/original/src",
+    "crates/render/src",
+    "crates/report/src",
+];
+
+/// Where it is right all the same.
+const ALLOWED: [(&str, usize, &str); 10] = [
+    ("crates/grading/src/key.rs", 1, "the grader's own program, in /proc"),
+    ("crates/grading/src/scene_files.rs", 2, "lists a folder of scenes that somebody names; listing waits for nothing"),
+    ("crates/grading/src/staging.rs", 1, "makes a new file in a folder of our own that is closed to others"),
+    ("crates/grading/src/temporary.rs", 3, "makes and sweeps folders of our own that are closed to others"),
+    ("crates/original/src/run.rs", 1, "options for `files::open_for_writing`: the original writes through links"),
+    ("src/cli/commands/grade.rs", 1, "lists a submission's folder for times of changes"),
+    ("src/cli/commands/merge.rs", 1, "lists folders that somebody names"),
+    ("src/cli/commands/results.rs", 1, "options for `files::open_for_writing`: a GitHub job's summary is added to"),
+    ("src/cli/commands/submissions.rs", 1, "lists a class's folder that somebody names"),
+    ("src/cli/output.rs", 2, "options for a device, and whether a file that will be replaced may be written"),
+];
+
+#[test]
+fn files_are_opened_in_one_way() {
+    let mut found: BTreeMap<String, usize> = BTreeMap::new();
+    for room in ROOMS {
+        let mut files = Vec::new();
+        rust_files(&root().join(room), &mut files);
+        for file in files {
+            let name = file.strip_prefix(root()).expect("in the checkout").to_str().expect("a name").to_owned();
+            let is_of_tests =
+                ["tests", "cast.rs", "formats.rs", "fosssim-sample"].iter().any(|part| name.contains(part));
+            if is_of_tests {
+                continue;
+            }
+            let text = std::fs::read_to_string(&file).expect("source text");
+            let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+            let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            let of_word = |line: &str, word: &str| {
+                let is_other = |at: usize| line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+                // `std::fs` and `fs` alone; `files` is the one way.
+                line.match_indices(word).filter(|(at, _)| !is_other(*at)).count()
+            };
+            let count: usize = code.map(|line| WORDS.iter().map(|word| of_word(line, word)).sum::<usize>()).sum();
+            if count > 0 {
+                found.insert(name, count);
+            }
+        }
+    }
+    let allowed = ALLOWED.iter().map(|(name, count, _)| ((*name).to_owned(), *count)).collect();
+    assert_eq!(found, allowed, "open files by `crates/files`, or say here why not");
+}
