@@ -209,7 +209,10 @@ async fn write_result(
         (Some(points), Some(most)) => format!("{}: {points} of {most} points", outcome.code),
         _ => outcome.code.clone(),
     };
-    note(transaction, &about, if about.campaign.is_none() { "graded" } else { "regraded" }, &text).await?;
+    // A judge error is noted as what it is, by who writes it.
+    if outcome.code != JUDGE_ERROR {
+        note(transaction, &about, if about.campaign.is_none() { "graded" } else { "regraded" }, &text).await?;
+    }
     Ok(about)
 }
 

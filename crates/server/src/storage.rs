@@ -79,14 +79,20 @@ impl Storage {
         transaction.commit().await
     }
 
+    /// Free bytes of the data folder's disk, and its size, where it says so.
+    #[must_use]
+    pub fn disk(&self) -> Option<(u64, u64)> {
+        let disk = statvfs(&self.incoming).ok()?;
+        Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_blocks.saturating_mul(disk.f_frsize)))
+    }
+
     /// Whether there is room for an upload.
     ///
     /// # Errors
     /// When less than the low-water mark is free: 507. Nothing was written.
     pub fn has_room(&self) -> Result<(), Problem> {
         // A disk that does not say how full it is can't be refused by.
-        let Ok(disk) = statvfs(&self.incoming) else { return Ok(()) };
-        if disk.f_bavail.saturating_mul(disk.f_frsize) < self.low_water {
+        if self.disk().is_some_and(|(free, _)| free < self.low_water) {
             tracing::error!(low_water = self.low_water, "uploads are refused: the disk is nearly full");
             return Err(Problem::no_room());
         }

@@ -46,9 +46,9 @@ pub struct Digest(String);
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Artefact {
     /// The digest of its bytes.
-    #[schema(value_type = String)]
     pub digest: Digest,
     /// How many bytes these are.
+    #[schema(maximum = 9_007_199_254_740_991_i64)]
     pub size: u64,
 }
 

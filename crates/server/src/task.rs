@@ -1,10 +1,13 @@
 //! What a worker is asked to do and what it answers: the same words in the queue, over HTTP and in the database.
-use crate::store::{Artefact, Digest};
+use crate::{
+    schema::{Code, Decimal, FileName},
+    store::{Artefact, Digest},
+};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// One grading, complete: whoever has this and the artefacts that it names can do it again.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Task {
     /// What was handed in.
     pub submission: Input,
@@ -23,7 +26,7 @@ pub struct Task {
 }
 
 /// What was handed in.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Input {
     /// What kind of thing it is.
     pub form: Form,
@@ -35,7 +38,7 @@ pub struct Input {
 }
 
 /// The kinds of submissions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Form {
     /// A program, ready to run.
@@ -59,7 +62,7 @@ impl Form {
 }
 
 /// What a submission is graded by.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Suite {
     /// One that comes with the program.
@@ -73,28 +76,35 @@ pub enum Suite {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Outcome<F = OutputFile> {
     /// The verdict in words.
+    #[schema(max_length = 200)]
     pub verdict: String,
     /// The verdict in short: AC, WA, ...; JE is the grader's fault and nobody's zero.
+    #[schema(value_type = Code)]
     pub code: String,
     /// Points, digit for digit as the grader wrote them; none after a judge error.
+    #[schema(value_type = Option<Decimal>)]
     pub points: Option<String>,
     /// The most that could be had.
+    #[schema(value_type = Option<Decimal>)]
     pub max_points: Option<String>,
     /// One line about it.
     pub summary: String,
     /// The grader's version.
     pub version: String,
     /// The SHA-256 of the grader, where it is known.
+    #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub grader: String,
     /// The SHA-256 of what the grade says, without what was measured: whoever grades again by the same comes to the
     /// same.
+    #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub essence: String,
     /// Scenes that are not accepted, of a submission that is nearly right; not shown.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub wrong: Vec<WrongScene>,
     /// How long it took, in seconds.
+    #[schema(value_type = Decimal)]
     pub seconds: String,
     /// Reports and logs; empty in lists.
     pub files: Vec<F>,
@@ -110,6 +120,7 @@ pub struct WrongScene {
     /// Its name.
     pub scene: String,
     /// The SHA-256 of what the submission answers there: the same for others who answer the same.
+    #[schema(value_type = crate::schema::Digest)]
     pub answer: String,
 }
 
@@ -162,6 +173,7 @@ pub const JUDGE_ERROR: &str = "JE";
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct OutputFile {
     /// What it is called, `grade.json` for example.
+    #[schema(value_type = FileName)]
     pub name: String,
     /// What it holds.
     pub media_type: String,

@@ -56,6 +56,7 @@ pub use visitor::{Metrics, Visitor};
 
 use crate::{
     db::Database,
+    instruments::Instruments,
     lti::Lti,
     queue::{Bell, Ear, Policy},
     storage::Storage,
@@ -83,6 +84,8 @@ pub struct Parts {
     pub suites: Suites,
     /// Whether there is room, and whether it can be written.
     pub storage: Storage,
+    /// What the server counts about itself.
+    pub instruments: Instruments,
     /// Where uploads wait until they are stored.
     pub incoming: PathBuf,
     /// The address that people know the service by.
@@ -128,6 +131,12 @@ impl House {
     #[must_use]
     pub fn invitation_address(&self, secret: &NewSecret) -> String {
         format!("{}/invitation/{}", self.public(), secret.reveal())
+    }
+
+    /// What the server counts about itself.
+    #[must_use]
+    pub fn instruments(&self) -> &Instruments {
+        &self.0.instruments
     }
 
     /// The suites that come with the grader.

@@ -23,12 +23,10 @@ pub struct Remote {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Claimed {
     /// What to show from now on.
-    #[schema(value_type = Object)]
     pub lease: Lease,
     /// How often to renew it, in milliseconds.
     pub renew_every: u64,
     /// What to do.
-    #[schema(value_type = Object)]
     pub task: Task,
     /// Whether nothing else may run beside it.
     pub alone: bool,
@@ -179,7 +177,7 @@ impl Remote {
                 )
                 .await?;
             let Some(stored) = stored else {
-                return Err(Problem::invalid("a report was not stored for this job"));
+                return Err(Problem::conflict("a report was not stored for this job", "store it first"));
             };
             file.artefact.size = u64::try_from(stored.int("size")?).unwrap_or(0);
         }

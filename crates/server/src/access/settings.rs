@@ -8,36 +8,50 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+/// The end of the year 9999, in milliseconds since 1970.
+const LAST_MOMENT: i64 = 253_402_300_799_999;
+
 /// How an assignment is graded, and what may be handed in.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// A suite that comes with the grader, `t2m2` for example; its default, if none is named. One that was uploaded
     /// goes before it.
+    #[schema(pattern = "^([A-Za-z0-9_][A-Za-z0-9._-]*(@[A-Za-z0-9_][A-Za-z0-9._-]*)?)?$", max_length = 100)]
     pub suite: String,
     /// The digest of an archive with a `suite.toml`; uploaded by its own request.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<crate::schema::Digest>)]
     pub suite_archive: Option<String>,
     /// The rule books: `parity`, `fair` or `both`; without it the suite decides.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(pattern = "^(parity|fair|both)$")]
     pub rules: Option<String>,
     /// How much reports tell: `none`, `where`, `what` or `full`; without it the suite decides.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(pattern = "^(none|where|what|full)$")]
     pub hints: Option<String>,
     /// What may be handed in: `program`, `sources`, `traces`.
+    #[schema(value_type = Vec<Form>, min_items = 1)]
     pub forms: Vec<String>,
     /// The program's name in a folder of sources.
+    #[schema(value_type = crate::schema::FileName)]
     pub program: String,
     /// After so many seconds a grading is stopped, and what it has so far counts. At most an hour.
+    #[schema(minimum = 1, maximum = 3600)]
     pub seconds: u64,
     /// The largest upload, in bytes. At most a gigabyte.
+    #[schema(minimum = 1, maximum = 1_073_741_824)]
     pub max_bytes: u64,
     /// Submissions per student in all; 0 for as many as they like.
+    #[schema(maximum = 4_294_967_295_i64)]
     pub attempts: u32,
     /// Submissions per student within an hour; 0 for as many as they like.
+    #[schema(maximum = 4_294_967_295_i64)]
     pub per_hour: u32,
     /// No uploads of students after this moment: milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 0, maximum = 253_402_300_799_999_i64)]
     pub due_at: Option<i64>,
 }
 
@@ -110,6 +124,9 @@ impl Settings {
         }
         if !(1..=3600).contains(&self.seconds) {
             return Err(Problem::invalid("seconds is between 1 and 3600"));
+        }
+        if self.due_at.is_some_and(|due| !(0..=LAST_MOMENT).contains(&due)) {
+            return Err(Problem::invalid("due_at is milliseconds since 1970, before the year 10000"));
         }
         if !(1..=1 << 30).contains(&self.max_bytes) {
             return Err(Problem::invalid("max_bytes is between 1 and 1073741824"));

@@ -59,7 +59,10 @@ impl Staff {
         if let Some(digest) = settings.suite_archive.as_ref().and_then(|digest| digest.parse().ok())
             && !self.0.house.0.store.has(&digest).await?
         {
-            return Err(Problem::invalid("suite_archive: nothing of this digest was uploaded"));
+            return Err(Problem::conflict(
+                "suite_archive: nothing of this digest was uploaded",
+                "upload the archive first",
+            ));
         }
         let mut transaction = self.0.house.0.database.begin().await?;
         let row = transaction

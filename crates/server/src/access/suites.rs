@@ -67,7 +67,11 @@ impl Suites {
         } else {
             self.names.iter().any(|known| known == name)
         };
-        if is_known { Ok(()) } else { Err(Problem::invalid(format!("suite is {}", self.words()))) }
+        if is_known {
+            Ok(())
+        } else {
+            Err(Problem::conflict(format!("suite is {}", self.words()), "name one that is there"))
+        }
     }
 
     /// Which names there are, in words.

@@ -111,6 +111,18 @@ impl Visitor {
         self.house.0.storage.prove().await
     }
 
+    /// What the server counts about itself, in Prometheus' text format.
+    ///
+    /// # Errors
+    /// When it can't be written as text.
+    pub fn instruments(&self) -> Result<String, Problem> {
+        let parts = &self.house.0;
+        parts.instruments.show(&parts.database, &parts.storage).map_err(|error| {
+            tracing::error!(%error, "the metrics can't be written");
+            Problem::fault()
+        })
+    }
+
     /// Numbers for a monitor.
     ///
     /// # Errors

@@ -8,6 +8,7 @@ use super::{
 use crate::{
     access::{House, Limits, Parts, Passwords, Suites, Throttle},
     db::{self, Address, Database},
+    instruments::Instruments,
     lti::{self, Lti, PlatformWish},
     net,
     queue::Bell,
@@ -66,6 +67,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         policy,
         suites: suites(arguments.work.grader.as_deref()).await,
         storage: Storage::new(database.clone(), store.clone(), folders.incoming(), arguments.low_water * MIB),
+        instruments: Instruments::new()?,
         incoming: folders.incoming(),
         public: public.clone(),
         patience,
@@ -231,6 +233,7 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
         bell: Bell::default(),
         policy: crate::queue::Policy::default(),
         suites: Suites::default(),
+        instruments: Instruments::new()?,
         incoming: folders.incoming(),
         public: arguments.public_url.clone(),
         patience: Duration::from_secs(30),

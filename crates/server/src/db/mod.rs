@@ -23,7 +23,13 @@ use sqlx::{
     postgres::{PgConnectOptions, PgPool, PgPoolOptions},
     sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous},
 };
-use std::time::Duration;
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicI64, AtomicU64, Ordering},
+    },
+    time::Duration,
+};
 
 /// How long a statement waits for a connection, or for SQLite's one writer, before it gives up.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -46,6 +52,27 @@ fn has_ended(connection: &impl Connection) -> bool {
 #[derive(Debug, Clone)]
 pub struct Database {
     engine: Engine,
+    waits: Arc<Waits>,
+}
+
+/// Who waits for a connection, and how many did so in vain.
+#[derive(Debug, Default)]
+struct Waits {
+    waiting: AtomicI64,
+    timeouts: AtomicU64,
+}
+
+/// How a pool of connections is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pool {
+    /// What it is for.
+    pub name: &'static str,
+    /// Open connections.
+    pub size: u32,
+    /// Those that nobody uses.
+    pub idle: u32,
+    /// The most that it opens.
+    pub most: u32,
 }
 
 #[derive(Debug, Clone)]
@@ -115,7 +142,7 @@ impl Database {
                 Engine::Postgres { pool, options: Box::new(options) }
             }
         };
-        Ok(Self { engine })
+        Ok(Self { engine, waits: Arc::default() })
     }
 
     /// Which database it is.
@@ -135,8 +162,10 @@ impl Database {
     pub async fn begin(&self) -> Result<Transaction, DbError> {
         match &self.engine {
             // A transaction that begins as a reader could not become the writer when another has written meanwhile.
-            Engine::Sqlite { writer, .. } => Ok(Transaction::sqlite(writer.begin_with("BEGIN IMMEDIATE").await?)),
-            Engine::Postgres { pool, .. } => Ok(Transaction::postgres(pool.begin_with(BEGIN).await?)),
+            Engine::Sqlite { writer, .. } => {
+                Ok(Transaction::sqlite(self.waited(writer.begin_with("BEGIN IMMEDIATE")).await?))
+            }
+            Engine::Postgres { pool, .. } => Ok(Transaction::postgres(self.waited(pool.begin_with(BEGIN)).await?)),
         }
     }
 
@@ -146,11 +175,38 @@ impl Database {
     /// When the database can't be reached.
     pub async fn read(&self) -> Result<Transaction, DbError> {
         match &self.engine {
-            Engine::Sqlite { readers, .. } => Ok(Transaction::sqlite(readers.begin().await?)),
+            Engine::Sqlite { readers, .. } => Ok(Transaction::sqlite(self.waited(readers.begin()).await?)),
             Engine::Postgres { pool, .. } => {
-                Ok(Transaction::postgres(pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ, READ ONLY").await?))
+                let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ, READ ONLY";
+                Ok(Transaction::postgres(self.waited(pool.begin_with(begin)).await?))
             }
         }
+    }
+
+    /// Waits for a transaction to begin, and counts that.
+    async fn waited<T>(&self, begin: impl Future<Output = Result<T, sqlx::Error>>) -> Result<T, sqlx::Error> {
+        let waiting = Waiting::begin(&self.waits.waiting);
+        let begun = begin.await;
+        drop(waiting);
+        if matches!(begun, Err(sqlx::Error::PoolTimedOut)) {
+            self.waits.timeouts.fetch_add(1, Ordering::Relaxed);
+        }
+        begun
+    }
+
+    /// How its connections are used.
+    #[must_use]
+    pub fn pools(&self) -> Vec<Pool> {
+        match &self.engine {
+            Engine::Sqlite { writer, readers } => vec![pool("writer", writer), pool("readers", readers)],
+            Engine::Postgres { pool: connections, .. } => vec![pool("postgres", connections)],
+        }
+    }
+
+    /// How many transactions wait for a connection, and how many were given up because none was free in time.
+    #[must_use]
+    pub fn waits(&self) -> (i64, u64) {
+        (self.waits.waiting.load(Ordering::Relaxed), self.waits.timeouts.load(Ordering::Relaxed))
     }
 
     /// How to reach PostgreSQL for a listener, which needs a connection of its own; nothing for SQLite.
@@ -186,4 +242,25 @@ impl Database {
             Engine::Postgres { pool, .. } => pool.close().await,
         }
     }
+}
+
+/// Somebody who waits, also one who gives up in the middle.
+struct Waiting<'a>(&'a AtomicI64);
+
+impl<'a> Waiting<'a> {
+    fn begin(count: &'a AtomicI64) -> Self {
+        count.fetch_add(1, Ordering::Relaxed);
+        Self(count)
+    }
+}
+
+impl Drop for Waiting<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+fn pool<DB: sqlx::Database>(name: &'static str, pool: &sqlx::Pool<DB>) -> Pool {
+    let idle = u32::try_from(pool.num_idle()).unwrap_or(u32::MAX);
+    Pool { name, size: pool.size(), idle, most: pool.options().get_max_connections() }
 }

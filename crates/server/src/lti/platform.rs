@@ -2,6 +2,7 @@
 use crate::{
     db::{DbError, Row},
     problem::Problem,
+    schema::{Host, HttpsUrl, Word},
 };
 use serde::{Deserialize, Serialize};
 use url::Url;
@@ -12,22 +13,30 @@ use utoipa::ToSchema;
 #[serde(deny_unknown_fields)]
 pub struct PlatformWish {
     /// The issuer of its messages ("platform ID").
+    #[schema(value_type = Word)]
     pub issuer: String,
     /// What it calls this service ("client ID").
+    #[schema(value_type = Word)]
     pub client_id: String,
     /// Where it signs people in ("authentication request URL").
+    #[schema(value_type = HttpsUrl)]
     pub login_url: String,
     /// Where it gives tokens for its services ("access token URL").
+    #[schema(value_type = HttpsUrl)]
     pub token_url: String,
     /// Where its public keys are ("public keyset URL").
+    #[schema(value_type = HttpsUrl)]
     pub keys_url: String,
     /// Whom tokens are asked of, where that is not the address for tokens.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Word>)]
     pub audience: Option<String>,
     /// The deployments that people may come from. A new one is told by its number when somebody tries.
+    #[schema(value_type = Vec<Word>, min_items = 1, max_items = 1000)]
     pub deployments: Vec<String>,
     /// Further hosts on which its services may be, beside those of the addresses above.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<Host>, max_items = 50)]
     pub hosts: Vec<String>,
 }
 
@@ -66,7 +75,7 @@ impl PlatformWish {
     /// # Errors
     /// What does not.
     pub fn check(&self, over_http: bool) -> Result<(), Problem> {
-        let is_word = |text: &str| (1..=255).contains(&text.len()) && !text.chars().any(char::is_control);
+        let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
             if !is_word(text) {
                 return Err(Problem::invalid(format!("{name} is 1 to 255 characters long")));

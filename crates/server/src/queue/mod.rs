@@ -24,6 +24,7 @@ pub use tick::{Buried, Tick, abandon, tick};
 use crate::secret;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
+use utoipa::ToSchema;
 
 /// What a job is done by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -102,13 +103,16 @@ impl Policy {
 }
 
 /// What a worker shows for the job that it holds.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Lease {
     /// The job.
+    #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     pub job: i64,
     /// The number of the claim.
+    #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     pub attempt: i64,
     /// Known to the claimant alone.
+    #[schema(max_length = 200)]
     pub key: String,
 }
 

@@ -91,13 +91,20 @@ pub(super) async fn headers(State(house): State<House>, request: Request, next: 
     response
 }
 
-/// Notes what was asked by the route, never by the address: addresses may hold secrets.
-pub(super) async fn log(request: Request, next: Next) -> Response {
+/// Notes and counts what was asked by the route, never by the address: addresses may hold secrets.
+pub(super) async fn log(State(house): State<House>, request: Request, next: Next) -> Response {
     let start = Instant::now();
+    let in_flight = house.instruments().begin();
     let method = request.method().clone();
     let route = request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned();
     let response = next.run(request).await;
-    let (status, took) = (response.status().as_u16(), start.elapsed().as_millis());
+    drop(in_flight);
+    let (status, took) = (response.status().as_u16(), start.elapsed());
+    let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS, Method::PATCH];
+    // Anybody may make up methods, and each would be a series of its own.
+    let counted = if known.contains(&method) { method.as_str() } else { "other" };
+    house.instruments().answered(counted, &route, status, took);
+    let took = took.as_millis();
     if response.status().is_server_error() {
         tracing::warn!(%method, route, status, took, "answered");
     } else {

@@ -9,6 +9,7 @@ use axum::{
 };
 use futures_util::StreamExt;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 /// A body in JSON.
 pub(super) struct Body<T>(pub(super) T);
@@ -44,6 +45,29 @@ async fn bytes(request: Request, house: &House) -> Result<Vec<u8>, Problem> {
     tokio::time::timeout(house.patience(), reading).await.map_err(|_| Problem::too_slow())?
 }
 
+/// Reads JSON in which whole numbers may be written as `7.0`, as some languages do: to JSON Schema, which describes the
+/// API, these are integers.
+fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+    fn mend(value: &mut Value) {
+        match value {
+            Value::Number(number) => {
+                let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
+                // Exact, below 2^53.
+                #[expect(clippy::cast_possible_truncation, reason = "whole and small")]
+                if let (false, Some(whole)) = (number.is_i64() || number.is_u64(), whole) {
+                    *value = Value::from(whole as i64);
+                }
+            }
+            Value::Array(values) => values.iter_mut().for_each(mend),
+            Value::Object(fields) => fields.values_mut().for_each(mend),
+            _ => {}
+        }
+    }
+    let mut value = serde_json::from_slice(bytes).ok()?;
+    mend(&mut value);
+    serde_json::from_value(value).ok()
+}
+
 impl<T: DeserializeOwned> FromRequest<House> for Body<T> {
     type Rejection = Problem;
 
@@ -52,7 +76,9 @@ impl<T: DeserializeOwned> FromRequest<House> for Body<T> {
             return Err(Problem::invalid("the body is to be JSON: Content-Type: application/json"));
         }
         let bytes = bytes(request, state).await?;
-        serde_json::from_slice(&bytes).map(Self).map_err(|error| Problem::invalid(error.to_string()))
+        let read = serde_json::from_slice(&bytes);
+        let read = read.or_else(|error| with_whole_numbers(&bytes).ok_or(error));
+        read.map(Self).map_err(|error| Problem::invalid(error.to_string()))
     }
 }
 

@@ -1,6 +1,7 @@
 //! What is spoken over HTTP: the API, the pages, and what holds for both.
 
 pub mod api;
+mod description;
 mod download;
 mod guard;
 mod input;
@@ -10,9 +11,8 @@ mod upload;
 
 pub(crate) use api::{Alive, Fault, Finished, Held, Manners};
 
-use crate::{access::House, problem::Problem, task::OutputFile};
+use crate::{access::House, problem::Problem};
 use axum::{Router, extract::DefaultBodyLimit, middleware};
-use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 
 /// The largest body of a request that is no upload.
@@ -22,20 +22,11 @@ const BODY: usize = 1 << 20;
 /// send one at the same time.
 const BODY_OF_NOBODY: usize = 32 << 10;
 
-#[derive(OpenApi)]
-#[openapi(
-    info(
-        title = "fosssim-server",
-        description = "A course's grading server. Send a token: `Authorization: Bearer fso_...`. Errors are \
-                       `application/problem+json`, and say how to mend them. Times are milliseconds since 1970.",
-        license(name = "MIT OR Apache-2.0")
-    ),
-    components(schemas(Problem, OutputFile))
-)]
-struct Document;
-
 fn api_router() -> (Router<House>, utoipa::openapi::OpenApi) {
-    OpenApiRouter::with_openapi(Document::openapi()).merge(api::routes()).split_for_parts()
+    let (router, mut description) =
+        OpenApiRouter::with_openapi(description::base()).merge(api::routes()).split_for_parts();
+    description::complete(&mut description);
+    (router, description)
 }
 
 /// The description of the API, as it is served and committed.
@@ -74,6 +65,6 @@ pub fn router(house: House) -> Router {
         .layer(middleware::from_fn_with_state(house.clone(), guard::same_site))
         .layer(middleware::from_fn_with_state(house.clone(), guard::renew))
         .layer(middleware::from_fn_with_state(house.clone(), guard::headers))
-        .layer(middleware::from_fn(guard::log))
+        .layer(middleware::from_fn_with_state(house.clone(), guard::log))
         .with_state(house)
 }

@@ -3,6 +3,7 @@ use super::super::input::{Asked, Body, Params};
 use crate::{
     access::{Account, Admin, Event, NewSecret, Person, Queue, TokenInfo},
     problem::Problem,
+    schema::{Slug, Title},
 };
 use axum::{Json, http::StatusCode};
 use serde::{Deserialize, Serialize};
@@ -21,6 +22,15 @@ pub(super) struct NewToken {
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TokenName {
+    #[schema(value_type = Title)]
+    name: String,
+}
+
+/// What workers with a token are to be called.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WorkerTokenName {
+    #[schema(value_type = Slug)]
     name: String,
 }
 
@@ -31,7 +41,8 @@ pub(super) struct PasswordWish {
     /// The one so far, if there is one.
     #[serde(default)]
     old: String,
-    /// 10 to 200 characters.
+    /// 10 to 200 characters, and not the login.
+    #[schema(min_length = 10, max_length = 200, pattern = r"^[^\x00-\x1f\x7f-\x9f]+$")]
     new: String,
 }
 
@@ -39,6 +50,7 @@ pub(super) struct PasswordWish {
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AccountWish {
+    #[schema(value_type = Title)]
     name: String,
     #[serde(default)]
     is_admin: bool,
@@ -147,11 +159,11 @@ pub(super) async fn worker_tokens(admin: Admin) -> Result<Json<Vec<TokenInfo>>, 
 }
 
 /// Makes a token for workers on other machines.
-#[utoipa::path(post, path = "/api/v1/worker-tokens", tag = "administration", request_body = TokenName,
+#[utoipa::path(post, path = "/api/v1/worker-tokens", tag = "administration", request_body = WorkerTokenName,
     responses((status = 201, body = NewToken), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn new_worker_token(
     admin: Admin,
-    Body(wish): Body<TokenName>,
+    Body(wish): Body<WorkerTokenName>,
 ) -> Result<(StatusCode, Json<NewToken>), Problem> {
     let (info, secret) = admin.new_worker_token(&wish.name).await?;
     Ok((StatusCode::CREATED, Json(NewToken { info, token: secret.reveal().to_owned() })))

@@ -7,6 +7,7 @@ use crate::{
     access::{Assignment, Member, Settings, Staff, Standing},
     archive::{self, Limits},
     problem::Problem,
+    schema::Title,
 };
 use axum::{
     Json,
@@ -26,6 +27,7 @@ const SUITE: u64 = 64 << 20;
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AssignmentWish {
+    #[schema(value_type = Title)]
     title: String,
     #[serde(default)]
     visible: bool,

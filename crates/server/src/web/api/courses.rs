@@ -6,6 +6,7 @@ use super::{
 use crate::{
     access::{Admin, Course, CourseOf, Event, MemberInfo, Person, Staff},
     problem::Problem,
+    schema::{Slug, Title},
 };
 use axum::{Json, http::StatusCode};
 use serde::{Deserialize, Serialize};
@@ -15,7 +16,9 @@ use utoipa::ToSchema;
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CourseWish {
+    #[schema(value_type = Slug)]
     slug: String,
+    #[schema(value_type = Title)]
     title: String,
 }
 
@@ -24,8 +27,10 @@ pub(super) struct CourseWish {
 #[serde(deny_unknown_fields)]
 pub(super) struct MemberWish {
     /// Used when the account is new.
+    #[schema(value_type = Title)]
     name: String,
     /// `student` or `staff`.
+    #[schema(pattern = "^(student|staff)$")]
     role: String,
 }
 
@@ -142,7 +147,7 @@ pub(super) async fn member_link(
 }
 
 /// What happened in the course, latest first, 200 at a time.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/audit", tag = "courses",
+#[utoipa::path(get, path = "/api/v1/courses/{course}/audit", operation_id = "course_audit", tag = "courses",
     params(("course" = String, Path), ("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {

@@ -3,6 +3,7 @@ use super::super::input::{Body, Params};
 use crate::{
     access::{Regrade, Settings, Staff},
     problem::Problem,
+    schema::Title,
 };
 use axum::{Json, http::StatusCode};
 use serde::Deserialize;
@@ -13,6 +14,7 @@ use utoipa::ToSchema;
 #[serde(deny_unknown_fields)]
 pub(super) struct RegradeWish {
     /// Why, as students read it when it is applied.
+    #[schema(value_type = Title)]
     reason: String,
     /// By what; without it by the assignment's settings as they are.
     settings: Option<Settings>,

@@ -26,6 +26,7 @@ use utoipa::ToSchema;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Alive {
     /// How many gradings it does at one time.
+    #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
 }
 
@@ -47,8 +48,8 @@ pub(crate) struct Held {
 #[derive(Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Fault {
-    #[schema(value_type = Object)]
     pub(crate) lease: Lease,
+    #[schema(max_length = 2000)]
     pub(crate) fault: String,
 }
 
@@ -56,9 +57,7 @@ pub(crate) struct Fault {
 #[derive(Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Finished {
-    #[schema(value_type = Object)]
     pub(crate) lease: Lease,
-    #[schema(value_type = Object)]
     pub(crate) outcome: Outcome,
 }
 
@@ -82,14 +81,14 @@ pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
 }
 
 /// Extends a lease.
-#[utoipa::path(post, path = "/api/v1/worker/renew", tag = "workers", request_body(content = Object),
+#[utoipa::path(post, path = "/api/v1/worker/renew", tag = "workers", request_body = Lease,
     responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn renew(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.renew(&lease).await? }))
 }
 
 /// Gives a job back at no cost.
-#[utoipa::path(post, path = "/api/v1/worker/release", tag = "workers", request_body(content = Object),
+#[utoipa::path(post, path = "/api/v1/worker/release", tag = "workers", request_body = Lease,
     responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn release(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.release(&lease).await? }))
@@ -138,7 +137,7 @@ pub(super) async fn artefact(
 #[utoipa::path(put, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("digest" = String, Path), ("Fosssim-Lease" = String, Header)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses((status = 200, body = Object), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Artefact), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn store(
     remote: Remote,
     Params(digest): Params<String>,

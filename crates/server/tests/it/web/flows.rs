@@ -179,7 +179,7 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     }
     // Which suites there are, the grader says.
     set(r#"{"suite": "course-2027"}"#).expect(200);
-    assert!(set(r#"{"suite": "course-2028"}"#).expect(400).text().contains("suite is t2m2 or course-2027"));
+    assert!(set(r#"{"suite": "course-2028"}"#).expect(409).text().contains("suite is t2m2 or course-2027"));
     assert_eq!(set("{}").expect(200).json()["settings"]["suite"], "t2m2");
     let page = admin.get("/c/physics/a/m1/settings").expect(200).text();
     assert!(page.contains("suite: t2m2 or course-2027."), "{page}");

@@ -1,10 +1,12 @@
 //! The server as a process, spoken to over HTTP.
 
+mod description;
 mod example;
 mod flows;
 mod hidden;
 mod hostile;
 mod limits;
+mod metrics;
 mod passwords;
 mod people;
 mod platforms;

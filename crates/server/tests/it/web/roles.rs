@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 /// Whom a route serves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum For {
+pub(super) enum For {
     /// Anybody.
     All,
     /// Whoever is signed in.
@@ -27,7 +27,7 @@ enum For {
 use For::{Admins, All, Members, Owner, People, Staff, Workers};
 
 /// Every route, by its template; what stands in braces is filled in by [`fill`].
-const ROUTES: &[(&str, &str, For)] = &[
+pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("get", "/health", All),
     ("get", "/ready", All),
     ("get", "/metrics", All),

@@ -1,0 +1,62 @@
+//! Texts of a certain form, as the API's description names them: clients that keep to these are not refused for them.
+//! What is checked, and said to people, stands where it is used.
+use utoipa::{
+    PartialSchema, ToSchema,
+    openapi::{
+        RefOr, Schema,
+        schema::{ObjectBuilder, Type},
+    },
+};
+
+macro_rules! texts {
+    ($($(#[doc = $doc:literal])* $name:ident, $pattern:literal, $most:literal, $example:literal;)*) => {
+        $($(#[doc = $doc])*
+        pub enum $name {}
+
+        impl PartialSchema for $name {
+            fn schema() -> RefOr<Schema> {
+                ObjectBuilder::new()
+                    .schema_type(Type::String)
+                    .description(Some(concat!($($doc),*).trim()))
+                    .pattern(Some($pattern))
+                    .min_length(Some(1))
+                    .max_length(Some($most))
+                    .examples([$example])
+                    .into()
+            }
+        }
+
+        impl ToSchema for $name {})*
+    };
+}
+
+texts! {
+    /// A name that stands in addresses.
+    Slug, r"^[a-z0-9][a-z0-9._-]*$", 60, "physics";
+    /// A name that people gave to something, without control characters and spaces at its ends.
+    Title, r"^[^\s\x00-\x1f\x7f-\x9f]([^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f])?$", 200, "Milestone one";
+    /// The SHA-256 of some bytes.
+    Digest, r"^[0-9a-f]{64}$", 64, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
+    /// The name of a file, without a path.
+    FileName, r"^[A-Za-z0-9_][A-Za-z0-9._-]*$", 100, "FOSSSim";
+    /// A word of another system's, without control characters.
+    Word, r"^[^\x00-\x1f\x7f-\x9f]+$", 255, "10000000000001";
+    /// An address that is asked by HTTPS.
+    HttpsUrl, r"^https://[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?(\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}(:([1-9][0-9]{3}|[1-5][0-9]{4}))?(/[A-Za-z0-9._~/-]*)?$",
+        2000, "https://lms.example.org/mod/lti/auth.php";
+    /// A host, with a port where it is not 443.
+    Host, r"^[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?(\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}(:([1-9][0-9]{3}|[1-5][0-9]{4}))?$",
+        255, "lms.example.org";
+    /// A number that is not negative, digit for digit as the grader wrote it.
+    Decimal, r"^[0-9]{1,9}(\.[0-9]{1,20})?$", 30, "97.5";
+    /// A verdict in short.
+    Code, r"^[A-Z]{1,4}$", 4, "WA";
+}
+
+impl PartialSchema for crate::store::Digest {
+    fn schema() -> RefOr<Schema> {
+        Digest::schema()
+    }
+}
+
+impl ToSchema for crate::store::Digest {}

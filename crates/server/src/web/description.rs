@@ -1,0 +1,204 @@
+//! The description of the API (OpenAPI 3.1): what the handlers say of themselves, completed by what holds for all.
+use crate::{
+    access::cookie_name,
+    problem::Problem,
+    schema::{Digest, FileName, Slug},
+    task::OutputFile,
+};
+use axum::http::StatusCode;
+use std::collections::BTreeMap;
+use utoipa::{
+    OpenApi as _,
+    openapi::{
+        OpenApi, RefOr, Required,
+        path::{Operation, Parameter, ParameterIn, PathItem},
+        schema::{KnownFormat, Object, ObjectBuilder, Ref, Schema, SchemaFormat, Type},
+        security::{ApiKey, ApiKeyValue, HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme},
+    },
+};
+
+/// What the body of an upload is called.
+const FILE: &str = "application/octet-stream";
+
+/// The largest number that JSON can hold in every language.
+const MOST: i64 = (1 << 53) - 1;
+
+#[derive(utoipa::OpenApi)]
+#[openapi(
+    info(
+        title = "fosssim-server",
+        description = "A course's grading server. Send a token: `Authorization: Bearer fso_...`. Errors are \
+                       `application/problem+json`, and say how to mend them. Times are milliseconds since 1970.",
+        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
+    ),
+    servers((url = "/", description = "This server")),
+    components(schemas(Problem, OutputFile, Slug, FileName, Digest)),
+    tags(
+        (name = "accounts", description = "Oneself: account, password, tokens"),
+        (name = "courses", description = "Courses and their members"),
+        (name = "assignments", description = "Assignments, and how a class stands in them"),
+        (name = "submissions", description = "What was handed in, and what it came to"),
+        (name = "regrades", description = "Grading all submissions again"),
+        (name = "administration", description = "What administrators do"),
+        (name = "workers", description = "What workers on other machines ask; with a worker's token"),
+        (name = "operations", description = "For whoever runs the server; without any sign-in")
+    )
+)]
+struct Base;
+
+/// What is said before any handler.
+pub(super) fn base() -> OpenApi {
+    Base::openapi()
+}
+
+/// Completes the description by what holds for every operation: how one signs in, what a name in an address looks like,
+/// and what an answer is where its status says all.
+pub(super) fn complete(api: &mut OpenApi) {
+    let components = api.components.get_or_insert_default();
+    for (name, scheme) in schemes() {
+        components.security_schemes.insert(name.to_owned(), scheme.into());
+    }
+    open_what_is_extended(&mut components.schemas);
+    for item in api.paths.paths.values_mut() {
+        for operation in operations(item) {
+            complete_operation(operation);
+        }
+    }
+}
+
+/// A type that takes no other fields can't be part of a larger one, which has them: the larger one has its fields as its
+/// own then.
+fn open_what_is_extended(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
+    let closed: BTreeMap<String, Object> = schemas
+        .iter()
+        .filter_map(|(name, schema)| match schema {
+            RefOr::T(Schema::Object(object)) if object.additional_properties.is_some() => {
+                Some((format!("#/components/schemas/{name}"), object.clone()))
+            }
+            _ => None,
+        })
+        .collect();
+    for schema in schemas.values_mut() {
+        let RefOr::T(Schema::AllOf(parts)) = schema else { continue };
+        for part in &mut parts.items {
+            if let RefOr::Ref(of) = part
+                && let Some(object) = closed.get(&of.ref_location)
+            {
+                let mut open = object.clone();
+                open.additional_properties = None;
+                *part = Schema::Object(open).into();
+            }
+        }
+    }
+}
+
+fn schemes() -> [(&'static str, SecurityScheme); 3] {
+    let bearer = |text: &str| {
+        SecurityScheme::Http(HttpBuilder::new().scheme(HttpAuthScheme::Bearer).description(Some(text)).build())
+    };
+    let text = "A browser's session, from signing in; behind HTTPS the cookie is called `__Host-fosssim`. What changes \
+                something then needs `Sec-Fetch-Site: same-origin` or this server's `Origin`.";
+    let cookie = ApiKeyValue::with_description(cookie_name(false), text);
+    [
+        ("token", bearer("A person's token (`fso_...`), made on the page \"Account\".")),
+        ("session", SecurityScheme::ApiKey(ApiKey::Cookie(cookie))),
+        ("worker", bearer("A worker's token (`fsw_...`), made by an administrator.")),
+    ]
+}
+
+fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
+    [&mut item.get, &mut item.put, &mut item.post, &mut item.delete, &mut item.patch].into_iter().flatten()
+}
+
+fn complete_operation(operation: &mut Operation) {
+    let is_of = |tag: &str| operation.tags.iter().flatten().any(|of| of == tag);
+    let required = |name: &str| SecurityRequirement::new(name, Vec::<String>::new());
+    // A handler that takes less than these says so itself.
+    let security = match () {
+        () if is_of("operations") => Vec::new(),
+        () if is_of("workers") => vec![required("worker")],
+        () => vec![required("token"), required("session")],
+    };
+    operation.security.get_or_insert(security);
+    for parameter in operation.parameters.iter_mut().flatten() {
+        if let RefOr::T(parameter) = parameter {
+            complete_parameter(parameter);
+        }
+    }
+    if let Some(RefOr::T(body)) = &mut operation.request_body {
+        body.required = Some(Required::True);
+        for (kind, content) in &mut body.content {
+            if let (RefOr::T(content), FILE) = (content, kind.as_str()) {
+                content.schema = Some(bytes());
+            }
+        }
+    }
+    let responses = &mut operation.responses.responses;
+    let takes_file = operation.request_body.as_ref().is_some_and(|body| match body {
+        RefOr::T(body) => body.content.contains_key(FILE),
+        RefOr::Ref(_) => false,
+    });
+    if let (true, Some(RefOr::T(mut refused))) = (takes_file, responses.get("default").cloned()) {
+        refused.description = "The file is none that is taken here, and was not kept: what is wrong with it".to_owned();
+        responses.entry("422".to_owned()).or_insert(RefOr::T(refused));
+    }
+    for (status, response) in responses {
+        if let RefOr::T(response) = response
+            && response.description.is_empty()
+        {
+            response.description = answer(status);
+        }
+    }
+}
+
+/// What stands in an address or a header, by its name.
+fn complete_parameter(parameter: &mut Parameter) {
+    let named = |name: &str| -> RefOr<Schema> { Ref::from_schema_name(name).into() };
+    let text = |pattern: &str| -> RefOr<Schema> {
+        ObjectBuilder::new().schema_type(Type::String).pattern(Some(pattern)).into()
+    };
+    let (schema, text) = match (&parameter.parameter_in, parameter.name.as_str()) {
+        (ParameterIn::Path, "course") => (named("Slug"), "The course's name in addresses"),
+        (ParameterIn::Path, "assignment") => (named("Slug"), "The assignment's name in addresses"),
+        (ParameterIn::Path, "login") => (named("Slug"), "The account's login"),
+        (ParameterIn::Path, "digest") => (named("Digest"), "The SHA-256 of the file's bytes"),
+        (ParameterIn::Path, "name") => (named("Slug"), "What it is called"),
+        (ParameterIn::Path, "id") => (number(1), "Its number"),
+        (ParameterIn::Query, "before") => (number(0), "Only what was before this one"),
+        (ParameterIn::Query, "format") => (text("^(csv|jsonl)$"), "`csv` or `jsonl`"),
+        (ParameterIn::Query, "form") => (text("^(program|sources|traces)$"), "What kind of thing it is"),
+        (ParameterIn::Header, "Idempotency-Key") => (text("^[!-~]{1,200}$"), "A name of the sender's own"),
+        (ParameterIn::Header, "Fosssim-Lease") => {
+            (text("^[0-9]{1,15}:[0-9]{1,15}:[0-9a-f]+$"), "The lease of the job, as JOB:ATTEMPT:KEY")
+        }
+        _ => return,
+    };
+    parameter.schema = Some(schema);
+    parameter.description.get_or_insert(text.to_owned());
+}
+
+/// A number that JSON can hold in every language.
+fn number(least: i64) -> RefOr<Schema> {
+    let format = SchemaFormat::KnownFormat(KnownFormat::Int64);
+    let number = ObjectBuilder::new().schema_type(Type::Integer).format(Some(format));
+    number.minimum(Some(least)).maximum(Some(MOST)).into()
+}
+
+/// The bytes of a file.
+fn bytes() -> RefOr<Schema> {
+    let format = SchemaFormat::KnownFormat(KnownFormat::Binary);
+    ObjectBuilder::new().schema_type(Type::String).format(Some(format)).min_length(Some(1)).into()
+}
+
+/// What an answer is that nobody describes.
+fn answer(status: &str) -> String {
+    if status == "default" {
+        return "Refused, or failed: what is wrong, and what to do about it".to_owned();
+    }
+    let reason = status.parse().ok().and_then(|status| StatusCode::from_u16(status).ok()?.canonical_reason());
+    match reason {
+        Some("OK") => "What was asked for".to_owned(),
+        Some("Created") => "What was made".to_owned(),
+        reason => reason.unwrap_or("An answer").to_owned(),
+    }
+}
