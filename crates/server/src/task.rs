@@ -1,6 +1,6 @@
 //! What a worker is asked to do and what it answers: the same words in the queue, over HTTP and in the database.
 use crate::{
-    schema::{Code, Decimal, FileName},
+    schema::{Code, Decimal, ReportName},
     store::{Artefact, Digest},
 };
 use serde::{Deserialize, Serialize};
@@ -101,6 +101,7 @@ pub struct Outcome<F = OutputFile> {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub essence: String,
     /// Scenes that are not accepted, of a submission that is nearly right; not shown.
+    #[schema(max_items = 1000)]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub wrong: Vec<WrongScene>,
     /// How long it took, in seconds.
@@ -173,7 +174,7 @@ pub const JUDGE_ERROR: &str = "JE";
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct OutputFile {
     /// What it is called, `grade.json` for example.
-    #[schema(value_type = FileName)]
+    #[schema(value_type = ReportName)]
     pub name: String,
     /// What it holds.
     pub media_type: String,

@@ -61,16 +61,12 @@ impl Suites {
 
     /// Whether there is such a suite.
     pub(super) fn check(&self, name: &str) -> Result<(), Problem> {
-        let is_known = if self.names.is_empty() {
-            // The version stands behind an `@`.
-            name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name)
-        } else {
-            self.names.iter().any(|known| known == name)
-        };
-        if is_known {
-            Ok(())
-        } else {
-            Err(Problem::conflict(format!("suite is {}", self.words()), "name one that is there"))
+        // The version stands behind an `@`.
+        let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
+        match () {
+            () if !is_name => Err(Problem::invalid(format!("suite is {}", self.words()))),
+            () if self.names.is_empty() || self.names.iter().any(|known| known == name) => Ok(()),
+            () => Err(Problem::conflict(format!("suite is {}", self.words()), "name one that is there")),
         }
     }
 

@@ -32,6 +32,10 @@ pub(super) enum Command {
     Worker(Worker),
     AdminLink(AdminLink),
     Replay(Replay),
+    Backup(Backup),
+    Restore(Restore),
+    Upgrade(Upgrade),
+    Health(Health),
     /// Prints the description of the API (OpenAPI).
     Openapi,
 }
@@ -169,6 +173,49 @@ pub(super) struct Replay {
     /// Only this result; its number stands in the history. All results of the submission otherwise.
     #[arg(long, value_name = "NUMBER")]
     pub(super) result: Option<i64>,
+}
+
+/// Copies the database and all uploads and reports into a new folder, while the server runs. PostgreSQL is copied by
+/// pg_dump, which has to be installed. The exit code is 1 when the store lacks what the database names.
+#[derive(Debug, Args)]
+pub(super) struct Backup {
+    #[command(flatten)]
+    pub(super) place: Place,
+    /// The folder to make.
+    #[arg(value_name = "FOLDER")]
+    pub(super) output: PathBuf,
+}
+
+/// Makes a data folder from a backup. The data folder, and the database of PostgreSQL, must be empty. The exit code is 1
+/// when the backup lacks what its database names.
+#[derive(Debug, Args)]
+pub(super) struct Restore {
+    #[command(flatten)]
+    pub(super) place: Place,
+    /// What `backup` made.
+    #[arg(value_name = "FOLDER")]
+    pub(super) backup: PathBuf,
+}
+
+/// Brings the tables up to date, as starting the server does, with a backup in the data folder before.
+#[derive(Debug, Args)]
+pub(super) struct Upgrade {
+    #[command(flatten)]
+    pub(super) place: Place,
+    /// Say what would change, and change nothing. The exit code is 1 when something would.
+    #[arg(long)]
+    pub(super) check: bool,
+}
+
+/// Says by the exit code whether a server, by its address, or a worker, by its data folder, is well: for probes.
+#[derive(Debug, Args)]
+pub(super) struct Health {
+    /// The server's address.
+    #[arg(long, value_name = "URL", value_parser = public_url)]
+    pub(super) server: Option<String>,
+    /// The worker's data folder.
+    #[arg(long, value_name = "DIR", default_value = "fosssim-data")]
+    pub(super) data: PathBuf,
 }
 
 /// Grades what waits in the queue.

@@ -1,11 +1,15 @@
 //! The command line of the service.
 
 mod arguments;
+mod backup;
 mod config;
 mod folders;
+mod health;
+mod heartbeat;
 mod logging;
 mod replay;
 mod serve;
+mod upgrade;
 mod worker;
 
 use anyhow::Result;
@@ -42,6 +46,10 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Worker(arguments) => worker::run(arguments).await?,
             Command::AdminLink(arguments) => serve::admin_link(arguments).await?,
             Command::Replay(arguments) => return Ok(u8::from(!replay::run(arguments).await?)),
+            Command::Backup(arguments) => return Ok(u8::from(!backup::backup(arguments).await?)),
+            Command::Restore(arguments) => return Ok(u8::from(!backup::restore(arguments).await?)),
+            Command::Upgrade(arguments) => return Ok(u8::from(!upgrade::run(arguments).await?)),
+            Command::Health(arguments) => return Ok(u8::from(!health::run(arguments))),
             Command::Openapi => print!("{}", crate::web::openapi()),
         }
         Ok(0)
@@ -63,6 +71,7 @@ fn until_signalled() -> Result<CancellationToken> {
             if again {
                 std::process::exit(130);
             }
+            heartbeat::stopping();
             tracing::info!("stopping; jobs are given back (once more to stop at once)");
             cancelled.cancel();
         }

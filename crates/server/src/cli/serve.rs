@@ -2,7 +2,7 @@
 use super::{
     arguments::{AdminLink, Serve},
     folders::Folders,
-    until_signalled,
+    heartbeat, until_signalled,
     worker::{Local, grader, policy},
 };
 use crate::{
@@ -126,6 +126,9 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         connections: arguments.connections as usize,
         proxies: arguments.trusted_proxies.clone(),
     };
+    heartbeat::ready();
+    let seen = database.clone();
+    tokio::spawn(heartbeat::beat(folders.data.clone(), async move || db::version(&seen).await.is_ok()));
     let serving = net::serve(listener, web::router(house), manners, stop.clone());
     match working {
         None => serving.await,

@@ -2,7 +2,7 @@
 use super::{
     arguments::{Work, Worker},
     folders::Folders,
-    until_signalled,
+    heartbeat, until_signalled,
 };
 use crate::{
     db::{self, Database},
@@ -47,6 +47,9 @@ pub(super) async fn run(arguments: &Worker) -> Result<()> {
         policy: policy(&arguments.work),
         grader: grader(arguments.work.grader.as_deref())?,
     };
+    heartbeat::ready();
+    let seen = database.clone();
+    tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || db::version(&seen).await.is_ok()));
     local.work(&arguments.work, arguments.slots, arguments.name.as_deref(), stop).await?;
     database.close().await;
     Ok(())
@@ -73,6 +76,9 @@ async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: Can
     let desk = RemoteDesk::new(server, token, &name);
     desk.tick(slots(arguments.slots)).await.map_err(|error| anyhow!("{server}: {error}"))?;
     let folder = folders.work(&name);
+    heartbeat::ready();
+    // A worker whose server is away is well: it goes on trying, and has what it holds.
+    tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
     tracing::info!(worker = name, server, slots = slots(arguments.slots), grader = %grader.display(), "working");
     let options = Options { slots: slots(arguments.slots), folder: folder.clone() };
     worker::work(desk, Program::new(grader, arguments.work.threads.get()), options, stop).await;

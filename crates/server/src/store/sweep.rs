@@ -71,6 +71,11 @@ impl Store {
         Ok(given_up)
     }
 
+    /// Every artefact, one after the other; one that is put aside meanwhile may come twice.
+    pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
+        self.list(KEPT).chain(self.list(ASIDE)).map_ok(|(digest, _)| digest)
+    }
+
     /// Moves an object, unless another server was faster.
     async fn rename(&self, from: &Key, to: &Key) -> Result<(), StoreError> {
         match self.objects.rename(from, to).await {

@@ -82,7 +82,7 @@ pub(super) async fn me(person: Person) -> Json<Account> {
 }
 
 /// Sets one's own password, where the server takes passwords. All sessions end.
-#[utoipa::path(put, path = "/api/v1/password", tag = "accounts", request_body = PasswordWish,
+#[utoipa::path(put, path = "/api/v1/password", tag = "accounts", security(("session" = [])), request_body = PasswordWish,
     responses((status = 204, description = "Set"),
         (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn set_password(person: Person, Body(wish): Body<PasswordWish>) -> Result<StatusCode, Problem> {
@@ -98,7 +98,7 @@ pub(super) async fn tokens(person: Person) -> Result<Json<Vec<TokenInfo>>, Probl
 }
 
 /// Makes a token for oneself.
-#[utoipa::path(post, path = "/api/v1/tokens", tag = "accounts", request_body = TokenName,
+#[utoipa::path(post, path = "/api/v1/tokens", tag = "accounts", security(("session" = [])), request_body = TokenName,
     responses((status = 201, body = NewToken), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn new_token(
     person: Person,

@@ -87,7 +87,10 @@ pub(super) async fn remove_course(
     Asked(asked): Asked<Confirm>,
 ) -> Result<StatusCode, Problem> {
     if asked.confirm != course {
-        return Err(Problem::invalid("confirm is the course's name once more"));
+        return Err(Problem::conflict(
+            "confirm is another name than the course's",
+            "name the course once more in confirm",
+        ));
     }
     admin.remove_course(&course).await?;
     Ok(StatusCode::NO_CONTENT)

@@ -1,5 +1,6 @@
 //! The server as a process, spoken to over HTTP.
 
+mod backup;
 mod description;
 mod example;
 mod flows;
@@ -13,6 +14,7 @@ mod platforms;
 mod removal;
 mod replay;
 mod roles;
+mod signs;
 mod storage;
 mod suspicion;
 mod upgrade;

@@ -65,7 +65,7 @@ async fn what_is_removed_is_gone(fresh: Fresh) {
     let eve = server.member(&admin, "other", "eve", "student");
     let id = eve.submit("other", &program("WA", 3));
     eve.wait_for_grade("other", id);
-    admin.send("DELETE", "/api/v1/courses/other?confirm=physics", &[], b"").expect(400);
+    admin.send("DELETE", "/api/v1/courses/other?confirm=physics", &[], b"").expect(409);
     admin.send("DELETE", "/api/v1/courses/other?confirm=other", &[], b"").expect(204);
     assert_eq!(rows(&fresh).await, [0; 7]);
     eve.get("/api/v1/me").expect(200);

@@ -213,7 +213,7 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
         );
         worker.send("POST", "/api/v1/worker/finish", JSON, outcome.as_bytes())
     };
-    finish("WA", "1", "report.txt", &not_held).expect(400);
+    finish("WA", "1", "report.txt", &not_held).expect(409);
     let report = "6c1e671f9af5b46d9c1a52067bdf0e53685674f7";
     let put = |digest: &str, bytes: &[u8]| {
         worker.send("PUT", &format!("/api/v1/worker/files/{digest}"), &[("Fosssim-Lease", &shown)], bytes)

@@ -1,0 +1,65 @@
+//! What a backup says it holds.
+use crate::store::Digest;
+use anyhow::{Context, Result, bail};
+use serde::{Deserialize, Serialize};
+use std::{fs, path::Path};
+
+/// The form of backups.
+pub(super) const SCHEMA: u32 = 1;
+
+/// What the file is called; a folder without it is no backup.
+const FILE: &str = "backup.json";
+
+/// What a backup holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(in crate::cli) struct Manifest {
+    /// The form of the backup.
+    pub(super) schema: u32,
+    /// The program's version.
+    pub(super) version: String,
+    /// The version of the tables.
+    pub(in crate::cli) tables: i64,
+    pub(super) database: Copy,
+    pub(super) artefacts: Artefacts,
+}
+
+/// The copy of the database.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Copy {
+    /// Its name in the folder.
+    pub(super) file: String,
+    pub(super) sha256: Digest,
+    pub(super) bytes: u64,
+}
+
+/// The files of the store; each is called by its digest.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Artefacts {
+    pub(super) count: u64,
+    pub(super) bytes: u64,
+}
+
+impl Manifest {
+    /// Writes it into a backup's folder.
+    pub(super) fn write(&self, folder: &Path) -> Result<()> {
+        let text = serde_json::to_string_pretty(self)? + "\n";
+        fs::write(folder.join(FILE), text).context("the backup's manifest can't be written")
+    }
+
+    /// Reads that of a backup.
+    ///
+    /// # Errors
+    /// When the folder is no backup, or one of a newer program.
+    pub(super) fn read(folder: &Path) -> Result<Self> {
+        let file = folder.join(FILE);
+        let text = fs::read_to_string(&file)
+            .with_context(|| format!("{} is no backup, or no complete one: it has no {FILE}", folder.display()))?;
+        let form: serde_json::Value = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
+        let schema = form["schema"].as_u64().unwrap_or_default();
+        if schema > u64::from(SCHEMA) {
+            let by = form["version"].as_str().unwrap_or("unknown");
+            bail!("the backup has form {schema}, this program knows forms up to {SCHEMA}: restore it by version {by}");
+        }
+        serde_json::from_value(form).with_context(|| format!("{} is not understood", file.display()))
+    }
+}

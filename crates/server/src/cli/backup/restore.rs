@@ -1,0 +1,112 @@
+//! `restore`: a backup becomes a data folder again. The database comes last: a server that is started too early finds
+//! none, and no half of one.
+use super::{
+    super::{arguments::Restore, folders::Folders},
+    manifest::{Artefacts, Manifest},
+    missing, postgres, tell_missing,
+};
+use crate::{
+    db::{self, Address, Database},
+    store::{Store, digest_of_file},
+};
+use anyhow::{Context, Result, bail};
+use std::{
+    fs,
+    os::unix::fs::PermissionsExt,
+    path::{Path, PathBuf},
+};
+
+/// Restores a backup into an empty data folder and, where there is one, an empty database.
+pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<bool> {
+    let (place, from) = (&arguments.place, arguments.backup.as_path());
+    let manifest = Manifest::read(from)?;
+    if manifest.tables > db::LATEST {
+        bail!(
+            "the backup's tables have version {}, this program knows versions up to {}: restore it by version {}",
+            manifest.tables,
+            db::LATEST,
+            manifest.version
+        );
+    }
+    let copy = from.join(&manifest.database.file);
+    let found = digest_of_file(&copy).await.with_context(|| copy.display().to_string())?;
+    if found.digest != manifest.database.sha256 {
+        bail!("{} is damaged: it is not the copy that was made", copy.display());
+    }
+    if place.data.exists() && fs::read_dir(&place.data)?.next().is_some() {
+        bail!("{} is not empty: a backup is restored into an empty data folder", place.data.display());
+    }
+    let folders = Folders::open(place)?;
+    let address = folders.database(place);
+    let is_dump = manifest.database.file == super::POSTGRES;
+    match (&address, is_dump) {
+        (Address::Sqlite(file), false) if file.exists() => bail!("the database {} is there already", file.display()),
+        (Address::Postgres(_), true) => {
+            let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+            let version = db::version(&database).await?;
+            database.close().await;
+            if version > 0 {
+                bail!("the database {address} is not empty: restore into one that was just made");
+            }
+        }
+        (Address::Sqlite(_), false) => {}
+        (_, true) => bail!("the backup is one of PostgreSQL: name an empty database by FOSSSIM_DATABASE"),
+        (_, false) => bail!("the backup is one of SQLite: leave out the database's address"),
+    }
+    let store = folders.store(place)?;
+    let restored = put_artefacts(&store, &from.join("store").join("sha256")).await?;
+    if restored != manifest.artefacts {
+        bail!(
+            "the backup is damaged: it has {} artefacts of {} bytes, and had {} of {}",
+            restored.count,
+            restored.bytes,
+            manifest.artefacts.count,
+            manifest.artefacts.bytes
+        );
+    }
+    match &address {
+        Address::Sqlite(file) => copy_database(&copy, file)?,
+        Address::Postgres(url) => postgres::load(url, &copy).await?,
+    }
+    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    let missing = missing(&database, &store).await?;
+    database.close().await;
+    let tables = match manifest.tables {
+        db::LATEST => "of this version".to_owned(),
+        older => format!("of version {older}; starting the server brings them up to {}", db::LATEST),
+    };
+    println!("{}: the database (tables {tables}) and {} artefacts", place.data.display(), restored.count);
+    tell_missing(&missing);
+    Ok(missing.is_empty())
+}
+
+/// A file that appears whole under its name, for nobody else's eyes.
+fn copy_database(copy: &Path, file: &Path) -> Result<()> {
+    let partial = PathBuf::from(format!("{}.partial", file.display()));
+    fs::copy(copy, &partial).with_context(|| format!("cannot write {}", partial.display()))?;
+    fs::set_permissions(&partial, fs::Permissions::from_mode(0o600))?;
+    fs::File::open(&partial)?.sync_all()?;
+    Ok(fs::rename(&partial, file)?)
+}
+
+/// Stores every file of a folder of artefacts, each of which must be what its name says.
+async fn put_artefacts(store: &Store, folder: &Path) -> Result<Artefacts> {
+    let mut put = Artefacts::default();
+    if !folder.exists() {
+        return Ok(put);
+    }
+    for first in fs::read_dir(folder)? {
+        let first = first?;
+        for rest in fs::read_dir(first.path())? {
+            let file = rest?;
+            let name = [first.file_name(), file.file_name()].map(|part| part.to_string_lossy().into_owned()).concat();
+            let stored = store.put_file(&file.path()).await?;
+            if stored.digest.as_str() != name {
+                bail!("{} is damaged: its bytes have another digest than its name", file.path().display());
+            }
+            put.count += 1;
+            put.bytes += stored.size;
+        }
+    }
+    Ok(put)
+}

@@ -1,0 +1,26 @@
+//! `health`: whether a server or a worker is well, by the exit code: for probes of containers, which have no other tool.
+use super::{arguments::Health, heartbeat};
+use std::time::Duration;
+
+/// How long the server may take.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Whether it is.
+pub(super) fn run(arguments: &Health) -> bool {
+    let Some(server) = &arguments.server else {
+        let alive = heartbeat::is_alive(&arguments.data);
+        println!("{}", if alive { "alive" } else { "no sign of life" });
+        return alive;
+    };
+    let agent: ureq::Agent = ureq::Agent::config_builder().timeout_global(Some(PATIENCE)).build().into();
+    match agent.get(format!("{server}/ready")).call() {
+        Ok(_) => {
+            println!("ready");
+            true
+        }
+        Err(error) => {
+            println!("not ready: {error}");
+            false
+        }
+    }
+}

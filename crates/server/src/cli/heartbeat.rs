@@ -1,0 +1,61 @@
+//! Signs of life for whoever watches this process: systemd (`Type=notify` with `WatchdogSec`), and probes that look at a
+//! file in the data folder.
+use sd_notify::NotifyState;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, SystemTime},
+};
+
+/// The file that is touched, in the data folder.
+const FILE: &str = "alive";
+
+/// How often there is a sign, where the watchdog does not want it sooner.
+const EVERY: Duration = Duration::from_secs(10);
+
+/// How long a look at oneself may take.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// A process without a sign for so long is not alive.
+const SILENCE: Duration = Duration::from_secs(60);
+
+/// Says that the process has begun its work.
+pub(super) fn ready() {
+    tell(&[NotifyState::Ready]);
+}
+
+/// Says that it ends.
+pub(super) fn stopping() {
+    tell(&[NotifyState::Stopping]);
+}
+
+fn tell(state: &[NotifyState<'_>]) {
+    if let Err(error) = sd_notify::notify(state) {
+        tracing::warn!(%error, "systemd can't be told");
+    }
+}
+
+/// Gives signs for ever, whenever a look says that all is well.
+pub(super) async fn beat(data: PathBuf, is_well: impl AsyncFn() -> bool) {
+    let watchdog = sd_notify::watchdog_enabled();
+    let every = watchdog.map_or(EVERY, |watchdog| (watchdog / 3).min(EVERY));
+    loop {
+        match tokio::time::timeout(PATIENCE, is_well()).await {
+            Ok(true) => {
+                if watchdog.is_some() {
+                    tell(&[NotifyState::Watchdog]);
+                }
+                // A disk that is full is no reason to be started again.
+                drop(fs::write(data.join(FILE), b""));
+            }
+            _ => tracing::warn!("no sign of life: the database does not answer"),
+        }
+        tokio::time::sleep(every).await;
+    }
+}
+
+/// Whether a process with this data folder has given a sign lately.
+pub(super) fn is_alive(data: &Path) -> bool {
+    let touched = fs::metadata(data.join(FILE)).and_then(|data| data.modified());
+    touched.is_ok_and(|touched| SystemTime::now().duration_since(touched).is_ok_and(|age| age < SILENCE))
+}
