@@ -122,7 +122,7 @@ pub(super) struct Serve {
     /// For so many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0)]
     pub(super) keep_days: u32,
-    /// A file (TOML) with learning platforms to register; docs/service.md shows one.
+    /// A file (TOML) with learning platforms to register; docs/lti.md shows one.
     #[arg(long, value_name = "FILE")]
     pub(super) platforms: Option<PathBuf>,
     /// Let learning platforms be reached, and people come from them, without HTTPS: to try it on one machine.
