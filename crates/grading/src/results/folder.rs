@@ -148,7 +148,9 @@ pub fn each_line<E: From<io::Error>>(
         } else if read < LONGEST_LINE {
             return Ok(());
         } else {
-            let text = format!("it has a line of more than {LONGEST_LINE} bytes, which no result has: it is damaged");
+            let text = format!(
+                "it has a line of more than {LONGEST_LINE} bytes, which no result has: remove it, and its results are made anew"
+            );
             return Err(io::Error::other(text).into());
         }
     }
