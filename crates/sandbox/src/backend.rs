@@ -440,6 +440,8 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         readable,
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
+        libraries: examined.libraries.iter().map(|path| wire::raw(path)).collect(),
+        missing: examined.missing,
         own: own::known(supervisor).iter().map(|path| wire::raw(path)).collect(),
         pipe: job.trace_pipe.as_ref().map(|name| name.as_bytes().to_vec()),
         files: Vec::new(),

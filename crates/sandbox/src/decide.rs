@@ -62,7 +62,7 @@ pub(super) fn ended(order: &Order, report: &Report, stderr: &[u8]) -> Ended {
         return Ended::MemoryLimit;
     }
     if code == LOADER_FAILED
-        && let Some(library) = missing_library(&text)
+        && let Some(library) = missing_library(&text, &order.missing)
     {
         return Ended::CouldNotStart(StartProblem::MissingLibrary { library });
     }
@@ -93,13 +93,14 @@ fn start_problem(errno: i32) -> StartProblem {
     }
 }
 
-/// The library that the loader of glibc or musl says it did not find.
-fn missing_library(stderr: &str) -> Option<String> {
+/// The library that the loader of glibc or musl says it did not find, if it is one of those that were `missing` before:
+/// the program itself could say so of any words.
+fn missing_library(stderr: &str, missing: &[String]) -> Option<String> {
     let (_, after) = stderr
         .split_once("error while loading shared libraries: ")
         .or_else(|| stderr.split_once("Error loading shared library "))?;
     let name = after.split([':', '\n']).next()?.trim();
-    (!name.is_empty()).then(|| name.chars().take(200).flat_map(char::escape_default).collect())
+    missing.iter().any(|known| known == name).then(|| name.chars().take(200).flat_map(char::escape_default).collect())
 }
 
 /// Whether its last words are those of a runtime whose request for memory was refused. A single request beyond the
@@ -133,7 +134,7 @@ mod tests {
     fn order() -> Order {
         serde_json::from_value(serde_json::json!({
             "program": [], "folder": [], "arguments": [], "environment": [], "readable": [], "executable": [], "named": [],
-            "own": [], "pipe": null, "files": [], "volatile": false, "interpreter": null, "words": [], "tools": false, "sanitised": false,
+            "libraries": [], "missing": ["libglut.so.3"], "own": [], "pipe": null, "files": [], "volatile": false, "interpreter": null, "words": [], "tools": false, "sanitised": false,
             "walls": {"landlock": true, "landlock_version": 0, "scopes": true, "seccomp": true, "notify": true, "own_user": true, "namespaces": true, "group": true, "bubblewrap": false},
             "cpu_micros": 1_000_000, "wall_micros": 2_000_000, "memory": 1000, "output_bytes": 10,
             "folder_bytes": 10, "folder_files": 10, "processes": 1, "open_files": 10,

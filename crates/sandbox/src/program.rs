@@ -5,24 +5,18 @@
 //! dynamic string table. Every offset in a file is distrusted.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 
+use super::elf::{self, MAGIC as ELF_MAGIC, read_at};
+use super::libraries::{self, Readable};
 use super::outcome::StartProblem;
 use super::own;
 
-const ELF_MAGIC: &[u8] = b"\x7fELF";
-const PT_LOAD: u32 = 1;
-const PT_DYNAMIC: u32 = 2;
-const PT_INTERP: u32 = 3;
-const DT_STRTAB: u64 = 5;
-const DT_STRSZ: u64 = 10;
 /// Names that the runtimes of the address, thread and memory sanitisers define.
 const SANITISER_NAMES: [&[u8]; 4] = [b"__asan_init", b"__tsan_init", b"__msan_init", b"libasan.so"];
-/// No header, path or table of a sane program is longer than these.
+/// No path of a sane program is longer than this.
 const LONGEST_PATH: u64 = 4096;
-const LONGEST_TABLE: u64 = 16 << 20;
 /// Where the system keeps the programs that a script may name, in the order of the sandbox's `PATH`.
 const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
 /// Where the system keeps loaders, and interpreters that are linked from the folders of programs.
@@ -40,6 +34,17 @@ pub(super) struct Program {
     pub(super) script: Option<Script>,
     /// Whether it carries a sanitiser, which reserves terabytes of address space.
     pub(super) sanitised: bool,
+    /// The system's libraries that its loader opens ([`libraries`]).
+    pub(super) libraries: Vec<PathBuf>,
+    /// Those that it asks for and the system lacks.
+    pub(super) missing: Vec<String>,
+}
+
+impl Program {
+    fn with_libraries(mut self, readable: Readable) -> Self {
+        self.named.extend(readable.named);
+        Self { libraries: readable.files, missing: readable.missing, ..self }
+    }
 }
 
 /// The program that reads a script, as the kernel and `env` would find it. It is executed in their place, so that a
@@ -81,7 +86,10 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     let mut file = File::open(path).map_err(|_| StartProblem::NotPermitted)?;
     let start = read_at(&mut file, 0, 256).unwrap_or_default();
     if start.starts_with(ELF_MAGIC) {
-        elf(&mut file, &start, own)
+        let program = elf(&mut file, &start, own)?;
+        let (loader, asked) = (program.executable.first(), elf::dynamic(path).unwrap_or_default());
+        let readable = libraries::readable(asked, loader.map(PathBuf::as_path), None, own);
+        Ok(program.with_libraries(readable))
     } else if let Some(line) = start.strip_prefix(b"#!") {
         script(line, own)
     } else {
@@ -94,7 +102,13 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
 /// Whatever is named here becomes executable for the submission. So it must be one of the system's own programs, after
 /// all links and `..` are resolved: a script that names the grader's program would be graded by its own answers.
 fn script(line: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
-    interpreted(line, own, 0)
+    let program = interpreted(line, own, 0)?;
+    let interpreter = program.script.as_ref().and_then(|script| script.interpreter.canonicalize().ok());
+    let asked = interpreter.as_deref().and_then(elf::dynamic).unwrap_or_default();
+    // The interpreter's loader comes last.
+    let loader = program.executable.last().map(PathBuf::as_path);
+    let readable = libraries::readable(asked, loader, interpreter.as_deref(), own);
+    Ok(program.with_libraries(readable))
 }
 
 fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
@@ -230,8 +244,8 @@ fn elf(file: &mut File, start: &[u8], own: &[PathBuf]) -> Result<Program, StartP
         _ => return Err(StartProblem::NotAProgram),
     }
     let mut program = Program::default();
-    let segments = segments(file, start);
-    if let Some(interpreter) = segments.iter().find(|segment| segment.kind == PT_INTERP) {
+    let segments = elf::segments(file, start);
+    if let Some(interpreter) = segments.iter().find(|segment| segment.kind == elf::INTERPRETER) {
         let bytes = read_at(file, interpreter.offset, interpreter.size.min(LONGEST_PATH)).unwrap_or_default();
         let text = String::from_utf8_lossy(bytes.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned();
         let loader = PathBuf::from(&text);
@@ -241,53 +255,9 @@ fn elf(file: &mut File, start: &[u8], own: &[PathBuf]) -> Result<Program, StartP
         program.executable.push(systems(&loader, LIBRARIES.into_iter(), own)?);
         program.named.push(loader);
     }
-    program.sanitised =
-        dynamic_names(file, &segments).is_some_and(|table| SANITISER_NAMES.iter().any(|name| contains(&table, name)));
+    program.sanitised = elf::dynamic_names(file, &segments)
+        .is_some_and(|table| SANITISER_NAMES.iter().any(|name| contains(&table, name)));
     Ok(program)
-}
-
-/// A segment of the program header table.
-struct Segment {
-    kind: u32,
-    offset: u64,
-    address: u64,
-    size: u64,
-}
-
-fn segments(file: &mut File, start: &[u8]) -> Vec<Segment> {
-    let Some(offset) = word(start, 32) else { return Vec::new() };
-    let count = start.get(56..58).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
-    let table = read_at(file, offset, u64::from(count.min(256)) * 56).unwrap_or_default();
-    let segment = |entry: &[u8]| {
-        let kind = u32::from_le_bytes(entry.get(..4)?.try_into().ok()?);
-        Some(Segment { kind, offset: word(entry, 8)?, address: word(entry, 16)?, size: word(entry, 32)? })
-    };
-    table.chunks_exact(56).filter_map(segment).collect()
-}
-
-/// The string table of the dynamic section: names of libraries and of symbols that are looked up at run time.
-fn dynamic_names(file: &mut File, segments: &[Segment]) -> Option<Vec<u8>> {
-    let dynamic = segments.iter().find(|segment| segment.kind == PT_DYNAMIC)?;
-    let entries = read_at(file, dynamic.offset, dynamic.size.min(LONGEST_TABLE))?;
-    let value = |tag: u64| entries.chunks_exact(16).find(|entry| word(entry, 0) == Some(tag)).and_then(|e| word(e, 8));
-    let (address, size) = (value(DT_STRTAB)?, value(DT_STRSZ)?);
-    let holds = |segment: &&Segment| {
-        segment.kind == PT_LOAD && address >= segment.address && address - segment.address < segment.size
-    };
-    let load = segments.iter().find(holds)?;
-    read_at(file, load.offset.checked_add(address - load.address)?, size.min(LONGEST_TABLE))
-}
-
-fn word(bytes: &[u8], offset: usize) -> Option<u64> {
-    Some(u64::from_le_bytes(bytes.get(offset..offset + 8)?.try_into().ok()?))
-}
-
-/// Up to `length` bytes at `offset`; fewer at the end of the file.
-fn read_at(file: &mut File, offset: u64, length: u64) -> Option<Vec<u8>> {
-    file.seek(SeekFrom::Start(offset)).ok()?;
-    let mut bytes = Vec::new();
-    file.take(length).read_to_end(&mut bytes).ok()?;
-    Some(bytes)
 }
 
 fn contains(table: &[u8], name: &[u8]) -> bool {
@@ -359,11 +329,9 @@ mod tests {
         let (_kept, path) = written("a", &header(2, 1, here), 0o755);
         assert_eq!(examine(&path, &[]), Err(StartProblem::NotLinked { what: "an object file".into() }));
         let (_kept, path) = written("a", &header(2, 2, here), 0o755);
-        assert_eq!(
-            examine(&path, &[]),
-            Ok(Program::default()),
-            "a static program without segments is the kernel's matter"
-        );
+        let examined = examine(&path, &[]).unwrap();
+        let plain = Program { libraries: Vec::new(), named: Vec::new(), missing: Vec::new(), ..examined };
+        assert_eq!(plain, Program::default(), "a static program without segments is the kernel's matter");
     }
 
     #[test]
@@ -372,7 +340,11 @@ mod tests {
         bytes[32..40].copy_from_slice(&u64::MAX.to_le_bytes());
         bytes[56..58].copy_from_slice(&u16::MAX.to_le_bytes());
         let (_kept, path) = written("a", &bytes, 0o755);
-        assert_eq!(examine(&path, &[]), Ok(Program::default()));
+        let examined = examine(&path, &[]).unwrap();
+        assert_eq!(
+            Program { libraries: Vec::new(), named: Vec::new(), missing: Vec::new(), ..examined },
+            Program::default()
+        );
     }
 
     #[test]
@@ -446,7 +418,7 @@ mod tests {
         let mut program = header(2, 3, this_machine() as u8);
         let loader = format!("{path}\0");
         (program[32], program[56]) = (64, 1);
-        program.extend(PT_INTERP.to_le_bytes());
+        program.extend(elf::INTERPRETER.to_le_bytes());
         program.extend([0; 4]);
         for word in [120, 0, 0, loader.len() as u64, loader.len() as u64, 1] {
             program.extend(word.to_le_bytes());

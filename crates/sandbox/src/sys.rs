@@ -322,9 +322,9 @@ pub(super) enum Readiness {
 pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Duration) -> io::Result<[Readiness; N]> {
     let mut list =
         fds.map(|fd| libc::pollfd { fd: fd.map_or(-1, |fd| fd.as_raw_fd()), events: libc::POLLIN, revents: 0 });
-    let milliseconds = i32::try_from(time.as_micros().div_ceil(1000)).unwrap_or(i32::MAX);
-    // SAFETY: the array outlives the call and its length is passed along.
-    let answer = unsafe { libc::poll(list.as_mut_ptr(), N as libc::nfds_t, milliseconds) };
+    let time = libc::timespec { tv_sec: time.as_secs().cast_signed(), tv_nsec: i64::from(time.subsec_nanos()) };
+    // SAFETY: the array and the time outlive the call, the array's length is passed along; no signals are named.
+    let answer = unsafe { libc::ppoll(list.as_mut_ptr(), N as libc::nfds_t, &raw const time, std::ptr::null()) };
     match check(i64::from(answer)) {
         Err(error) if error.kind() == io::ErrorKind::Interrupted => Ok([Readiness::Idle; N]),
         Err(error) => Err(error),

@@ -79,6 +79,10 @@ pub(super) struct Order {
     pub(super) executable: Vec<Raw>,
     /// Their names as the program and the kernel use them, which may be links.
     pub(super) named: Vec<Raw>,
+    /// The system's libraries that the program may read, and folders of such; tools read all.
+    pub(super) libraries: Vec<Raw>,
+    /// Libraries that the program asks for and the system lacks.
+    pub(super) missing: Vec<String>,
     /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
     pub(super) own: Vec<Raw>,
     pub(super) pipe: Option<Raw>,

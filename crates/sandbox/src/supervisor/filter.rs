@@ -34,8 +34,9 @@ pub(super) const NAMESPACE_FLAGS: [u64; 8] = [
 ];
 
 /// Commands for descriptors that concern nobody but their holder. Left out are those that have the kernel signal others
-/// or make them wait (owner, signal, lease, notice), and the size of pipes.
-const HARMLESS_COMMANDS: [u64; 9] = [
+/// or make them wait (owner, signal, lease, notice), and the size of pipes, which
+/// shrinks when a user has many.
+const HARMLESS_COMMANDS: [u64; 8] = [
     libc::F_DUPFD as u64,
     libc::F_GETFD as u64,
     libc::F_SETFD as u64,
@@ -43,7 +44,6 @@ const HARMLESS_COMMANDS: [u64; 9] = [
     libc::F_SETFL as u64,
     libc::F_GETOWN as u64,
     libc::F_DUPFD_CLOEXEC as u64,
-    libc::F_GETPIPE_SZ as u64,
     libc::F_GET_SEALS as u64,
 ];
 
@@ -65,6 +65,28 @@ const QUESTIONS: [i64; 6] = [
     libc::SYS_sched_getparam,
     libc::SYS_sched_getscheduler,
     libc::SYS_get_robust_list,
+];
+
+/// Calls that name a clock in their first argument.
+const CLOCKS: [i64; 4] =
+    [libc::SYS_clock_gettime, libc::SYS_clock_getres, libc::SYS_clock_nanosleep, libc::SYS_timerfd_create];
+
+/// Advice about memory that concerns nobody but the caller, by number, because not every C library knows all: usual,
+/// random and sequential reading, needed or not, free, remove, for children, huge pages, dumps, populate, and guards.
+/// Left out are those that have pages of files or of memory leave, age, merge or move, which others would notice or no
+/// counter shows.
+const HARMLESS_ADVICE: [u64; 20] = [0, 1, 2, 3, 4, 8, 9, 10, 11, 13, 14, 15, 16, 17, 18, 19, 22, 23, 102, 103];
+
+/// Barriers among the threads of one process, and the question which there are.
+const OWN_BARRIERS: [u64; 7] = [0, 8, 16, 32, 64, 128, 256];
+
+/// Waits for a word that may be shared, which the C library needs to wait for the end of a thread: with the clocks that
+/// a limit of time may be by.
+const SHARED_WAITS: [u64; 4] = [
+    libc::FUTEX_WAIT as u64,
+    libc::FUTEX_WAIT_BITSET as u64,
+    (libc::FUTEX_WAIT | libc::FUTEX_CLOCK_REALTIME) as u64,
+    (libc::FUTEX_WAIT_BITSET | libc::FUTEX_CLOCK_REALTIME) as u64,
 ];
 
 /// Requests about terminals and descriptors that the C library and compilers make of any file.
@@ -187,14 +209,28 @@ fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
             refuse(libc::EPERM, *call, Vec::new());
         }
         // A build tool may set the times of a file that it has open (no path: a null pointer), which is what most do.
-        let by_path = SeccompCondition::new(1, SeccompCmpArgLen::Qword, SeccompCmpOp::Ne, 0);
-        let named = rule(vec![by_path.map_err(io::Error::other)?])?;
+        let named = given(1)?;
         refuse(libc::EPERM, libc::SYS_utimensat, if purpose.tools { vec![named] } else { Vec::new() });
         if !(purpose.tools && purpose.announce) {
             for (_, call) in calls::MODES.iter().chain(calls::MODES_OLD) {
                 refuse(libc::EPERM, *call, Vec::new());
             }
         }
+    }
+    // Words in a file's pages are the same words for everybody who maps it: a library's would wake other runs.
+    let private = libc::FUTEX_PRIVATE_FLAG as u64;
+    let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differ(1, &SHARED_WAITS));
+    refuse(libc::EPERM, libc::SYS_futex, vec![rule(shared.collect::<io::Result<_>>()?)?]);
+    refuse(libc::EINVAL, libc::SYS_madvise, vec![all_differ(2, &HARMLESS_ADVICE)?]);
+    refuse(libc::EINVAL, libc::SYS_membarrier, vec![all_differ(0, &OWN_BARRIERS)?]);
+    let others = clocks_of_others(purpose.own_process)?;
+    for call in CLOCKS {
+        refuse(libc::EINVAL, call, vec![others.clone()]);
+    }
+    // The last argument of both asks for the counters of children.
+    refuse(libc::EPERM, libc::SYS_waitid, vec![given(4)?]);
+    if !(purpose.tools && purpose.announce) {
+        refuse(libc::EPERM, libc::SYS_wait4, vec![given(3)?]);
     }
     refuse(libc::ENOTTY, libc::SYS_ioctl, vec![all_differ(1, &HARMLESS_REQUESTS)?]);
     refuse(libc::EINVAL, libc::SYS_prctl, vec![all_differ(0, &HARMLESS_OPTIONS.map(|option| option as u64))?]);
@@ -226,7 +262,9 @@ fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
     refuse(libc::EPERM, libc::SYS_sched_setaffinity, vec![all_differ(0, &[0, own.unwrap_or(0)])?]);
     if let Some(pid) = own.filter(|_| !purpose.tools) {
         for call in QUESTIONS {
-            refuse(libc::EPERM, call, vec![all_differ(0, &[0, pid])?]);
+            // A thread of its own has a number, too: the C library does without this answer if there is no such call.
+            let errno = if call == libc::SYS_sched_getaffinity { libc::ENOSYS } else { libc::EPERM };
+            refuse(errno, call, vec![all_differ(0, &[0, pid])?]);
         }
         refuse(libc::EPERM, libc::SYS_getpriority, vec![all_differ(1, &[0, pid])?]);
     }
@@ -262,7 +300,16 @@ fn forbidden(purpose: Purpose) -> io::Result<Rules> {
     let parted = (libc::CLONE_THREAD | libc::CLONE_FILES) as u64;
     clone.push(masked(0, parted, libc::CLONE_THREAD as u64)?);
     rules.insert(libc::SYS_clone, clone);
+    if purpose.announce {
+        // The supervisor answers itself: what the machine has, without what others use of it; and that a thread may
+        // have ended, without a wait that others could end.
+        rules.insert(libc::SYS_sysinfo, Vec::new());
+        let waits = SHARED_WAITS.iter().map(|wait| rule(vec![condition(1, SeccompCmpOp::Eq, *wait)?]));
+        rules.insert(libc::SYS_futex, waits.collect::<io::Result<_>>()?);
+    }
     if purpose.tools && purpose.announce {
+        // The supervisor looks who asks for counters.
+        rules.insert(libc::SYS_wait4, vec![given(3)?]);
         // The supervisor looks where the file lies.
         rules.extend(calls::LOCKS.iter().map(|(_, call)| (*call, Vec::new())));
         let locks = LOCK_COMMANDS.iter().map(|command| rule(vec![condition(1, SeccompCmpOp::Eq, *command)?]));
@@ -293,7 +340,30 @@ fn compile(rules: Rules, matched: SeccompAction) -> io::Result<BpfProgram> {
 
 /// Matches when the argument is none of the values.
 fn all_differ(argument: u8, values: &[u64]) -> io::Result<SeccompRule> {
-    rule(values.iter().map(|value| condition(argument, SeccompCmpOp::Ne, *value)).collect::<io::Result<_>>()?)
+    rule(differ(argument, values).collect::<io::Result<_>>()?)
+}
+
+fn differ(argument: u8, values: &[u64]) -> impl Iterator<Item = io::Result<SeccompCondition>> {
+    values.iter().map(move |value| condition(argument, SeccompCmpOp::Ne, *value))
+}
+
+/// Matches when the argument is no null pointer.
+fn given(argument: u8) -> io::Result<SeccompRule> {
+    let given = SeccompCondition::new(argument, SeccompCmpArgLen::Qword, SeccompCmpOp::Ne, 0);
+    rule(vec![given.map_err(io::Error::other)?])
+}
+
+/// Matches clocks that count the time of another process, or are a device. Negative numbers hold a process or a thread
+/// in their upper bits, 0 for the caller, and the kind of clock in the lowest two; bit 2 says that it is a thread, and
+/// the kernel answers for those of the same process only.
+fn clocks_of_others(own: Option<i32>) -> io::Result<SeccompRule> {
+    const NEGATIVE: u64 = 1 << 31;
+    const THREAD: u64 = 4;
+    let of = |process: i32| (0..3).map(move |kind| (!process << 3 | kind) as u32 as u64);
+    let own: Vec<u64> = std::iter::once(0).chain(own).flat_map(of).collect();
+    let kind = [SeccompCmpOp::MaskedEq(NEGATIVE), SeccompCmpOp::MaskedEq(THREAD)].into_iter().zip([NEGATIVE, 0]);
+    let kind = kind.map(|(operator, value)| condition(0, operator, value));
+    rule(kind.chain(differ(0, &own)).collect::<io::Result<_>>()?)
 }
 
 /// Matches when the bits of the mask have this value.
@@ -367,6 +437,12 @@ mod tests {
             let mut words: Vec<u64> =
                 NAMESPACE_FLAGS.into_iter().chain(HARMLESS_COMMANDS).chain(LOCK_COMMANDS).collect();
             words.extend(HARMLESS_REQUESTS.iter().chain(&HARMLESS_OPTIONS.map(|option| option as u64)));
+            words.extend([20, 21, 102, 128, 129, 137].into_iter().chain(SHARED_WAITS));
+            // The clocks of processes 0, 77 and 78, and of a thread.
+            words.extend(
+                [!0 << 3 | 2, !77 << 3 | 2, !78 << 3 | 2, !78 << 3 | 6]
+                    .map(|clock: i32| u64::from(clock.cast_unsigned())),
+            );
             words.extend([0, 1, 2, 3, 77, 99, 1 << 32, u64::MAX, u64::from(u32::MAX)]);
             words.extend([libc::CLONE_THREAD, libc::CLONE_THREAD | libc::CLONE_FILES].map(|flags| flags as u64));
             words.extend([libc::O_TRUNC, libc::O_TRUNC | libc::O_RDWR, libc::MAP_HUGETLB].map(|flags| flags as u64));

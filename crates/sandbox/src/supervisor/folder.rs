@@ -72,14 +72,8 @@ pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<
     walk(folder, 0, &mut |path, metadata| {
         let kind = metadata.file_type();
         if kind.is_dir() || kind.is_fifo() || (kind.is_file() && metadata.nlink() == 1) {
-            let name = path.file_name().and_then(|name| CString::new(name.as_bytes()).ok());
-            let parent = path.parent().and_then(|parent| std::fs::File::open(parent).ok());
-            if let (Some(name), Some(parent)) = (name, parent)
-                && let Ok(opened) = sys::open_beneath(parent.as_fd(), &name, libc::O_PATH)
-            {
-                // An entry that cannot be given stays as it is; the program then cannot change it.
-                let _ = sys::change_owner(opened.as_fd(), user, group);
-            }
+            // An entry that cannot be given stays as it is; the program then cannot change it.
+            let _ = std::os::unix::fs::lchown(path, Some(user), Some(group));
         }
         true
     });

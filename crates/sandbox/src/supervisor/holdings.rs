@@ -52,16 +52,23 @@ pub(super) fn of(members: &[(i32, i32)], root: &Path, executed: bool, page_table
             holdings.memory += line.and_then(|line| line.trim().parse::<u64>().ok()).unwrap_or(0) << 10;
         }
     }
+    let shown = as_shown(root);
     // How much of a mapped file is on disk, only root may ask: what is mapped is taken for what is there.
     mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
     for mapping in mapped {
         let memory = mapping.shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));
-        let file = mapping.name.starts_with(root.as_os_str().as_bytes());
+        let file = mapping.name.starts_with(&shown);
         if (memory || file) && seen.insert(mapping.inode) {
             *(if memory { &mut holdings.memory } else { &mut holdings.nameless }) += mapping.end;
         }
     }
     holdings
+}
+
+/// The path as `maps` shows it: its lines could not be told apart if names held newlines.
+fn as_shown(path: &Path) -> Vec<u8> {
+    let lines: Vec<&[u8]> = path.as_os_str().as_bytes().split(|byte| *byte == b'\n').collect();
+    lines.join(&b"\\012"[..])
 }
 
 /// A mapping of a file that has no name any more.
@@ -115,6 +122,12 @@ mod tests {
         assert!(parse("7f0000001000-7f0000003000 r--p 00000000 fe:00 7  /x/a (deleted)").is_some_and(|m| !m.shared));
         assert!(parse("7f0000001000-7f0000003000 r--p 00000000 fe:00 7  /x/a").is_none());
         assert!(parse("7f0000001000-7f0000003000 rw-p 00000000 00:00 0").is_none());
+    }
+
+    #[test]
+    fn a_newline_in_the_path_hides_no_mapped_file() {
+        assert_eq!(as_shown(Path::new("/a\nb/\n")), b"/a\\012b/\\012");
+        assert_eq!(as_shown(Path::new("/a/b")), b"/a/b");
     }
 
     #[test]

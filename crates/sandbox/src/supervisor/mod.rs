@@ -3,6 +3,7 @@
 //! It never reads a scene, a trace or a verdict, and it believes nothing that the program says: only the kernel's
 //! wait status, counters and announcements.
 
+mod answers;
 mod calls;
 mod child;
 mod filter;

@@ -6,8 +6,8 @@
 
 use std::ffi::CString;
 use std::fs::{File, Permissions};
-use std::io::{Read, Seek, SeekFrom};
-use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::os::fd::{AsRawFd, BorrowedFd, OwnedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ pub(super) fn change(announced: &Announced, folder: BorrowedFd<'_>, root: &Path)
     let [first, second, third, ..] = announced.arguments;
     let thread = announced.thread;
     let (file, mode) = match announced.call {
-        libc::SYS_fchmod => (held(thread, first)?, second),
+        libc::SYS_fchmod => (held(thread, first, folder, root)?, second),
         libc::SYS_fchmodat => {
             let start = if first as i32 == libc::AT_FDCWD { Start::Current } else { Start::Held(first) };
             (named(thread, &start, second, folder, root)?, third)
@@ -56,15 +56,10 @@ enum Start {
     Held(u64),
 }
 
-/// The file that the thread holds open under this number.
-fn held(thread: u32, number: u64) -> Result<OwnedFd, i32> {
-    let entry = format!("/proc/{thread}/fd/{}", number as i32);
-    // Opened without any right but to name it.
-    let target = std::fs::read_link(&entry).map_err(|_| libc::EBADF)?;
-    let parent = target.parent().ok_or(libc::EPERM)?;
-    let name = target.file_name().and_then(|name| CString::new(name.as_bytes()).ok()).ok_or(libc::EPERM)?;
-    let parent = File::open(parent).map_err(|_| libc::EPERM)?;
-    sys::open_beneath(parent.as_fd(), &name, libc::O_PATH).map_err(|_| libc::EPERM)
+/// The file that the thread holds open under this number, opened by the name that it has now.
+fn held(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
+    let target = std::fs::read_link(format!("/proc/{thread}/fd/{}", number as i32)).map_err(|_| libc::EBADF)?;
+    beneath(&target, folder, root).map_err(|_| libc::EPERM)
 }
 
 /// The file of that name, without following links.
@@ -75,13 +70,17 @@ fn named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root:
         Start::Held(number) => format!("/proc/{thread}/fd/{}", *number as i32),
     };
     let from = std::fs::read_link(from).map_err(|_| libc::EBADF)?;
-    let whole = from.join(path);
-    let inside = whole.strip_prefix(root).map_err(|_| libc::EPERM)?;
-    let inside = CString::new(inside.as_os_str().as_bytes()).map_err(|_| libc::EPERM)?;
-    sys::open_beneath(folder, &inside, libc::O_PATH).map_err(|error| match error.raw_os_error() {
+    beneath(&from.join(path), folder, root).map_err(|error| match error.raw_os_error() {
         Some(libc::ENOENT) => libc::ENOENT,
         _ => libc::EPERM,
     })
+}
+
+/// What lies at the path, if that is beneath the working folder, opened without any right but to name it. No link on
+/// the way is followed.
+fn beneath(path: &Path, folder: BorrowedFd<'_>, root: &Path) -> io::Result<OwnedFd> {
+    let inside = path.strip_prefix(root).map_err(io::Error::other)?;
+    sys::open_beneath(folder, &CString::new(inside.as_os_str().as_bytes())?, libc::O_PATH)
 }
 
 /// The text that ends with a zero byte at this address in the thread's memory.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-use crate::sys;
+use crate::{machine, sys};
 
 /// One line of `/proc/PID/stat`, as far as it matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +40,7 @@ impl Stat {
 pub(super) struct Usage {
     /// Processor time of those that live, and of their reaped children.
     pub(super) cpu: Duration,
-    /// Resident memory in bytes.
+    /// Resident memory in bytes, and what of it was moved to a disk.
     pub(super) memory: u64,
     /// Threads.
     pub(super) threads: u64,
@@ -51,9 +51,10 @@ pub(super) struct Usage {
 pub(super) fn usage(pid: i32, tree: bool) -> Usage {
     let mut usage = Usage::default();
     let page = sys::page_size();
+    let swap = machine::has_swap();
     let mut add = |stat: &Stat| {
         usage.cpu += Duration::from_millis(10 * stat.ticks);
-        usage.memory += stat.resident() * page;
+        usage.memory += stat.resident() * page + if swap { swapped(stat.pid) } else { 0 };
         usage.threads += stat.threads;
     };
     if tree {
@@ -62,6 +63,16 @@ pub(super) fn usage(pid: i32, tree: bool) -> Usage {
         add(&stat);
     }
     usage
+}
+
+/// Bytes of a process that were moved to a disk. Where the main thread has left, another one knows.
+fn swapped(pid: i32) -> u64 {
+    let of = |thread: i32| {
+        let status = std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?;
+        let line = status.lines().find_map(|line| line.strip_prefix("VmSwap:")?.strip_suffix(" kB"))?;
+        Some(line.trim().parse::<u64>().ok()? << 10)
+    };
+    of(pid).or_else(|| threads(pid).find_map(of)).unwrap_or(0)
 }
 
 /// The process and, with `tree`, all other living descendants of this process, each with its threads. One thread is

@@ -14,6 +14,7 @@ use std::os::unix::fs::symlink;
 use std::path::{Component, Path, PathBuf};
 
 use super::{volatile, walls};
+use crate::libraries;
 use crate::mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY};
 use crate::sys;
 use crate::wire::{self, Failure, Order, Raw};
@@ -53,7 +54,7 @@ pub(super) fn build(order: &Order) -> Result<(), Failure> {
         laid.map_err(stage("lay the working folder out in memory"))?;
     }
     hide_own(order, Path::new("/"))?;
-    add_processes()?;
+    add_processes(order)?;
     leave_host()?;
     close_root()
 }
@@ -81,7 +82,7 @@ pub(super) fn prepare(order: &Order) -> Result<(), Failure> {
 ///
 /// As for [`build`].
 pub(super) fn complete(order: &Order, folder: BorrowedFd<'_>, files: &[(Raw, Vec<u8>)]) -> Result<(), Failure> {
-    add_processes()?;
+    add_processes(order)?;
     if sys::user() != 0 {
         mounts::detach(&text(Path::new(WITNESS))?).map_err(stage("leave other processes"))?;
     }
@@ -107,7 +108,7 @@ fn begin(order: &Order) -> Result<View, Failure> {
     std::fs::create_dir(&old).map_err(stage("make a root folder"))?;
     mounts::change_root(&text(Path::new(SITE))?, &text(&old)?).map_err(stage("change the root folder"))?;
     let mut view = View { placed: Vec::new() };
-    let mut readable = walls::readable(order);
+    let mut readable = walls::in_sight(order);
     readable.sort_by_key(|path| path.as_os_str().len());
     for (path, access) in readable
         .into_iter()
@@ -118,8 +119,8 @@ fn begin(order: &Order) -> Result<View, Failure> {
         view.place(&path, access)
             .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
-    for raw in &order.named {
-        let path = wire::path(raw);
+    let folders = libraries::FOLDERS.map(PathBuf::from);
+    for path in folders.into_iter().chain(order.named.iter().map(wire::path)) {
         // Only the links on the way: what they lead to is among the executable files, or was exchanged meanwhile.
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
@@ -154,8 +155,10 @@ fn hide(path: &Path) -> io::Result<()> {
     mounts::attach(nothing.as_fd(), &c_string(path)?)
 }
 
-fn add_processes() -> Result<(), Failure> {
-    mounts::mount(c"proc", c"/proc", c"").map_err(stage("mount /proc"))
+/// Shows the run's processes, and to a submission nothing else: what else lies in `/proc` counts for the whole machine.
+fn add_processes(order: &Order) -> Result<(), Failure> {
+    let shown = if order.tools { c"" } else { c"subset=pid" };
+    mounts::mount(c"proc", c"/proc", shown).map_err(stage("mount /proc"))
 }
 
 fn leave_host() -> Result<(), Failure> {

@@ -15,6 +15,7 @@ use landlock::{
     RulesetCreated, RulesetCreatedAttr, RulesetError, RulesetStatus, Scope,
 };
 
+use crate::libraries::{FOLDERS, LOADERS};
 use crate::own::{self, Allowed};
 use crate::sys;
 use crate::wire::{self, Order};
@@ -24,23 +25,18 @@ use crate::wire::{self, Order};
 /// [`LayerReport`]: crate::LayerReport
 const NEWEST: ABI = ABI::V6;
 
-/// Where shared libraries lie: readable, not executable.
-const LIBRARIES: [&str; 8] = [
-    "/lib",
-    "/lib64",
-    "/usr/lib",
-    "/usr/lib64",
-    "/usr/libexec",
-    "/usr/local/lib",
-    "/etc/ld.so.cache",
-    "/etc/ld.so.preload",
+/// What runtimes ask about the machine: which processors there are, and its time zone.
+const MACHINE: [&str; 4] = [
+    "/sys/devices/system/cpu/online",
+    "/sys/devices/system/cpu/possible",
+    "/sys/devices/system/cpu/present",
+    "/etc/localtime",
 ];
-/// What runtimes ask about the machine.
-const MACHINE: [&str; 5] =
-    ["/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo", "/etc/localtime", "/usr/share/zoneinfo"];
-/// What runtimes ask about their own process.
-const OWN_FILES: [&CStr; 9] =
-    [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps", c"stat", c"statm", c"status"];
+/// The folder of most of that.
+const PROCESSORS: &str = "/sys/devices/system/cpu";
+/// What runtimes ask about their own process. Left out are its counters (`stat`, `statm`, `status` and others): they tell
+/// which pages of a file were in memory already, because these are mapped together and need no wait.
+const OWN_FILES: [&CStr; 6] = [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps"];
 /// Folders there that it may list: the threads' own numbers, which some runtimes count, and its descriptors.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
 /// Devices without an inside.
@@ -48,7 +44,8 @@ pub(super) const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/
 /// The system's programs, for compilers and build tools.
 const TOOLS: [&str; 4] = ["/usr", "/bin", "/lib", "/lib64"];
 /// Settings that compilers and build tools read.
-const SETTINGS: [&str; 7] = [
+const SETTINGS: [&str; 8] = [
+    "/proc/cpuinfo",
     "/etc/alternatives",
     "/etc/ld.so.conf",
     "/etc/ld.so.conf.d",
@@ -58,12 +55,17 @@ const SETTINGS: [&str; 7] = [
     "/etc/os-release",
 ];
 
-/// Every path outside the working folder that the rules let the order's program read, devices aside.
-pub(super) fn readable(order: &Order) -> Vec<PathBuf> {
-    let fixed = LIBRARIES.iter().chain(&MACHINE).map(PathBuf::from);
+/// Every path outside the working folder that has to be in sight for the order's program, devices aside. Where rules
+/// decide what may be read, whole folders are: each mount costs every run a little.
+pub(super) fn in_sight(order: &Order) -> Vec<PathBuf> {
+    let libraries = match order.walls.landlock {
+        true => FOLDERS.iter().chain(&LOADERS).chain(&[PROCESSORS]).map(PathBuf::from).collect(),
+        false => order.libraries.iter().map(wire::path).collect::<Vec<_>>(),
+    };
     let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
     let tools = if order.tools { [&TOOLS[..], &SETTINGS[..]] } else { [&[][..], &[]] };
-    fixed.chain(named).chain(tools.concat().into_iter().map(PathBuf::from)).collect()
+    let fixed = MACHINE.iter().copied().chain(tools.concat()).map(PathBuf::from);
+    libraries.into_iter().chain(fixed).chain(named).collect()
 }
 
 /// The places outside the working folder that the program may reach, open, with what it may do there.
@@ -77,8 +79,11 @@ impl Places {
         let own: Vec<PathBuf> = order.own.iter().map(wire::path).collect();
         let own = own.as_slice();
         let mut places = Self(Vec::new());
-        for path in LIBRARIES.iter().chain(&MACHINE) {
-            places.add_around(Path::new(path), read, own);
+        for path in MACHINE {
+            places.add(Path::new(path), read);
+        }
+        for raw in &order.libraries {
+            places.add_around(&wire::path(raw), read, own);
         }
         for path in DEVICES {
             // What is written to shared mappings of /dev/zero would be memory that no counter shows.
@@ -95,7 +100,7 @@ impl Places {
             for path in TOOLS {
                 places.add_around(Path::new(path), execute, own);
             }
-            for path in SETTINGS {
+            for path in SETTINGS.iter().chain(&LOADERS) {
                 places.add(Path::new(path), read);
             }
         }

@@ -1,0 +1,63 @@
+//! What the machine has of memory, and what is in it, asked of the kernel.
+
+#![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
+
+use std::fs::File;
+use std::io::Read;
+use std::os::fd::AsRawFd;
+use std::path::Path;
+
+/// The kernel's answer to `sysinfo`.
+fn asked() -> libc::sysinfo {
+    // SAFETY: an all-zero structure is valid and outlives the call, which fills it or leaves it.
+    unsafe {
+        let mut about: libc::sysinfo = std::mem::zeroed();
+        libc::sysinfo(&raw mut about);
+        about
+    }
+}
+
+/// Has the file read into memory, if it is not there already, and its time of access set.
+pub(super) fn load(path: &Path) {
+    // What is larger would push out what others need.
+    const LARGEST: u64 = 64 << 20;
+    let Ok(mut file) = File::open(path) else { return };
+    let Ok(metadata) = file.metadata() else { return };
+    if metadata.is_file() && metadata.len() <= LARGEST {
+        // SAFETY: integers only, on an open descriptor. It is advice: what comes of it does not matter here.
+        unsafe { libc::posix_fadvise(file.as_raw_fd(), 0, 0, libc::POSIX_FADV_WILLNEED) };
+        let _ = file.read(&mut [0]);
+    }
+}
+
+/// Whether memory may be moved to a disk, where it is resident for nobody.
+pub(super) fn has_swap() -> bool {
+    asked().totalswap > 0
+}
+
+/// The answer to `sysinfo` as of a machine on which nothing is in use and nobody else runs, in the kernel's form.
+pub(super) fn without_others() -> Vec<u8> {
+    let about = asked();
+    // SAFETY: an all-zero structure is valid. It is made of integers only; what may lie between them is zero as well, and
+    // its bytes are read while it lives.
+    unsafe {
+        let mut told: libc::sysinfo = std::mem::zeroed();
+        (told.uptime, told.mem_unit, told.procs) = (about.uptime, about.mem_unit, 1);
+        (told.totalram, told.freeram) = (about.totalram, about.totalram);
+        std::slice::from_raw_parts((&raw const told).cast::<u8>(), size_of_val(&told)).to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_machine_is_told_and_its_use_is_not() {
+        let told = without_others();
+        let word = |index: usize| u64::from_ne_bytes(told[8 * index..8 * index + 8].try_into().unwrap());
+        // Uptime, three loads, memory in all and free.
+        assert!(word(0) > 0 && word(4) > 0 && word(4) == word(5), "{told:?}");
+        assert_eq!([word(1), word(2), word(3), word(6), word(7)], [0; 5]);
+    }
+}
