@@ -22,7 +22,7 @@ pub struct Suite {
     pub rules: Rules,
     /// How much a report tells.
     pub hints: Hints,
-    /// Whether students see what their programs print even though some groups are not visible to them.
+    /// Whether students see all of visible scenes even though some groups are not visible to them.
     pub show_output: bool,
     /// The build step.
     pub build: Option<BuildStep>,

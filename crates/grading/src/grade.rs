@@ -9,7 +9,7 @@ use super::{
 use fosssim_judge::Rules;
 use fosssim_mistakes::diagnose::{Explanation, settled, several};
 use serde::{Deserialize, Serialize};
-use std::{ops::Deref, time::Duration};
+use std::{borrow::Cow, ops::Deref, time::Duration};
 
 /// The grade of one submission on one suite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,8 +29,8 @@ pub struct Grade {
     pub max_points: f64,
     /// Groups in the suite's order.
     pub groups: Vec<GroupGrade>,
-    /// Whether reports for students show what the program printed: not where groups are hidden, unless the suite says
-    /// so.
+    /// Whether reports for students show of a scene what the program could have chosen, as what it printed: not where
+    /// groups are hidden, unless the suite says so.
     pub shows_output: bool,
     /// How the build ended, when the suite builds.
     pub build: Option<Build>,
@@ -48,6 +48,42 @@ pub struct Grade {
 }
 
 impl Grade {
+    /// Whether all groups are for students' eyes.
+    #[must_use]
+    pub fn is_visible(&self) -> bool {
+        self.groups.iter().all(|group| group.visibility == Visibility::Visible)
+    }
+
+    /// The grade with nothing in it but what students see at once: points and verdict are those of the groups that are
+    /// left. Unless the suite shows all that programs print, scenes tell their verdicts only
+    /// ([`SceneResult::withhold`]).
+    #[must_use]
+    pub fn for_students(&self) -> Cow<'_, Self> {
+        if self.is_visible() {
+            return Cow::Borrowed(self);
+        }
+        let is_visible = |group: &&GroupGrade| group.visibility == Visibility::Visible;
+        let groups: Vec<GroupGrade> = self.groups.iter().filter(is_visible).cloned().collect();
+        let mut visible = Self {
+            verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
+            points: groups.iter().map(|group| group.points).sum(),
+            max_points: groups.iter().map(|group| group.max_points).sum(),
+            groups,
+            // It counts scenes that are not here.
+            located: None,
+            wall: Duration::ZERO,
+            ..self.clone()
+        };
+        if self.shows_output {
+            visible.settle();
+        } else {
+            for scene in visible.groups.iter_mut().flat_map(|group| &mut group.scenes) {
+                scene.withhold();
+            }
+        }
+        Cow::Owned(visible)
+    }
+
     /// All scenes in order.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneGrade> {
         self.groups.iter().flat_map(|group| &group.scenes)
@@ -209,6 +245,14 @@ pub struct SceneGrade {
     pub settled: Vec<Explanation>,
     /// So many of [`settled`](Self::settled), the first ones, are what all scenes together say.
     pub agreed: usize,
+}
+
+impl SceneGrade {
+    /// Leaves what students may know where groups are hidden from them ([`SceneResult::withhold`]).
+    pub fn withhold(&mut self) {
+        self.result.withhold();
+        (self.settled, self.agreed) = (Vec::new(), 0);
+    }
 }
 
 impl Deref for SceneGrade {

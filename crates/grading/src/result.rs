@@ -1,7 +1,7 @@
 //! What happened on one scene, as values: renderers make the words of it (`fosssim_report::words`), scoring the points.
 use super::{mirror, told::Told, verdict::Verdict};
 use fosssim_judge::{FindingKind, Unreadable, fair::Cause};
-use fosssim_mistakes::diagnose::Explanation;
+use fosssim_mistakes::diagnose::{About, Explanation};
 use fosssim_model::sim::StepError;
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, time::Duration};
@@ -72,6 +72,26 @@ impl SceneResult {
             card: None,
         }
     }
+
+    /// Leaves the verdict, and nothing else that the program could have chosen: a program that was run on a hidden scene
+    /// could tell of it by an exit code, a signal, the first wrong step, a picture, its time or its memory. What is the
+    /// same in every scene stays, and so do names of likely mistakes, of which a report tells few.
+    pub fn withhold(&mut self) {
+        let harmless = match &self.reason {
+            Reason::Right | Reason::Wrong(Wrong::Nothing) | Reason::NoTrace => true,
+            Reason::LeftOut(_) | Reason::Stopped | Reason::DoesNotBuild | Reason::Unusable(_) => true,
+            Reason::Wrong(_) | Reason::Trace(_) | Reason::Program(_) | Reason::Failed(_) | Reason::Withheld => false,
+        };
+        self.explanations.retain(|one| matches!(one.about, About::Mistake | About::Unfinished));
+        for explanation in &mut self.explanations {
+            (explanation.details, explanation.example) = (Vec::new(), None);
+        }
+        *self = Self {
+            reason: if harmless { self.reason.clone() } else { Reason::Withheld },
+            explanations: std::mem::take(&mut self.explanations),
+            ..Self::without_run(&self.scene, self.steps, self.verdict, Reason::Withheld)
+        };
+    }
 }
 
 /// Why a scene has its verdict.
@@ -93,6 +113,8 @@ pub enum Reason {
     Stopped,
     /// The sources do not build.
     DoesNotBuild,
+    /// It is kept from students ([`SceneResult::withhold`]).
+    Withheld,
     /// The submission itself can't be run.
     Unusable(Unusable),
     /// The grader failed.

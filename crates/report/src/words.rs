@@ -30,6 +30,7 @@ pub fn summary(result: &SceneResult) -> String {
         Reason::Program(reached) => ending(result) + &how_far(*reached, result.steps),
         Reason::LeftOut(why) => of_left_out(*why),
         Reason::Stopped => "grading was stopped".to_owned(),
+        Reason::Withheld => "more is not told of a single scene, because the suite has hidden groups".to_owned(),
         Reason::DoesNotBuild => "the sources do not build".to_owned(),
         Reason::Unusable(why) => of_unusable(why),
         Reason::Failed(failure) => of_failure(failure),

@@ -17,9 +17,7 @@ use crate::{
     suite::{
         Grade, Look, Reason, Run, SceneResult, SceneTask, Verdict, bytes_of_nothing,
         cards::{Cards, Judged},
-        conclude,
-        config::Visibility,
-        guarded,
+        conclude, guarded,
         plan::Plan,
         result::Failure,
         score,
@@ -108,7 +106,8 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
         verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
         points: groups.iter().map(|group| group.points).sum(),
         max_points: plan.max_points(),
-        shows_output: plan.show_output || groups.iter().all(|group| group.visibility == Visibility::Visible),
+        // No program was run that could tell of a hidden scene.
+        shows_output: true,
         groups,
         build: None,
         warnings: passed_over.into_iter().flatten().collect(),

@@ -1,13 +1,16 @@
 //! Every format: against its schema, and as a snapshot that people read.
 use super::{Format, csv_of_submissions, json_lines, samples, warn_of};
+use crate::page::{Audience, GradePage};
 use fosssim_grading::{
-    Grade, PassedOver, Verdict,
+    Grade, PassedOver, Reason, SceneGrade, Verdict,
     config::Visibility,
     located::{Content, Failing, Located},
+    result::{Ended, Reached, Wrong},
 };
+use fosssim_judge::{FindingKind, fair::Cause};
 use fosssim_mistakes::diagnose::{About, Explanation};
 use fosssim_testing::{Need, skip};
-use std::path::Path;
+use std::{path::Path, slice, time::Duration};
 
 fn all() -> [Grade; 3] {
     [samples::good(), samples::bad(), samples::fault()]
@@ -267,4 +270,50 @@ fn text_csv_and_github_read_well() {
     insta::assert_snapshot!("grade_submissions_csv", csv_of_submissions(&[samples::good(), samples::good()], &[]));
     insta::assert_snapshot!("grade_github", Format::Github.render(&all()));
     insta::assert_snapshot!("grade_markdown", Format::Markdown.render(&all()));
+}
+
+/// A program that was run on a hidden scene chooses how it fails on a visible one. Of that its verdict may be told.
+#[test]
+fn with_hidden_groups_students_are_told_nothing_that_a_program_chose() {
+    let failing = |choice: u32| {
+        let mut grade = samples::good();
+        let visible = &mut grade.groups[0].scenes;
+        visible[0].result.verdict = Verdict::WrongAnswer;
+        let kind = if choice == 1 { FindingKind::Position } else { FindingKind::Coefficient };
+        visible[0].result.reason = Reason::Wrong(Wrong::Steps { wrong: choice.into(), first: choice, kind });
+        visible[1].result.verdict = Verdict::RuntimeError;
+        visible[1].result.reason = Reason::Program(Reached { limit: None, steps: choice });
+        for scene in visible {
+            let result = &mut scene.result;
+            result.ended = Some(Ended::Exited(choice.cast_signed()));
+            result.differs = (choice == 1).then_some(Cause::AbsoluteCoefficients);
+            result.right_steps = choice;
+            (result.cpu, result.wall) = (Duration::from_secs(choice.into()), Duration::from_secs(choice.into()));
+            result.memory = Some(u64::from(choice) << 20);
+            (result.stdout, result.stderr) = (format!("choice {choice}"), format!("choice {choice}"));
+            result.card = Some(format!("choice {choice}"));
+            scene.settled = crate::explain::tests::explanations();
+            scene.settled.truncate(choice as usize);
+        }
+        grade.verdict = Verdict::RuntimeError;
+        (grade.groups[0].verdict, grade.wall) = (Verdict::RuntimeError, Duration::from_secs(choice.into()));
+        grade
+    };
+    let told = |grade: &Grade| {
+        let card = |scene: &SceneGrade| {
+            assert!(scene.card.is_none() || grade.shows_output, "a picture");
+            None
+        };
+        let page = GradePage { grade, card: &card, class: None, reader: Audience::Student }.html();
+        let platforms = [Format::Gradescope, Format::Prairielearn].map(|format| format.render(slice::from_ref(grade)));
+        [&[page], &platforms[..]].concat()
+    };
+    for (one, other) in told(&failing(1)).iter().zip(&told(&failing(2))) {
+        assert_eq!(one, other);
+        assert!(one.to_lowercase().contains("run-time error"), "{one}");
+    }
+    let open = |choice| Grade { shows_output: true, ..failing(choice) };
+    for (one, other) in told(&open(1)).iter().zip(&told(&open(2))) {
+        assert_ne!(one, other, "the suite may say so");
+    }
 }

@@ -3,13 +3,14 @@ use super::{super::explain, difference, head_lines, plain, points, printed, see_
 use crate::{number::counted, words};
 use fosssim_grading::{Grade, SceneGrade, Verdict, config::Visibility};
 use serde::Serialize;
-use std::fmt::Write;
+use std::{borrow::Cow, fmt::Write};
 
 #[derive(Serialize)]
 struct Results {
     #[serde(skip_serializing_if = "Option::is_none")]
     score: Option<f64>,
-    execution_time: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    execution_time: Option<u64>,
     output: String,
     output_format: &'static str,
     test_output_format: &'static str,
@@ -43,6 +44,7 @@ struct Extra {
 /// The results of one submission.
 pub(super) fn render(grade: &Grade) -> String {
     let mut tests = Vec::new();
+    let tells_all = grade.shows_output || grade.is_visible();
     for (g, group) in grade.groups.iter().enumerate() {
         for (s, scene) in group.scenes.iter().enumerate() {
             tests.push(Test {
@@ -54,7 +56,13 @@ pub(super) fn render(grade: &Grade) -> String {
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.unfit() {
                     Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
-                    None => output(scene, grade.shows_output),
+                    // What only staff sees may say all.
+                    None if tells_all || group.visibility == Visibility::Hidden => output(scene),
+                    None => {
+                        let mut scene = scene.clone();
+                        scene.withhold();
+                        output(&scene)
+                    }
                 },
                 tags: vec![scene.verdict.code().to_owned()],
                 visibility: group.visibility.key(),
@@ -63,7 +71,7 @@ pub(super) fn render(grade: &Grade) -> String {
     }
     let results = Results {
         score: grade.points.map(rounded),
-        execution_time: grade.wall.as_secs(),
+        execution_time: tells_all.then_some(grade.wall.as_secs()),
         output: overall(grade),
         output_format: "text",
         test_output_format: "text",
@@ -84,7 +92,7 @@ pub(super) fn render(grade: &Grade) -> String {
 
 fn overall(grade: &Grade) -> String {
     // What everybody reads at once says nothing about groups that not everybody sees.
-    let all_visible = grade.groups.iter().all(|group| group.visibility == Visibility::Visible);
+    let all_visible = grade.is_visible();
     let mut lines = vec![match grade.points {
         Some(_) if !all_visible => "Graded.".to_owned(),
         Some(reached) => format!("{}: {} of {} points.", grade.verdict, points(reached), points(grade.max_points)),
@@ -98,8 +106,9 @@ fn overall(grade: &Grade) -> String {
     }
     // What is wrong with the upload itself tells of no scene.
     let told = grade.build.as_ref().is_some_and(|build| !build.end.is_success());
-    if grade.unfit().is_some() && !told || all_visible && grade.unfit().is_none() {
-        lines.extend(head_lines(grade).iter().map(|line| plain(line)));
+    if !told {
+        let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { grade.for_students() };
+        lines.extend(head_lines(&shown).iter().map(|line| plain(line)));
     }
     lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", plain(warning))));
     lines.join("\n")
@@ -113,7 +122,10 @@ fn out_of_time(grade: &Grade) -> String {
         counted(grade.scenes().count() as u64, "scene")
     );
     let scenes = grade.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene)));
-    let longest = scenes.max_by_key(|(_, scene)| scene.wall).filter(|(_, scene)| !scene.wall.is_zero());
+    let longest = if grade.shows_output || grade.is_visible() { Some(scenes) } else { None };
+    let longest = longest
+        .and_then(|scenes| scenes.max_by_key(|(_, scene)| scene.wall))
+        .filter(|(_, scene)| !scene.wall.is_zero());
     if let Some((group, longest)) = longest {
         let _ = write!(text, " Your program took {:.1} s", grade.wall.as_secs_f64());
         let (seconds, scene, summary) =
@@ -126,19 +138,13 @@ fn out_of_time(grade: &Grade) -> String {
     text
 }
 
-fn output(scene: &SceneGrade, shows_output: bool) -> String {
+fn output(scene: &SceneGrade) -> String {
     let mut lines = vec![format!("{}: {}", scene.verdict, plain(&words::summary(scene)))];
     lines.extend(difference(scene));
     lines.extend(words::details(scene).iter().map(|detail| plain(detail)));
     lines.extend(explain::lines(&scene.settled).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
-        lines.push(match shows_output {
-            true => format!("The program's error output:\n{}", printed(&scene.stderr)),
-            // It could tell of a hidden scene what the program kept of it.
-            false => {
-                "The program's error output is kept from this report, because the suite has hidden groups.".to_owned()
-            }
-        });
+        lines.push(format!("The program's error output:\n{}", printed(&scene.stderr)));
     }
     lines.join("\n")
 }

@@ -1,7 +1,7 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
 use super::{super::explain, difference, head_lines, one_line, plain, printed, see_above, wrong_first};
 use crate::words;
-use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
+use fosssim_grading::{Grade, SceneGrade, Verdict};
 use serde::Serialize;
 
 /// PrairieLearn refuses more than a megabyte; texts are cut long before.
@@ -30,7 +30,8 @@ struct Test {
 
 /// The results of one submission.
 pub(super) fn render(grade: &Grade) -> String {
-    let tests = wrong_first(shown(grade))
+    let shown = grade.for_students();
+    let tests = wrong_first(shown.groups.iter())
         .into_iter()
         .map(|scene| Test {
             name: one_line(&scene.scene),
@@ -42,10 +43,12 @@ pub(super) fn render(grade: &Grade) -> String {
         })
         .collect();
     let build = grade.build.as_ref().filter(|build| !build.end.is_success());
-    // What is wrong with the upload itself tells of no scene; mistakes could tell of hidden ones.
-    let all_visible = grade.groups.iter().all(|group| group.visibility == Visibility::Visible);
-    let is_told = build.is_none() && (all_visible || grade.unfit().is_some());
-    let head = if is_told { head_lines(grade) } else { Vec::new() };
+    // What is wrong with the upload itself is the same in all groups.
+    let head = match build {
+        Some(_) => Vec::new(),
+        None if grade.unfit().is_some() => head_lines(grade),
+        None => head_lines(&shown),
+    };
     let results = Results {
         gradable: grade.points.is_some(),
         score: grade.points.map(|points| if grade.max_points > 0.0 { points / grade.max_points } else { 0.0 }),
@@ -53,7 +56,7 @@ pub(super) fn render(grade: &Grade) -> String {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
             _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),
             // Groups that students do not see must not show through.
-            _ => shown_verdict(grade).words().to_owned(),
+            _ => shown.verdict.words().to_owned(),
         },
         output: grade
             .warnings
@@ -77,15 +80,6 @@ fn output(scene: &SceneGrade) -> String {
     lines.extend(words::details(scene));
     lines.extend(explain::lines(&scene.settled));
     lines.join("\n")
-}
-
-/// The groups that students see at once.
-fn shown(grade: &Grade) -> impl Iterator<Item = &GroupGrade> {
-    grade.groups.iter().filter(|group| group.visibility == Visibility::Visible)
-}
-
-fn shown_verdict(grade: &Grade) -> Verdict {
-    shown(grade).map(|group| group.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
 fn cut(text: &str) -> String {

@@ -15,7 +15,7 @@ use crate::{
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
 use fosssim_mistakes::diagnose::Explanation;
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
+use std::{borrow::Cow, fmt::Write};
 
 /// So many characters of what a program printed are shown of a scene.
 const OUTPUT: usize = 2_000;
@@ -43,34 +43,15 @@ pub struct GradePage<'a> {
     pub reader: Audience,
 }
 
-/// A grade with nothing in it but what students see at once: points and verdict are those of the groups that are left.
-fn for_student(grade: &Grade) -> Grade {
-    let is_visible = |group: &&GroupGrade| group.visibility == Visibility::Visible;
-    let groups: Vec<GroupGrade> = grade.groups.iter().filter(is_visible).cloned().collect();
-    let mut visible = Grade {
-        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
-        points: groups.iter().map(|group| group.points).sum(),
-        max_points: groups.iter().map(|group| group.max_points).sum(),
-        groups,
-        // It counts scenes that are not here.
-        located: None,
-        ..grade.clone()
-    };
-    visible.settle();
-    visible
-}
-
 impl GradePage<'_> {
     /// The file.
     #[must_use]
     pub fn html(&self) -> String {
         let shown = match self.reader {
-            Audience::Student if self.grade.groups.iter().any(|group| group.visibility != Visibility::Visible) => {
-                Some(for_student(self.grade))
-            }
-            _ => None,
+            Audience::Student => self.grade.for_students(),
+            Audience::Staff => Cow::Borrowed(self.grade),
         };
-        let grade = shown.as_ref().unwrap_or(self.grade);
+        let grade = shown.as_ref();
         let told = self.told(grade);
         let mut body = self.head(grade, &told);
         if grade.unfit().is_none() {
