@@ -1,4 +1,6 @@
 //! Moments as people and other programs write them, in UTC.
+use chrono::DateTime;
+use std::ops::RangeInclusive;
 
 /// Year, month and day of a moment in milliseconds since 1970, and the milliseconds of the day.
 fn civil(milliseconds: i64) -> (i64, i64, i64, i64) {
@@ -33,9 +35,53 @@ pub fn exact(milliseconds: i64) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{fraction:03}+00:00")
 }
 
+/// Moments in milliseconds: between these, numbers are seconds that somebody took for milliseconds.
+pub const PLAUSIBLE: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
+
+/// Whether a number is a moment in milliseconds.
+#[must_use]
+pub fn is_plausible(milliseconds: i64) -> bool {
+    PLAUSIBLE.iter().any(|range| range.contains(&milliseconds))
+}
+
+/// A moment that somebody wrote (ISO 8601): `2026-12-01T23:59:00+01:00`, also without seconds, and with `Z`. Without a
+/// time zone it is none.
+#[must_use]
+pub fn read(text: &str) -> Option<i64> {
+    let text = text.trim().replace(' ', "T");
+    let text = match text.strip_suffix(['Z', 'z']) {
+        Some(utc) => format!("{utc}+00:00"),
+        None => text,
+    };
+    let read = |form| DateTime::parse_from_str(&text, form).ok();
+    let moment = read("%Y-%m-%dT%H:%M:%S%.f%z").or_else(|| read("%Y-%m-%dT%H:%M%z"))?;
+    Some(moment.timestamp_millis())
+}
+
+/// A moment as a form's field says it, `2026-12-01T23:59`, so many minutes east of UTC.
+#[must_use]
+pub fn read_field(text: &str, east: i64) -> Option<i64> {
+    let seconds = if text.len() == 16 { ":00Z" } else { "Z" };
+    Some(read(&format!("{text}{seconds}"))? - east * 60_000)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn moments_are_read_with_their_zones() {
+        for text in
+            ["2026-11-22T08:40:00Z", "2026-11-22T09:40+01:00", "2026-11-22 03:10:00.000-0530", " 2026-11-22T08:40Z"]
+        {
+            assert_eq!(read(text), Some(1_795_336_800_000), "{text}");
+        }
+        for text in ["2026-11-22T08:40:00", "2026-11-22", "tomorrow", "2026-13-22T08:40:00Z", "1795336859"] {
+            assert_eq!(read(text), None, "{text}");
+        }
+        assert_eq!(read_field("2026-11-22T09:40", 60), Some(1_795_336_800_000));
+        assert_eq!(read_field("", 60), None);
+    }
 
     #[test]
     fn moments_are_dates() {

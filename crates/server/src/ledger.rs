@@ -4,7 +4,7 @@ use crate::{
     lti::score,
     queue::{self, Buried, Completion, Failure, Lease, Policy, Tick},
     suspect,
-    task::{JUDGE_ERROR, Outcome},
+    task::{JUDGE_ERROR, Outcome, rounded},
     values,
 };
 
@@ -206,7 +206,9 @@ async fn write_result(
         }
     }
     let text = match (&outcome.points, &outcome.max_points) {
-        (Some(points), Some(most)) => format!("{}: {points} of {most} points", outcome.code),
+        (Some(points), Some(most)) => {
+            format!("{}: {} of {} points", outcome.code, rounded(points), rounded(most))
+        }
         _ => outcome.code.clone(),
     };
     // A judge error is noted as what it is, by who writes it.

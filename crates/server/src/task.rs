@@ -167,6 +167,14 @@ impl Outcome {
     }
 }
 
+/// A number of points with two digits at most, for people.
+#[must_use]
+pub fn rounded(number: &str) -> String {
+    let Ok(value) = number.parse::<f64>() else { return number.to_owned() };
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
 /// The verdict that is nobody's zero.
 pub const JUDGE_ERROR: &str = "JE";
 

@@ -1,15 +1,17 @@
 //! What an assignment asks for.
 use super::{Suites, file_name::is_file_name};
 use crate::{
+    calendar,
     problem::Problem,
     store::Digest,
     task::{Form, Suite},
 };
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
-/// The end of the year 9999, in milliseconds since 1970.
-const LAST_MOMENT: i64 = 253_402_300_799_999;
+use serde::{Deserialize, Deserializer, Serialize, de::Error};
+use std::ops::RangeInclusive;
+use utoipa::{
+    ToSchema,
+    openapi::{KnownFormat, ObjectBuilder, OneOfBuilder, Schema, SchemaFormat, Type},
+};
 
 /// How an assignment is graded, and what may be handed in.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -49,10 +51,38 @@ pub struct Settings {
     /// Submissions per student within an hour; 0 for as many as they like.
     #[schema(maximum = 4_294_967_295_i64)]
     pub per_hour: u32,
-    /// No uploads of students after this moment: milliseconds since 1970.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(minimum = 0, maximum = 253_402_300_799_999_i64)]
+    /// No uploads of students after this moment: milliseconds since 1970, or a date with its time zone (ISO 8601).
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "moment")]
+    #[schema(schema_with = moment_schema)]
     pub due_at: Option<i64>,
+}
+
+/// Reads a moment: a number, or a date.
+fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00")]
+    enum Moment {
+        Number(i64),
+        Text(String),
+    }
+    match Option::deserialize(deserializer)? {
+        None => Ok(None),
+        Some(Moment::Number(number)) => Ok(Some(number)),
+        Some(Moment::Text(text)) => calendar::read(&text).map(Some).ok_or_else(|| {
+            Error::custom(format!("{text:?} is no date with a time zone, such as 2026-12-01T23:59:00+01:00"))
+        }),
+    }
+}
+
+fn moment_schema() -> Schema {
+    let number = |range: RangeInclusive<i64>| {
+        ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(*range.start())).maximum(Some(*range.end()))
+    };
+    let date = SchemaFormat::KnownFormat(KnownFormat::DateTime);
+    let date = ObjectBuilder::new().schema_type(Type::String).format(Some(date));
+    let words = "No uploads of students after this moment: milliseconds since 1970, or a date with its time zone.";
+    let [early, late] = calendar::PLAUSIBLE;
+    OneOfBuilder::new().item(number(early)).item(number(late)).item(date).description(Some(words)).into()
 }
 
 impl Default for Settings {
@@ -122,11 +152,14 @@ impl Settings {
         if !is_file_name(&self.program) {
             return Err(Problem::invalid("program is a plain file name"));
         }
+        if let Some(due) = self.due_at.filter(|due| !calendar::is_plausible(*due)) {
+            return Err(Problem::invalid(format!(
+                "due_at is milliseconds since 1970, and {due} looks like seconds; write \
+                 milliseconds, or a date such as 2026-12-01T23:59:00+01:00"
+            )));
+        }
         if !(1..=3600).contains(&self.seconds) {
             return Err(Problem::invalid("seconds is between 1 and 3600"));
-        }
-        if self.due_at.is_some_and(|due| !(0..=LAST_MOMENT).contains(&due)) {
-            return Err(Problem::invalid("due_at is milliseconds since 1970, before the year 10000"));
         }
         if !(1..=1 << 30).contains(&self.max_bytes) {
             return Err(Problem::invalid("max_bytes is between 1 and 1073741824"));
@@ -134,10 +167,16 @@ impl Settings {
         Ok(())
     }
 
+    /// Whether a form of this name may be handed in.
+    #[must_use]
+    pub fn has_form(&self, form: &str) -> bool {
+        self.forms.iter().any(|name| name == form)
+    }
+
     /// Whether this may be handed in.
     #[must_use]
     pub fn takes(&self, form: Form) -> bool {
-        self.forms.iter().any(|name| name == form.name())
+        self.has_form(form.name())
     }
 
     pub(super) fn suite(&self) -> Suite {

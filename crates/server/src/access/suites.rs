@@ -70,6 +70,12 @@ impl Suites {
         }
     }
 
+    /// Their names; none where the grader can't be asked.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
     /// Which names there are, in words.
     #[must_use]
     pub fn words(&self) -> String {

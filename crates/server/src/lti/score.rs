@@ -9,6 +9,7 @@ use crate::{
     db::{DbError, Row, Transaction},
     queue::{self, Bell, Lane, NewJob, Turn},
     shown::Shown,
+    task::rounded,
     values,
 };
 use serde::{Deserialize, Serialize};
@@ -232,7 +233,9 @@ pub(super) async fn sent(transaction: &mut Transaction, parcel: &Parcel) -> Resu
         .await?;
     let score = &parcel.content;
     let what = match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
-        (Some(points), Some(most)) => format!("{points} of {most} points"),
+        (Some(points), Some(most)) => {
+            format!("{} of {} points", rounded(&points.to_string()), rounded(&most.to_string()))
+        }
         _ => score["gradingProgress"].as_str().unwrap_or_default().to_owned(),
     };
     note(transaction, parcel.order, "score sent", &format!("{what}, to {}", parcel.platform.name)).await

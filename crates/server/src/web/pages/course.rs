@@ -1,9 +1,6 @@
 //! A course: its assignments, members, queue and audit log.
 use super::{
-    super::{
-        api,
-        input::{Asked, Fields, Params},
-    },
+    super::input::{Asked, Fields, Params},
     Frame, see, show, text,
 };
 use crate::{
@@ -11,10 +8,7 @@ use crate::{
     problem::Problem,
 };
 use askama::Template;
-use axum::{
-    extract::Request,
-    response::{Html, Redirect},
-};
+use axum::response::{Html, Redirect};
 use serde::Deserialize;
 
 #[derive(Template)]
@@ -54,16 +48,6 @@ struct QueuePage {
     queue: Queue,
 }
 
-#[derive(Template)]
-#[template(path = "settings.html")]
-struct SettingsPage {
-    frame: Frame,
-    slug: String,
-    assignment: Assignment,
-    settings: String,
-    suites: String,
-}
-
 const SIGNS_IN: &str = "a link that signs in once, good for a week";
 const INVITES: &str = "an invitation: they have an account, and accept by this link, signed in as ever";
 
@@ -78,13 +62,6 @@ pub(super) struct NewMember {
     login: String,
     name: String,
     role: String,
-}
-
-#[derive(Deserialize)]
-pub(super) struct NewSettings {
-    title: String,
-    visible: Option<String>,
-    settings: String,
 }
 
 #[derive(Deserialize)]
@@ -168,39 +145,4 @@ pub(super) async fn queue(staff: Staff) -> Result<Html<String>, Problem> {
     let slug = staff.member().course().slug;
     let frame = Frame::course(staff.member()).then(format!("/c/{slug}/queue"), "Queue");
     show(&QueuePage { frame, queue: staff.queue().await? })
-}
-
-pub(super) async fn settings(
-    staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
-) -> Result<Html<String>, Problem> {
-    let assignment = staff.member().assignment(&assignment).await?;
-    let frame = Frame::course(staff.member())
-        .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
-        .then(format!("/c/{slug}/a/{}/settings", assignment.slug), "Settings");
-    let settings = serde_json::to_string_pretty(&assignment.settings).map_err(|_| Problem::fault())?;
-    let suites = staff.member().house().suites().words();
-    show(&SettingsPage { frame, slug, assignment, settings, suites })
-}
-
-pub(super) async fn set_settings(
-    staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
-    Fields(form): Fields<NewSettings>,
-) -> Result<Redirect, Problem> {
-    let settings: Settings = serde_json::from_str(&form.settings)
-        .map_err(|error| Problem::invalid(format!("the settings are not understood: {error}")))?;
-    // An assignment is made on the course's page: a typing error in an address makes none.
-    let assignment = staff.member().assignment(&assignment).await?;
-    staff.set_assignment(&assignment.slug, form.title.trim(), form.visible.is_some(), &settings).await?;
-    Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))
-}
-
-pub(super) async fn set_suite(
-    staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
-    request: Request,
-) -> Result<Redirect, Problem> {
-    let assignment = api::receive_suite(&staff, &assignment, request).await?;
-    Ok(see(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
 }

@@ -1,10 +1,12 @@
 //! The class, and regrades.
 use super::{
     super::input::{Fields, Params},
-    Frame, see, show, text,
+    Frame, see,
+    settings::{Grading, GradingFields},
+    show, text,
 };
 use crate::{
-    access::{Assignment, Regrade, RegradeState, ScoreInfo, Settings, Staff, Standing, Suspicion},
+    access::{Assignment, Regrade, RegradeState, ScoreInfo, Staff, Standing, Suspicion},
     problem::Problem,
 };
 use askama::Template;
@@ -21,7 +23,7 @@ struct ClassPage {
     regrades: Vec<Regrade>,
     suspicions: Vec<Suspicion>,
     scores: Vec<ScoreInfo>,
-    settings: String,
+    grading: GradingFields,
 }
 
 #[derive(Template)]
@@ -36,7 +38,8 @@ struct RegradePage {
 #[derive(Deserialize)]
 pub(super) struct NewRegrade {
     reason: String,
-    settings: String,
+    #[serde(flatten)]
+    grading: Grading,
 }
 
 pub(super) async fn class(
@@ -49,10 +52,10 @@ pub(super) async fn class(
         .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class");
     let standings = staff.standings(&assignment.slug).await?;
     let regrades = staff.regrades(&assignment.slug).await?;
-    let settings = serde_json::to_string_pretty(&assignment.settings).map_err(|_| Problem::fault())?;
+    let grading = GradingFields::of(&assignment.settings, staff.member().house().suites().names());
     let suspicions = staff.suspicions(&assignment.slug).await?;
     let scores = staff.scores(&assignment.slug).await?;
-    show(&ClassPage { frame, slug, assignment, standings, regrades, suspicions, scores, settings })
+    show(&ClassPage { frame, slug, assignment, standings, regrades, suspicions, scores, grading })
 }
 
 pub(super) async fn begin(
@@ -60,8 +63,7 @@ pub(super) async fn begin(
     Params((slug, assignment)): Params<(String, String)>,
     Fields(form): Fields<NewRegrade>,
 ) -> Result<Redirect, Problem> {
-    let settings: Settings = serde_json::from_str(&form.settings)
-        .map_err(|error| Problem::invalid(format!("the settings are not understood: {error}")))?;
+    let settings = form.grading.over(&staff.member().assignment(&assignment).await?.settings)?;
     let regrade = staff.regrade(&assignment, form.reason.trim(), Some(&settings)).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }

@@ -6,6 +6,7 @@ mod course;
 mod grades;
 mod platform;
 mod removal;
+mod settings;
 mod sign_in;
 mod submission;
 mod text;
@@ -85,9 +86,9 @@ pages! {
     post "/c/{course}/a/{assignment}" => submission::submit,
     get "/c/{course}/a/{assignment}/remove" => removal::assignment,
     post "/c/{course}/a/{assignment}/remove" => removal::remove_assignment,
-    get "/c/{course}/a/{assignment}/settings" => course::settings,
-    post "/c/{course}/a/{assignment}/settings" => course::set_settings,
-    post "/c/{course}/a/{assignment}/suite" => course::set_suite,
+    get "/c/{course}/a/{assignment}/settings" => settings::page,
+    post "/c/{course}/a/{assignment}/settings" => settings::set,
+    post "/c/{course}/a/{assignment}/suite" => settings::set_suite,
     get "/c/{course}/a/{assignment}/class" => grades::class,
     post "/c/{course}/a/{assignment}/publish" => grades::publish,
     post "/c/{course}/a/{assignment}/withhold" => grades::withhold,

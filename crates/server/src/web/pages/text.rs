@@ -1,9 +1,15 @@
 //! Values as people read them.
-use crate::access::RegradeState;
+use crate::{access::RegradeState, calendar, task::rounded};
 
-/// A moment in UTC: `2026-11-22 08:45`.
-pub(super) fn moment(milliseconds: &i64) -> String {
-    crate::calendar::minute(*milliseconds)
+/// A moment, as markup: in UTC, which a script makes the reader's own time.
+pub(super) fn time(milliseconds: &i64) -> String {
+    let (exact, minute) = (calendar::exact(*milliseconds), calendar::minute(*milliseconds));
+    format!("<time datetime=\"{exact}\">{minute} UTC</time>")
+}
+
+/// A moment for a field of a form, in UTC: `2026-11-22T08:45`.
+pub(super) fn field(milliseconds: &Option<i64>) -> String {
+    milliseconds.map(|at| calendar::minute(at).replace(' ', "T")).unwrap_or_default()
 }
 
 /// Points of the most that could be had, to two digits as in reports; a dash where there are none.
@@ -15,16 +21,9 @@ pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     }
 }
 
-/// A number with two digits at most.
-fn rounded(number: &str) -> String {
-    let Ok(value) = number.parse::<f64>() else { return number.to_owned() };
-    let text = format!("{value:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
 /// Points alone.
-pub(super) fn bare_points(points: &Option<String>) -> &str {
-    points.as_deref().unwrap_or_default()
+pub(super) fn bare_points(points: &Option<String>) -> String {
+    points.as_deref().map(rounded).unwrap_or_default()
 }
 
 /// Where a regrade is, in words.

@@ -14,6 +14,7 @@ mod platforms;
 mod removal;
 mod replay;
 mod roles;
+mod settings;
 mod signs;
 mod storage;
 mod suspicion;

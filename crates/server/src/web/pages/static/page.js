@@ -30,3 +30,20 @@ if (form) {
     // A double click hands in once.
     form.addEventListener("submit", () => { form.querySelector("button").disabled = true; });
 }
+// Times in the reader's own zone.
+for (const time of document.querySelectorAll("time[datetime]")) {
+    time.title = time.textContent;
+    time.textContent = new Date(time.dateTime).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+}
+// Fields, too: they come in UTC, and say in which zone they go.
+for (const field of document.querySelectorAll("input[type=datetime-local]")) {
+    const zone = document.getElementById(`${field.id}-zone`);
+    const name = document.getElementById(`${field.id}-zone-name`);
+    const offset = (date) => -date.getTimezoneOffset();
+    if (field.defaultValue) {
+        const date = new Date(`${field.defaultValue}Z`);
+        field.value = new Date(date.getTime() + offset(date) * 60000).toISOString().slice(0, 16);
+    }
+    name.textContent = Intl.DateTimeFormat().resolvedOptions().timeZone;
+    field.form.addEventListener("submit", () => { zone.value = field.value ? offset(new Date(field.value)) : 0; });
+}

@@ -1,0 +1,184 @@
+//! Settings of an assignment as a form.
+use super::{
+    super::{
+        api,
+        input::{Fields, Params},
+    },
+    Frame, see, show, text,
+};
+use crate::{
+    access::{Assignment, Settings, Staff},
+    calendar,
+    problem::Problem,
+};
+use askama::Template;
+use axum::{
+    extract::Request,
+    response::{Html, Redirect},
+};
+use serde::Deserialize;
+
+/// What the list of suites says of one that was uploaded.
+const UPLOADED: &str = "(uploaded)";
+
+const MIB: f64 = 1_048_576.0;
+
+#[derive(Template)]
+#[template(path = "settings.html")]
+struct SettingsPage {
+    frame: Frame,
+    slug: String,
+    assignment: Assignment,
+    /// How it is graded: shared with regrades.
+    grading: GradingFields,
+    megabytes: f64,
+}
+
+/// What the part of a form about grading shows.
+pub(super) struct GradingFields {
+    /// The suites: value, words, and whether it is this one.
+    pub(super) suites: Vec<(String, String, bool)>,
+    pub(super) rules: String,
+    pub(super) hints: String,
+    pub(super) program: String,
+    pub(super) seconds: u64,
+}
+
+impl GradingFields {
+    pub(super) fn of(settings: &Settings, names: &[String]) -> Self {
+        let mut suites = Vec::new();
+        if let Some(digest) = &settings.suite_archive {
+            suites.push((UPLOADED.to_owned(), format!("your own, {}", text::short(digest)), true));
+        }
+        let is_named = settings.suite_archive.is_none();
+        let other = Some(&settings.suite).filter(|suite| !names.contains(suite));
+        for name in names.iter().chain(other) {
+            let words = if name.is_empty() { "the grader's default".to_owned() } else { name.clone() };
+            suites.push((name.clone(), words, is_named && *name == settings.suite));
+        }
+        Self {
+            suites,
+            rules: settings.rules.clone().unwrap_or_default(),
+            hints: settings.hints.clone().unwrap_or_default(),
+            program: settings.program.clone(),
+            seconds: settings.seconds,
+        }
+    }
+}
+
+/// The part of a form about grading.
+#[derive(Deserialize)]
+pub(super) struct Grading {
+    suite: String,
+    rules: String,
+    hints: String,
+    program: String,
+    seconds: String,
+}
+
+fn number<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
+    text.trim().parse().map_err(|_| Problem::invalid(format!("{what} is a number, and {text:?} is none")))
+}
+
+impl Grading {
+    /// The settings with what the form says.
+    pub(super) fn over(&self, before: &Settings) -> Result<Settings, Problem> {
+        let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
+        let (suite, suite_archive) = match self.suite.as_str() {
+            UPLOADED => (before.suite.clone(), before.suite_archive.clone()),
+            name => (name.trim().to_owned(), None),
+        };
+        Ok(Settings {
+            suite,
+            suite_archive,
+            rules: chosen(&self.rules),
+            hints: chosen(&self.hints),
+            program: self.program.trim().to_owned(),
+            seconds: number("seconds", &self.seconds)?,
+            ..before.clone()
+        })
+    }
+}
+
+/// The part about handing in.
+#[derive(Deserialize)]
+pub(super) struct NewSettings {
+    title: String,
+    visible: Option<String>,
+    #[serde(flatten)]
+    grading: Grading,
+    form_program: Option<String>,
+    form_sources: Option<String>,
+    form_traces: Option<String>,
+    megabytes: String,
+    attempts: String,
+    per_hour: String,
+    due: String,
+    #[serde(default)]
+    due_zone: String,
+}
+
+impl NewSettings {
+    fn over(&self, before: &Settings) -> Result<Settings, Problem> {
+        let megabytes: f64 = number("the largest upload", &self.megabytes)?;
+        if !(0.0..=1024.0).contains(&megabytes) {
+            return Err(Problem::invalid("the largest upload is at most 1024 MiB"));
+        }
+        let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
+        Ok(Settings {
+            forms: forms.iter().filter(|(_, ticked)| ticked.is_some()).map(|(name, _)| (*name).to_owned()).collect(),
+            // At most a gigabyte, so that nothing is lost.
+            max_bytes: (megabytes * MIB).round() as u64,
+            attempts: number("submissions in all", &self.attempts)?,
+            per_hour: number("submissions in an hour", &self.per_hour)?,
+            due_at: moment(&self.due, &self.due_zone, before.due_at)?,
+            ..self.grading.over(before)?
+        })
+    }
+}
+
+/// What a field with a date says; the moment that it had where it says the same minute.
+pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
+    if field.trim().is_empty() {
+        return Ok(None);
+    }
+    let east = if zone.is_empty() { 0 } else { number("the time zone", zone)? };
+    let at = calendar::read_field(field.trim(), east);
+    let at = at.ok_or_else(|| Problem::invalid(format!("{field:?} is no date and time")))?;
+    let same = before.filter(|before| before.div_euclid(60_000) == at.div_euclid(60_000));
+    Ok(same.or(Some(at)))
+}
+
+pub(super) async fn page(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+) -> Result<Html<String>, Problem> {
+    let assignment = staff.member().assignment(&assignment).await?;
+    let frame = Frame::course(staff.member())
+        .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
+        .then(format!("/c/{slug}/a/{}/settings", assignment.slug), "Settings");
+    let grading = GradingFields::of(&assignment.settings, staff.member().house().suites().names());
+    let megabytes = assignment.settings.max_bytes as f64 / MIB;
+    show(&SettingsPage { frame, slug, assignment, grading, megabytes })
+}
+
+pub(super) async fn set(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+    Fields(form): Fields<NewSettings>,
+) -> Result<Redirect, Problem> {
+    // An assignment is made on the course's page: a typing error in an address makes none.
+    let assignment = staff.member().assignment(&assignment).await?;
+    let settings = form.over(&assignment.settings)?;
+    staff.set_assignment(&assignment.slug, form.title.trim(), form.visible.is_some(), &settings).await?;
+    Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))
+}
+
+pub(super) async fn set_suite(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+    request: Request,
+) -> Result<Redirect, Problem> {
+    let assignment = api::receive_suite(&staff, &assignment, request).await?;
+    Ok(see(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
+}

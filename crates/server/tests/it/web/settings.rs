@@ -1,0 +1,69 @@
+//! Settings, as people fill them in and programs write them.
+use crate::support::{
+    engines::{Fresh, on_both_engines},
+    server::{JSON, Server},
+};
+
+on_both_engines!(settings_are_a_form, a_date_is_a_date);
+
+async fn settings_are_a_form(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let settings = || admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["settings"].clone();
+    let form = "title=Milestone+one&visible=on&suite=course-2027&rules=&hints=what&program=FOSSSim&seconds=90&form_sources=on\
+                &megabytes=0.5&attempts=3&per_hour=0";
+    let path = "/c/physics/a/m1/settings";
+    // Without a script the field is in UTC, and says so; with one in the reader's zone.
+    admin.post_form(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
+    let utc = settings();
+    admin.post_form(path, &format!("{form}&due=2026-12-01T23:59&due_zone=60")).expect(303);
+    assert_eq!(settings(), utc);
+    assert_eq!(
+        utc,
+        serde_json::json!({"suite": "course-2027", "hints": "what", "program": "FOSSSim", "seconds": 90,
+            "forms": ["sources"], "max_bytes": 524_288, "attempts": 3, "per_hour": 0, "due_at": 1_796_165_940_000_i64})
+    );
+    let page = admin.get(path).expect(200).text();
+    for part in
+        ["value=\"2026-12-01T22:59\"", "<option value=\"course-2027\" selected>", "value=\"0.5\"", ">UTC</span>"]
+    {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    let page = admin.get("/c/physics/a/m1").expect(200).text();
+    assert!(page.contains("<time datetime=\"2026-12-01T22:59:00.000+00:00\">2026-12-01 22:59 UTC</time>"), "{page}");
+    for bad in ["due=tomorrow&due_zone=0", "due=2026-12-01T22:59&due_zone=east"] {
+        admin.post_form(path, &format!("{form}&{bad}")).expect(400);
+    }
+    admin.post_form(path, &form.replace("form_sources=on", "x=y")).expect(400);
+    assert_eq!(settings(), utc);
+    // What the form does not show stays: seconds of a date, and a suite that was uploaded.
+    let wish = r#"{"title": "M", "visible": true, "settings": {"due_at": "2026-12-01T23:59:30+01:00"}}"#;
+    admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
+    admin.post_form(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
+    assert_eq!(settings()["due_at"], 1_796_165_970_000_i64);
+    admin.post_form(path, &format!("{form}&due=&due_zone=0")).expect(303);
+    assert!(settings()["due_at"].is_null());
+    let regrade = "reason=again&suite=t2m2&rules=parity&hints=&program=FOSSSim&seconds=60";
+    admin.post_form("/c/physics/a/m1/regrades", regrade).expect(303);
+}
+
+async fn a_date_is_a_date(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let set = |due: &str| {
+        let wish = format!(r#"{{"title": "M", "settings": {{"due_at": {due}}}}}"#);
+        admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes())
+    };
+    for due in ["1796165940000", "\"2026-12-01T22:59Z\"", "\"2026-12-01T23:59:00+01:00\""] {
+        assert_eq!(set(due).expect(200).json()["settings"]["due_at"], 1_796_165_940_000_i64, "{due}");
+    }
+    set("null").expect(200);
+    // Seconds would shut the assignment in 1970.
+    let problem = set("1796165940").expect(400).json();
+    assert!(problem["detail"].as_str().expect("words").contains("1796165940 looks like seconds"), "{problem}");
+    for due in ["\"2026-12-01T22:59\"", "\"soon\"", "1.5", "-1"] {
+        set(due).expect(400);
+    }
+}
