@@ -46,7 +46,7 @@ after(async () => {
 
 // Somebody's browser: complains about whatever a page complains about, and about requests to others.
 async function person({ script = true } = {}) {
-  const context = await browser.newContext({ javaScriptEnabled: script, viewport: { width: 1200, height: 1000 } });
+  const context = await browser.newContext({ javaScriptEnabled: script, timezoneId: "America/St_Johns", viewport: { width: 1200, height: 1000 } });
   const page = await context.newPage();
   page.setDefaultTimeout(120_000);
   const complaints = [];
@@ -149,10 +149,20 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByText("applied, by admin").waitFor();
   await student.page.reload();
   await student.page.getByText("Nobody should fail this").waitFor();
-  for (const place of ["/c/physics/queue", "/c/physics/audit", "/account", "/c/physics"]) {
+  const further = ["members", "members/import", "a/m1/students/ada", "a/m1/settings", "a/m1/remove", "remove", "s/1"].map((place) => `/c/physics/${place}`);
+  for (const place of ["/c/physics/queue", "/c/physics/audit", "/account", "/c/physics", "/admin/accounts/ada/remove", ...further]) {
     await page.goto(address + place);
     await accessible(page);
   }
+  // A date is typed in one's own zone, and kept as a moment.
+  await page.goto(`${address}/c/physics/a/m1/settings`);
+  assert.equal(await page.locator("#due-zone-name").innerText(), await page.evaluate(() => Intl.DateTimeFormat().resolvedOptions().timeZone));
+  await page.getByLabel("Due").fill("2096-07-01T23:59");
+  await page.getByRole("button", { name: "Save" }).click();
+  const due = await page.locator("time[datetime]").first().getAttribute("datetime");
+  assert.equal(new Date(due).getTime(), await page.evaluate(() => new Date("2096-07-01T23:59").getTime()));
+  await page.goto(`${address}/c/physics/a/m1/settings`);
+  assert.equal(await page.getByLabel("Due").inputValue(), "2096-07-01T23:59");
   assert.deepEqual(teacher.complaints, []);
   assert.deepEqual(student.complaints, []);
   await teacher.close();

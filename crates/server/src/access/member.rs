@@ -134,6 +134,7 @@ impl Member {
             shown.cover(&mut grade.outcome, SHOWN);
             submission.is_withheld = true;
             grade.outcome.shown = Some(kept);
+            submission.overrule();
         }
         Ok(())
     }

@@ -80,7 +80,13 @@ impl Staff {
         Ok(added)
     }
 
-    async fn add(&self, transaction: &mut Transaction, login: &str, name: &str, role: &str) -> Result<Added, Problem> {
+    pub(super) async fn add(
+        &self,
+        transaction: &mut Transaction,
+        login: &str,
+        name: &str,
+        role: &str,
+    ) -> Result<Added, Problem> {
         let (course, by) = (self.0.course, &self.0.account);
         let found =
             transaction.row("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;

@@ -47,6 +47,7 @@ macro_rules! remove_submissions {
                 $which,
                 "))"
             ),
+            concat!("DELETE FROM mark WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
             concat!("DELETE FROM grade_change WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
             concat!("DELETE FROM grade WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
             concat!("DELETE FROM result WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
@@ -110,6 +111,7 @@ impl Staff {
         let rest = [
             "DELETE FROM platform_score WHERE link IN (SELECT id FROM platform_link WHERE assignment = ?)",
             "DELETE FROM platform_link WHERE assignment = ?",
+            "DELETE FROM extension WHERE assignment = ?",
             "DELETE FROM campaign WHERE assignment = ?",
             "DELETE FROM suspicion WHERE assignment = ?",
             "DELETE FROM event WHERE assignment = ?",
@@ -170,6 +172,7 @@ impl Admin {
             "DELETE FROM platform_link WHERE platform_course IN (SELECT id FROM platform_course WHERE course = ?)",
             "DELETE FROM platform_member WHERE platform_course IN (SELECT id FROM platform_course WHERE course = ?)",
             "DELETE FROM platform_course WHERE course = ?",
+            "DELETE FROM extension WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM campaign WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM suspicion WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM assignment WHERE course = ?",
@@ -207,6 +210,7 @@ impl Admin {
             "DELETE FROM platform_choice WHERE account = ?",
             "DELETE FROM platform_member WHERE account = ?",
             "DELETE FROM platform_account WHERE account = ?",
+            "DELETE FROM extension WHERE account = ?",
             "DELETE FROM kept_bytes WHERE account = ?",
             "DELETE FROM invitation WHERE account = ?",
             "DELETE FROM invitation WHERE invited_by = ?",

@@ -58,7 +58,7 @@ pub struct Settings {
 }
 
 /// Reads a moment: a number, or a date.
-fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
+pub(crate) fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged, expecting = "milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00")]
     enum Moment {
@@ -74,7 +74,7 @@ fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::
     }
 }
 
-fn moment_schema() -> Schema {
+pub(crate) fn moment_schema() -> Schema {
     let number = |range: RangeInclusive<i64>| {
         ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(*range.start())).maximum(Some(*range.end()))
     };

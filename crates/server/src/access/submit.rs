@@ -1,6 +1,6 @@
 //! Handing in: the submission, its job and the event are written in one transaction, after its bytes are safely stored.
 use super::{
-    Member,
+    Member, mark,
     view::{self, Assignment, Deed, Submission},
 };
 use crate::{
@@ -157,7 +157,10 @@ impl Member {
                 values![HOUR, assignment.id, self.account.id],
             )
             .await?;
-        if settings.due_at.is_some_and(|due| row.int("now").is_ok_and(|now| now > due)) {
+        if mark::due(transaction, assignment, self.account.id)
+            .await?
+            .is_some_and(|due| row.int("now").is_ok_and(|now| now > due))
+        {
             return Err(Problem::conflict("the assignment was due before", "ask the course's staff"));
         }
         if settings.attempts > 0 && row.int("n")? >= settings.attempts.into() {

@@ -79,6 +79,9 @@ pub struct Submission {
     /// The result that counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grade: Option<Graded>,
+    /// What staff says of it by hand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mark: Option<Mark>,
     /// Whether groups that the suite hides are left out of the grade, its history and its reports until staff publishes
     /// them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -89,6 +92,28 @@ pub struct Submission {
     job: Option<i64>,
     #[serde(skip)]
     pub(super) account: i64,
+}
+
+/// What staff says of a submission by hand, and what its owner asks.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Mark {
+    /// Points that count instead of the grader's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<String>,
+    /// Why, or what else there is to say.
+    pub comment: String,
+    /// Who says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
+    /// When, in milliseconds since 1970.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub marked_at: Option<i64>,
+    /// What the owner asks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub request: Option<String>,
+    /// When they asked, in milliseconds since 1970.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub requested_at: Option<i64>,
 }
 
 /// A result.
@@ -197,13 +222,17 @@ macro_rules! submissions {
                 submission.size, submission.created_at, submission.removed_at, submission.account, assignment.slug AS assignment,
                 assignment.title, assignment.published_at, account.login, account.name, job.id AS job, job.state, grade.result, result.verdict,
                 result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
-                result.grader, result.essence, result.shown, result.created_at AS graded_at
+                result.grader, result.essence, result.shown, result.created_at AS graded_at,
+                mark.points AS mark_points, mark.comment, mark.marked_at, mark.request, mark.requested_at,
+                marker.login AS marker
              FROM submission
              JOIN assignment ON assignment.id = submission.assignment
              JOIN account ON account.id = submission.account
              LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL
              LEFT JOIN grade ON grade.submission = submission.id
              LEFT JOIN result ON result.id = grade.result
+             LEFT JOIN mark ON mark.submission = submission.id
+             LEFT JOIN account AS marker ON marker.id = mark.marked_by
              WHERE ",
             $rest
         )
@@ -233,7 +262,18 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
             created_at: row.int("graded_at")?,
         }),
     };
-    Ok(Submission {
+    let mark = match row.maybe_text("comment")? {
+        None => None,
+        Some(comment) => Some(Mark {
+            points: row.maybe_text("mark_points")?,
+            comment,
+            by: row.maybe_text("marker")?,
+            marked_at: row.maybe_int("marked_at")?,
+            request: row.maybe_text("request")?,
+            requested_at: row.maybe_int("requested_at")?,
+        }),
+    };
+    let mut submission = Submission {
         id: row.int("id")?,
         number: row.int("number")?,
         assignment: row.text("assignment")?,
@@ -254,7 +294,20 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
         is_published: row.maybe_int("published_at")?.is_some(),
         job: row.maybe_int("job")?,
         account: row.int("account")?,
-    })
+        mark,
+    };
+    submission.overrule();
+    Ok(submission)
+}
+
+impl Submission {
+    /// Points that staff gave count instead of the grader's.
+    pub(super) fn overrule(&mut self) {
+        if let (Some(grade), Some(points)) = (&mut self.grade, self.mark.as_ref().and_then(|mark| mark.points.clone()))
+        {
+            grade.outcome.points = Some(points);
+        }
+    }
 }
 
 async fn read_all(

@@ -182,7 +182,8 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let rows = transaction
         .rows(
-            "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown FROM submission
+            "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown, mark.points AS mark FROM submission
+             LEFT JOIN mark ON mark.submission = submission.id
              JOIN assignment ON assignment.id = submission.assignment
              LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL
              LEFT JOIN grade ON grade.submission = submission.id
@@ -201,6 +202,7 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
             Some(shown) => shown.points(),
             None => (row.maybe_text("points")?, row.maybe_text("max_points")?),
         };
+        let points = row.maybe_text("mark")?.or(points);
         let number =
             |text: Option<String>| text.and_then(|text| text.parse().ok()).filter(|number: &f64| number.is_finite());
         if let (Some(points), Some(most)) = (number(points), number(most))

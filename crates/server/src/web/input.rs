@@ -14,6 +14,9 @@ use serde_json::Value;
 /// A body in JSON.
 pub(super) struct Body<T>(pub(super) T);
 
+/// A body of text.
+pub(super) struct Text(pub(super) String);
+
 /// A body of a form.
 pub(super) struct Fields<T>(pub(super) T);
 
@@ -79,6 +82,18 @@ impl<T: DeserializeOwned> FromRequest<House> for Body<T> {
         let read = serde_json::from_slice(&bytes);
         let read = read.or_else(|error| with_whole_numbers(&bytes).ok_or(error));
         read.map(Self).map_err(|error| Problem::invalid(error.to_string()))
+    }
+}
+
+impl FromRequest<House> for Text {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &House) -> Result<Self, Problem> {
+        if !is_of_type(request.headers(), "text/csv") {
+            return Err(Problem::invalid("the body is to be a table: Content-Type: text/csv"));
+        }
+        let bytes = bytes(request, state).await?;
+        String::from_utf8(bytes).map(Self).map_err(|_| Problem::invalid("the table is to be in UTF-8"))
     }
 }
 

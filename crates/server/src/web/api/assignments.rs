@@ -4,7 +4,7 @@ use super::super::{
     upload,
 };
 use crate::{
-    access::{Assignment, Member, Settings, Staff, Standing},
+    access::{Assignment, Member, Settings, Staff, Standing, moment, moment_schema},
     archive::{self, Limits},
     problem::Problem,
     schema::Title,
@@ -81,6 +81,41 @@ pub(super) async fn remove_assignment(
     Params((_, assignment)): Params<(String, String)>,
 ) -> Result<StatusCode, Problem> {
     staff.remove_assignment(&assignment).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// A due date of a student's own.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Extension {
+    /// Milliseconds since 1970, or a date with its time zone.
+    #[serde(deserialize_with = "moment")]
+    #[schema(schema_with = moment_schema)]
+    due_at: Option<i64>,
+}
+
+/// Lets a student hand in until another moment than the others.
+#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path), ("login" = String, Path)), request_body = Extension,
+    responses((status = 204, description = "Set"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn extend(
+    staff: Staff,
+    Params((_, assignment, login)): Params<(String, String, String)>,
+    Body(wish): Body<Extension>,
+) -> Result<StatusCode, Problem> {
+    staff.extend(&assignment, &login, wish.due_at).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Lets them hand in as long as the others again.
+#[utoipa::path(delete, path = "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}", tag = "assignments",
+    params(("course" = String, Path), ("assignment" = String, Path), ("login" = String, Path)),
+    responses((status = 204, description = "Set"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn extend_no_more(
+    staff: Staff,
+    Params((_, assignment, login)): Params<(String, String, String)>,
+) -> Result<StatusCode, Problem> {
+    staff.extend(&assignment, &login, None).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 

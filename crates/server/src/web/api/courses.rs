@@ -1,6 +1,6 @@
 //! Courses and their members.
 use super::{
-    super::input::{Asked, Body, Params},
+    super::input::{Asked, Body, Params, Text},
     accounts::{Before, Link, link},
 };
 use crate::{
@@ -123,6 +123,55 @@ pub(super) async fn set_member(
     let house = staff.member().house();
     let invitation = added.invitation.map(|secret| house.invitation_address(&secret));
     Ok(Json(MemberLinks { link: link(house, added.link).link, invitation }))
+}
+
+/// A line of a table of members, and what became of it.
+#[derive(Serialize, ToSchema)]
+pub(super) struct MemberLine {
+    line: u64,
+    name: String,
+    login: String,
+    email: String,
+    role: String,
+    /// What is wrong with the line; then nothing was done about any.
+    error: Option<String>,
+    #[serde(flatten)]
+    links: MemberLinks,
+}
+
+/// Whether only to look.
+#[derive(Deserialize)]
+pub(super) struct Preview {
+    #[serde(default)]
+    preview: bool,
+}
+
+/// Makes all members of a table: `name,login,email,role`, or as its first line names them. If anything is wrong with a
+/// line, nothing is done.
+#[utoipa::path(post, path = "/api/v1/courses/{course}/members", tag = "courses",
+    params(("course" = String, Path), ("preview" = Option<bool>, Query, description = "Only look at the table")),
+    request_body(content = String, content_type = "text/csv"),
+    responses((status = 200, body = Vec<MemberLine>), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn import(
+    staff: Staff,
+    Asked(asked): Asked<Preview>,
+    Text(table): Text,
+) -> Result<Json<Vec<MemberLine>>, Problem> {
+    let lines = staff.import(&table, asked.preview).await?;
+    let house = staff.member().house();
+    let told = lines.into_iter().map(|one| MemberLine {
+        links: MemberLinks {
+            link: one.link.map(|secret| house.welcome_address(&secret)),
+            invitation: one.invitation.map(|secret| house.invitation_address(&secret)),
+        },
+        line: one.line,
+        name: one.name,
+        login: one.login,
+        email: one.email,
+        role: one.role,
+        error: one.error,
+    });
+    Ok(Json(told.collect()))
 }
 
 /// Takes somebody out of the course; what they handed in stays.

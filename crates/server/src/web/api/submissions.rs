@@ -1,7 +1,7 @@
 //! Submissions.
 use super::super::{
     download,
-    input::{Asked, Params},
+    input::{Asked, Body, Params},
     status, upload,
 };
 use crate::{
@@ -15,6 +15,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::Deserialize;
+use utoipa::ToSchema;
 
 /// What is said about an upload that is the whole body.
 #[derive(Deserialize)]
@@ -116,6 +117,52 @@ pub(super) async fn remove_submission(
     Params((_, id)): Params<(String, i64)>,
 ) -> Result<StatusCode, Problem> {
     staff.remove_submission(id).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// What staff says of a submission.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MarkWish {
+    /// Points that count instead of the grader's; without them the grader's count.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1_000_000)]
+    points: Option<f64>,
+    /// Why, as the student reads it.
+    #[serde(default)]
+    comment: String,
+}
+
+/// What a student asks.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RequestWish {
+    text: String,
+}
+
+/// Gives a submission other points than the grader, with a comment, or the grader's again.
+#[utoipa::path(put, path = "/api/v1/courses/{course}/submissions/{id}/mark", tag = "submissions",
+    params(("course" = String, Path), ("id" = i64, Path)), request_body = MarkWish,
+    responses((status = 200, body = Submission), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn mark(
+    staff: Staff,
+    Params((_, id)): Params<(String, i64)>,
+    Body(wish): Body<MarkWish>,
+) -> Result<Json<Submission>, Problem> {
+    let points = wish.points.map(|points| points.to_string());
+    Ok(Json(staff.mark(id, points.as_deref(), &wish.comment).await?))
+}
+
+/// Asks staff to look at one's own submission again.
+#[utoipa::path(post, path = "/api/v1/courses/{course}/submissions/{id}/request", tag = "submissions",
+    params(("course" = String, Path), ("id" = i64, Path)), request_body = RequestWish,
+    responses((status = 204, description = "Staff sees it"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+pub(super) async fn request(
+    member: Member,
+    Params((_, id)): Params<(String, i64)>,
+    Body(wish): Body<RequestWish>,
+) -> Result<StatusCode, Problem> {
+    member.request(id, &wish.text).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 

@@ -1,9 +1,11 @@
 //! The class, and regrades.
 use super::{
-    super::input::{Fields, Params},
+    super::input::{Asked, Fields, Params},
     Frame, see,
     settings::{Grading, GradingFields},
-    show, text,
+    show,
+    statistics::Statistics,
+    text,
 };
 use crate::{
     access::{Assignment, Regrade, RegradeState, ScoreInfo, Staff, Standing, Suspicion},
@@ -20,9 +22,16 @@ struct ClassPage {
     slug: String,
     assignment: Assignment,
     standings: Vec<Standing>,
+    look: Look,
+    /// How many students were found.
+    found: usize,
+    before: Option<String>,
+    after: Option<String>,
     regrades: Vec<Regrade>,
     suspicions: Vec<Suspicion>,
     scores: Vec<ScoreInfo>,
+    requests: Vec<crate::access::Request>,
+    statistics: Option<Statistics>,
     grading: GradingFields,
 }
 
@@ -35,6 +44,48 @@ struct RegradePage {
     regrade: Regrade,
 }
 
+/// Students on one page.
+const PAGE: usize = 100;
+
+/// Whom to show, in what order, and which page of them.
+#[derive(Deserialize)]
+pub(super) struct Look {
+    #[serde(default)]
+    q: String,
+    #[serde(default)]
+    sort: String,
+    page: Option<usize>,
+}
+
+impl Look {
+    /// Those who are to be shown, how many there are on all pages, and the addresses of the pages before and after.
+    fn at(&self, mut standings: Vec<Standing>) -> (Vec<Standing>, usize, [Option<String>; 2]) {
+        let words = self.q.trim().to_lowercase();
+        standings.retain(|one| one.login.contains(&words) || one.name.to_lowercase().contains(&words));
+        let points = |one: &Standing| {
+            let grade = one.counts.as_ref().and_then(|counts| counts.grade.as_ref());
+            grade.and_then(|grade| grade.points.as_ref()?.parse::<f64>().ok()).unwrap_or(-1.0)
+        };
+        match self.sort.as_str() {
+            "name" => standings.sort_by_cached_key(|one| one.name.to_lowercase()),
+            "points" => standings.sort_by(|one, other| points(other).total_cmp(&points(one))),
+            "submissions" => standings.sort_by_key(|one| std::cmp::Reverse(one.submissions)),
+            // They come by their logins.
+            _ => {}
+        }
+        let found = standings.len();
+        let pages = found.div_ceil(PAGE).max(1);
+        let page = self.page.unwrap_or(1).clamp(1, pages);
+        let address = |page: usize| {
+            let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
+            query.append_pair("q", &self.q).append_pair("sort", &self.sort).append_pair("page", &page.to_string());
+            query.finish()
+        };
+        let shown = standings.into_iter().skip((page - 1) * PAGE).take(PAGE).collect();
+        (shown, found, [(page > 1).then(|| address(page - 1)), (page < pages).then(|| address(page + 1))])
+    }
+}
+
 #[derive(Deserialize)]
 pub(super) struct NewRegrade {
     reason: String,
@@ -45,6 +96,7 @@ pub(super) struct NewRegrade {
 pub(super) async fn class(
     staff: Staff,
     Params((slug, assignment)): Params<(String, String)>,
+    Asked(look): Asked<Look>,
 ) -> Result<Html<String>, Problem> {
     let assignment = staff.member().assignment(&assignment).await?;
     let frame = Frame::course(staff.member())
@@ -55,7 +107,24 @@ pub(super) async fn class(
     let grading = GradingFields::of(&assignment.settings, staff.member().house().suites().names());
     let suspicions = staff.suspicions(&assignment.slug).await?;
     let scores = staff.scores(&assignment.slug).await?;
-    show(&ClassPage { frame, slug, assignment, standings, regrades, suspicions, scores, grading })
+    let (requests, statistics) = (staff.requests(&assignment.slug).await?, Statistics::of(&standings));
+    let (standings, found, [before, after]) = look.at(standings);
+    show(&ClassPage {
+        frame,
+        slug,
+        assignment,
+        standings,
+        look,
+        found,
+        before,
+        after,
+        regrades,
+        suspicions,
+        scores,
+        requests,
+        statistics,
+        grading,
+    })
 }
 
 pub(super) async fn begin(

@@ -8,6 +8,8 @@ mod platform;
 mod removal;
 mod settings;
 mod sign_in;
+mod statistics;
+mod student;
 mod submission;
 mod text;
 
@@ -77,6 +79,8 @@ pages! {
     post "/c/{course}/reopen" => removal::reopen,
     get "/c/{course}/members" => course::members,
     post "/c/{course}/members" => course::set_member,
+    get "/c/{course}/members/import" => student::import,
+    post "/c/{course}/members/import" => student::import_table,
     post "/c/{course}/members/{login}/remove" => course::remove_member,
     post "/c/{course}/members/{login}/link" => course::member_link,
     post "/c/{course}/members/roster" => platform::read_roster,
@@ -100,6 +104,10 @@ pages! {
     post "/c/{course}/a/{assignment}/suspicions/{id}/dismiss" => grades::dismiss,
     post "/c/{course}/a/{assignment}/suspicions/{id}/tell" => grades::tell,
     get "/c/{course}/s/{id}" => submission::submission,
+    get "/c/{course}/a/{assignment}/students/{login}" => student::page,
+    post "/c/{course}/a/{assignment}/students/{login}/extension" => student::extend,
+    post "/c/{course}/s/{id}/mark" => student::mark,
+    post "/c/{course}/s/{id}/request" => student::request,
     get "/c/{course}/s/{id}/remove" => removal::submission,
     post "/c/{course}/s/{id}/remove" => removal::remove_submission,
     get "/c/{course}/s/{id}/report/{name}" => submission::report,

@@ -25,6 +25,8 @@ struct AssignmentPage {
     slug: String,
     is_staff: bool,
     assignment: Assignment,
+    /// Until when this member may hand in.
+    due: Option<i64>,
     submissions: Vec<Submission>,
     key: String,
 }
@@ -52,8 +54,9 @@ pub(super) async fn assignment(
     let assignment = member.assignment(&assignment).await?;
     let frame = Frame::course(&member).then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title);
     let submissions = member.submissions(&assignment.slug).await?;
+    let due = member.due(&assignment).await?;
     let key = secret::random_hex();
-    show(&AssignmentPage { frame, slug, is_staff: member.is_staff(), assignment, submissions, key })
+    show(&AssignmentPage { frame, slug, is_staff: member.is_staff(), assignment, due, submissions, key })
 }
 
 pub(super) async fn submit(

@@ -18,5 +18,6 @@ mod settings;
 mod signs;
 mod storage;
 mod suspicion;
+mod teaching;
 mod upgrade;
 mod workers;

@@ -45,6 +45,8 @@ fn the_database_is_copied_before_its_tables_change() {
             "DROP INDEX grade_result",
             "DROP INDEX grade_change_old",
             "DROP INDEX grade_change_new",
+            "DROP TABLE mark",
+            "DROP TABLE extension",
             "DROP TABLE invitation",
             "ALTER TABLE account DROP COLUMN managed_by",
             "ALTER TABLE assignment DROP COLUMN published_at",

@@ -1,0 +1,121 @@
+//! A whole class by a table: name, login, e-mail address and role of each, as spreadsheets write it (CSV).
+use super::{NewSecret, Staff, identity};
+use crate::problem::Problem;
+use std::collections::BTreeSet;
+
+/// The longest list.
+const MOST: usize = 5000;
+
+/// The columns, in their order where the first line does not name them.
+const COLUMNS: [&str; 4] = ["name", "login", "email", "role"];
+
+/// A line of the table, and what became of it.
+#[derive(Debug, Clone)]
+pub struct Imported {
+    /// Its number.
+    pub line: u64,
+    /// What they are called.
+    pub name: String,
+    /// What their account is to be called.
+    pub login: String,
+    /// Where to send the link; not kept.
+    pub email: String,
+    /// `student` or `staff`.
+    pub role: String,
+    /// What is wrong with the line.
+    pub error: Option<String>,
+    /// A link that signs in once.
+    pub link: Option<NewSecret>,
+    /// A link to accept by.
+    pub invitation: Option<NewSecret>,
+}
+
+/// Reads a table; what is wrong with a line is told with it.
+fn read(text: &str) -> Result<Vec<Imported>, Problem> {
+    let first = text.lines().next().unwrap_or_default();
+    // Spreadsheets of other countries separate by something else.
+    let delimiter = *b";\t,".iter().max_by_key(|c| first.bytes().filter(|byte| byte == *c).count()).unwrap_or(&b',');
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(delimiter)
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let mut places: Vec<Option<usize>> = (0..COLUMNS.len()).map(Some).collect();
+    let mut logins = BTreeSet::new();
+    let mut lines = Vec::new();
+    let mut counted = (0, 1);
+    for (index, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| Problem::invalid(format!("the table is not understood: {error}")))?;
+        let cell = |text: &str| text.trim_start_matches('\u{feff}').to_owned();
+        let words: Vec<String> = record.iter().map(|word| cell(word).to_lowercase()).collect();
+        if index == 0 && words.iter().any(|word| word == "login") {
+            places = COLUMNS.iter().map(|column| words.iter().position(|word| word == column)).collect();
+            continue;
+        }
+        let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
+        // A reader of tables takes the second byte of a line's end for the next line's.
+        let at = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
+        let ends = |bytes: &[u8]| bytes.iter().filter(|byte| **byte == b'\n').count() as u64;
+        counted = (at, counted.1 + ends(text.as_bytes().get(counted.0..at).unwrap_or_default()));
+        let line = counted.1 + u64::from(text.as_bytes().get(at) == Some(&b'\n'));
+        let (name, login, email) = (field(0), field(1).to_lowercase(), field(2));
+        let role =
+            Some(field(3).to_lowercase()).filter(|role| !role.is_empty()).unwrap_or_else(|| "student".to_owned());
+        let checked = identity::check_slug("a login", &login)
+            .and_then(|()| identity::check_title("a name", &name))
+            .and_then(|()| match role.as_str() {
+                "student" | "staff" => Ok(()),
+                _ => Err(Problem::invalid("a role is student or staff")),
+            })
+            .and_then(|()| match logins.insert(login.clone()) {
+                true => Ok(()),
+                false => Err(Problem::invalid("this login is in the table twice")),
+            });
+        let error = checked.err().map(|problem| problem.detail);
+        lines.push(Imported { line, name, login, email, role, error, link: None, invitation: None });
+        if lines.len() > MOST {
+            return Err(Problem::invalid(format!("a table has at most {MOST} lines")));
+        }
+    }
+    if lines.is_empty() { Err(Problem::invalid("the table has no lines: name, login, email, role")) } else { Ok(lines) }
+}
+
+impl Staff {
+    /// Makes all members of a table, if nothing is wrong with any line; with `preview` only reads it.
+    ///
+    /// # Errors
+    /// When it is no table.
+    pub async fn import(&self, text: &str, preview: bool) -> Result<Vec<Imported>, Problem> {
+        let mut lines = read(text)?;
+        if preview || lines.iter().any(|line| line.error.is_some()) {
+            return Ok(lines);
+        }
+        let mut transaction = self.begin().await?;
+        for line in &mut lines {
+            let added = self.add(&mut transaction, &line.login, &line.name, &line.role).await?;
+            (line.link, line.invitation) = (added.link, added.invitation);
+        }
+        transaction.commit().await?;
+        Ok(lines)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::read;
+
+    #[test]
+    fn tables_are_read_as_spreadsheets_write_them() {
+        let lines = |text: &str| read(text).expect("a table");
+        let plain = lines("Ada Lovelace,ada,ada@example.org,staff\n\"Babbage, C.\",Charles\n");
+        assert_eq!((plain[0].role.as_str(), plain[1].role.as_str()), ("staff", "student"));
+        assert_eq!((plain[1].name.as_str(), plain[1].login.as_str(), plain[1].line), ("Babbage, C.", "charles", 2));
+        let named = lines("\u{feff}Login;Role;Name\r\nada;student;Ada\r\n");
+        assert_eq!((named[0].login.as_str(), named[0].name.as_str(), named[0].line), ("ada", "Ada", 2));
+        let wrong = lines("Ada,ada\nAda,ada\n,eve\nEve,e v e\nEve,eve,,boss\n");
+        let errors: Vec<bool> = wrong.iter().map(|line| line.error.is_some()).collect();
+        assert_eq!(errors, [false, true, true, true, true]);
+        assert!(read("").is_err());
+    }
+}

@@ -1,0 +1,224 @@
+//! What staff decides by hand about a student's work: other points, a comment, more time; and what students ask for.
+use super::{
+    Member, Staff, identity,
+    view::{self, Assignment, Submission},
+};
+use crate::{
+    calendar,
+    db::{DbError, Row, Transaction},
+    lti::score,
+    problem::Problem,
+    values,
+};
+
+/// How long a comment or a request may be.
+const LONGEST: usize = 2000;
+
+/// A student's work on an assignment.
+#[derive(Debug, Clone)]
+pub struct Work {
+    /// What their account is called.
+    pub login: String,
+    /// What they are called.
+    pub name: String,
+    /// All that they handed in, newest first.
+    pub submissions: Vec<Submission>,
+    /// Until when they may hand in, where that is another moment than for the others.
+    pub extended_to: Option<i64>,
+}
+
+/// A request of a student's that nobody has answered.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// The submission.
+    pub submission: i64,
+    /// Whose it is.
+    pub login: String,
+    /// What they ask.
+    pub text: String,
+}
+
+fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
+    let length = text.chars().count();
+    if (least..=LONGEST).contains(&length) && !text.chars().any(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
+    {
+        return Ok(());
+    }
+    Err(Problem::invalid(format!("{what} has {least} to {LONGEST} characters")))
+}
+
+impl Staff {
+    /// Gives a submission other points than the grader, or the grader's again, and says why. That answers a request.
+    ///
+    /// # Errors
+    /// When there is no such submission, or these are no points.
+    pub async fn mark(&self, id: i64, points: Option<&str>, comment: &str) -> Result<Submission, Problem> {
+        check_words("a comment", comment, usize::from(points.is_some()))?;
+        let is_number =
+            |text: &str| text.len() <= 20 && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points));
+        if points.is_some_and(|points| !is_number(points)) {
+            return Err(Problem::invalid("points are a number between 0 and a million"));
+        }
+        let mut transaction = self.begin().await?;
+        self.member().find_submission(&mut transaction, id).await?;
+        transaction
+            .execute(
+                "INSERT INTO mark (submission, points, comment, marked_by, marked_at) VALUES (?, ?, ?, ?, {now})
+                 ON CONFLICT (submission) DO UPDATE SET points = excluded.points, comment = excluded.comment,
+                    marked_by = excluded.marked_by, marked_at = excluded.marked_at",
+                values![id, points, comment, self.member().account.id],
+            )
+            .await?;
+        let text = match points {
+            Some(points) => format!("{points} points: {comment}"),
+            None => format!("the grader's points: {comment}"),
+        };
+        let mut deed = self.deed("marked", None, &text);
+        deed.submission = Some(id);
+        view::note(&mut transaction, &deed).await?;
+        score::changed(&mut transaction, id).await?;
+        transaction.commit().await?;
+        self.member().house.0.bell.strike();
+        self.member().submission(id).await
+    }
+
+    /// What students ask about an assignment and nobody has answered, oldest first.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
+        let mut transaction = self.member().house.0.database.read().await?;
+        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let rows = transaction
+            .rows(
+                "SELECT mark.submission, mark.request, account.login FROM mark
+                 JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
+                 WHERE submission.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)
+                 ORDER BY mark.requested_at",
+                values![assignment.id],
+            )
+            .await?;
+        let read = |row: &Row| {
+            Ok(Request { submission: row.int("submission")?, login: row.text("login")?, text: row.text("request")? })
+        };
+        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// All that a student handed in to an assignment.
+    ///
+    /// # Errors
+    /// When they are no member and handed nothing in.
+    pub async fn work(&self, slug: &str, login: &str) -> Result<Work, Problem> {
+        let mut transaction = self.member().house.0.database.read().await?;
+        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let account = self.student(&mut transaction, &assignment, login).await?;
+        Ok(Work {
+            login: login.to_owned(),
+            name: account.text("name")?,
+            submissions: view::submissions_of(&mut transaction, assignment.id, account.int("id")?).await?,
+            extended_to: extension(&mut transaction, assignment.id, account.int("id")?).await?,
+        })
+    }
+
+    async fn student(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        login: &str,
+    ) -> Result<Row, Problem> {
+        let row = transaction
+            .row(
+                "SELECT id, name FROM account WHERE login = ?
+                    AND (EXISTS (SELECT 1 FROM member WHERE member.account = account.id AND member.course = ?)
+                        OR EXISTS (SELECT 1 FROM submission
+                            WHERE submission.account = account.id AND submission.assignment = ?))",
+                values![login, self.member().course, assignment.id],
+            )
+            .await?;
+        row.ok_or_else(|| Problem::not_found("member"))
+    }
+
+    /// Lets a student hand in until another moment than the others, or until the same again.
+    ///
+    /// # Errors
+    /// When there is no such student.
+    pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>) -> Result<(), Problem> {
+        identity::check_slug("a login", login)?;
+        if due_at.is_some_and(|due| !calendar::is_plausible(due)) {
+            return Err(Problem::invalid(
+                "due_at is milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00",
+            ));
+        }
+        let mut transaction = self.begin().await?;
+        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
+        transaction
+            .execute("DELETE FROM extension WHERE assignment = ? AND account = ?", values![assignment.id, account])
+            .await?;
+        if let Some(due) = due_at {
+            transaction
+                .execute(
+                    "INSERT INTO extension (assignment, account, due_at, set_by, set_at) VALUES (?, ?, ?, ?, {now})",
+                    values![assignment.id, account, due, self.member().account.id],
+                )
+                .await?;
+        }
+        let until = due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::minute(due)));
+        let text = format!("{login} hands in {until}");
+        view::note(&mut transaction, &self.deed("extension", Some(assignment.id), &text)).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+impl Member {
+    /// Asks staff to look at one's own submission again.
+    ///
+    /// # Errors
+    /// When it is not one's own, or nothing is asked.
+    pub async fn request(&self, id: i64, text: &str) -> Result<(), Problem> {
+        check_words("a request", text, 1)?;
+        let mut transaction = self.house.0.database.begin().await?;
+        let submission = self.find_submission(&mut transaction, id).await?;
+        if submission.account != self.account.id {
+            return Err(Problem::not_allowed("this is for whoever handed it in"));
+        }
+        transaction
+            .execute(
+                "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})
+                 ON CONFLICT (submission) DO UPDATE SET request = excluded.request, requested_at = excluded.requested_at",
+                values![id, text],
+            )
+            .await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// Until when this member may hand in.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn due(&self, assignment: &Assignment) -> Result<Option<i64>, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        Ok(due(&mut transaction, assignment, self.account.id).await?)
+    }
+}
+
+async fn extension(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<i64>, DbError> {
+    let row = transaction
+        .row("SELECT due_at FROM extension WHERE assignment = ? AND account = ?", values![assignment, account])
+        .await?;
+    row.map(|row| row.int("due_at")).transpose()
+}
+
+/// Until when an account may hand in.
+pub(super) async fn due(
+    transaction: &mut Transaction,
+    assignment: &Assignment,
+    account: i64,
+) -> Result<Option<i64>, DbError> {
+    match assignment.settings.due_at {
+        None => Ok(None),
+        Some(due) => Ok(Some(extension(transaction, assignment.id, account).await?.unwrap_or(due))),
+    }
+}

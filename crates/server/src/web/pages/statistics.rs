@@ -1,0 +1,56 @@
+//! How a class did, in numbers.
+use crate::{access::Standing, task::rounded};
+use std::collections::BTreeMap;
+
+/// Parts of the whole, in percent.
+const BIN: usize = 10;
+
+/// How a class did.
+pub(super) struct Statistics {
+    pub(super) students: usize,
+    pub(super) mean: String,
+    pub(super) median: String,
+    /// Students by percent of the points.
+    pub(super) bins: Vec<(String, usize)>,
+    /// Mistakes that several students are likely to have made, the most frequent first.
+    pub(super) mistakes: Vec<(String, Vec<String>)>,
+}
+
+impl Statistics {
+    /// Of those who have points; nothing where nobody has.
+    pub(super) fn of(standings: &[Standing]) -> Option<Self> {
+        let mut parts = Vec::new();
+        let mut mistakes: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for standing in standings {
+            let Some(grade) = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref()) else { continue };
+            let number = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
+            if let (Some(points), Some(most)) = (number(&grade.points), number(&grade.max_points))
+                && most > 0.0
+            {
+                parts.push((100.0 * points / most).clamp(0.0, 100.0));
+            }
+            if let Some((_, mistake)) = grade.summary.split_once("; ") {
+                mistakes.entry(mistake.to_owned()).or_default().push(standing.login.clone());
+            }
+        }
+        parts.sort_by(f64::total_cmp);
+        let students = parts.len();
+        let median = (parts.get(students.checked_sub(1)? / 2)? + parts.get(students / 2)?) / 2.0;
+        let mean = parts.iter().sum::<f64>() / students as f64;
+        let bin = |from: usize| {
+            let (low, high) = (from as f64, (from + BIN) as f64);
+            let is_last = from + BIN == 100;
+            let count = parts.iter().filter(|part| (low..high).contains(*part) || is_last && **part >= high).count();
+            (format!("{from} to {}", from + BIN), count)
+        };
+        let mut mistakes: Vec<_> = mistakes.into_iter().filter(|(_, logins)| logins.len() > 1).collect();
+        mistakes.sort_by_key(|(_, logins)| std::cmp::Reverse(logins.len()));
+        Some(Self {
+            students,
+            mean: rounded(&mean.to_string()),
+            median: rounded(&median.to_string()),
+            bins: (0..100).step_by(BIN).map(bin).collect(),
+            mistakes,
+        })
+    }
+}

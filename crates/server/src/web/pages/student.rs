@@ -1,0 +1,157 @@
+//! One student's work, as staff sees it; and the table by which a class comes in.
+use super::{
+    super::input::{Fields, Params},
+    Frame, see,
+    settings::moment,
+    show, text,
+};
+use crate::{
+    access::{Assignment, House, Imported, Member, Staff, Work},
+    problem::Problem,
+};
+use askama::Template;
+use axum::response::{Html, Redirect};
+use serde::Deserialize;
+use url::form_urlencoded::byte_serialize;
+
+#[derive(Template)]
+#[template(path = "student.html")]
+struct StudentPage {
+    frame: Frame,
+    slug: String,
+    assignment: Assignment,
+    work: Work,
+}
+
+#[derive(Template)]
+#[template(path = "import.html")]
+struct ImportPage {
+    frame: Frame,
+    slug: String,
+    table: String,
+    lines: Vec<Line>,
+    is_wrong: bool,
+    is_done: bool,
+    /// All links as a table, as an address.
+    download: String,
+}
+
+/// A line of the table, and the link to be handed on.
+struct Line {
+    of: Imported,
+    link: String,
+    /// A letter with the link, as an address.
+    letter: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewExtension {
+    due: String,
+    #[serde(default)]
+    due_zone: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewMark {
+    #[serde(default)]
+    points: String,
+    #[serde(default)]
+    comment: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NewRequest {
+    text: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Table {
+    table: String,
+    import: Option<String>,
+}
+
+pub(super) async fn page(
+    staff: Staff,
+    Params((slug, assignment, login)): Params<(String, String, String)>,
+) -> Result<Html<String>, Problem> {
+    let assignment = staff.member().assignment(&assignment).await?;
+    let work = staff.work(&assignment.slug, &login).await?;
+    let frame = Frame::course(staff.member())
+        .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
+        .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class")
+        .then(format!("/c/{slug}/a/{}/students/{login}", assignment.slug), &work.name);
+    show(&StudentPage { frame, slug, assignment, work })
+}
+
+pub(super) async fn extend(
+    staff: Staff,
+    Params((slug, assignment, login)): Params<(String, String, String)>,
+    Fields(form): Fields<NewExtension>,
+) -> Result<Redirect, Problem> {
+    let before = staff.work(&assignment, &login).await?.extended_to;
+    staff.extend(&assignment, &login, moment(&form.due, &form.due_zone, before)?).await?;
+    Ok(see(&format!("/c/{slug}/a/{assignment}/students/{login}")))
+}
+
+pub(super) async fn mark(
+    staff: Staff,
+    Params((slug, id)): Params<(String, i64)>,
+    Fields(form): Fields<NewMark>,
+) -> Result<Redirect, Problem> {
+    let points = Some(form.points.trim()).filter(|points| !points.is_empty());
+    staff.mark(id, points, form.comment.trim()).await?;
+    Ok(see(&format!("/c/{slug}/s/{id}")))
+}
+
+pub(super) async fn request(
+    member: Member,
+    Params((slug, id)): Params<(String, i64)>,
+    Fields(form): Fields<NewRequest>,
+) -> Result<Redirect, Problem> {
+    member.request(id, form.text.trim()).await?;
+    Ok(see(&format!("/c/{slug}/s/{id}")))
+}
+
+fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) -> Result<Html<String>, Problem> {
+    let slug = staff.member().course().slug;
+    let frame = Frame::course(staff.member())
+        .then(format!("/c/{slug}/members"), "Members")
+        .then(format!("/c/{slug}/members/import"), "Import");
+    let is_wrong = lines.iter().any(|line| line.of.error.is_some());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for line in &lines {
+        let cells = [&line.of.name, &line.of.login, &line.of.email, &line.of.role, &line.link];
+        writer.write_record(cells).map_err(|_| Problem::fault())?;
+    }
+    let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
+    let download = format!("data:text/csv;charset=utf-8,{}", percent(&bytes));
+    show(&ImportPage { frame, slug, table, lines, is_wrong, is_done: is_done && !is_wrong, download })
+}
+
+/// Bytes as part of an address.
+fn percent(bytes: &[u8]) -> String {
+    byte_serialize(bytes).collect::<String>().replace('+', "%20")
+}
+
+fn line(house: &House, course: &str, of: Imported) -> Line {
+    let link = match (&of.link, &of.invitation) {
+        (Some(secret), _) => house.welcome_address(secret),
+        (None, Some(secret)) => house.invitation_address(secret),
+        (None, None) => String::new(),
+    };
+    let (subject, body) = (percent(course.as_bytes()), percent(format!("{}:\n{link}\n", of.name).as_bytes()));
+    let letter = format!("mailto:{}?subject={subject}&body={body}", percent(of.email.as_bytes()));
+    Line { of, link, letter }
+}
+
+pub(super) async fn import(staff: Staff) -> Result<Html<String>, Problem> {
+    import_page(&staff, String::new(), Vec::new(), false)
+}
+
+pub(super) async fn import_table(staff: Staff, Fields(form): Fields<Table>) -> Result<Html<String>, Problem> {
+    let is_meant = form.import.is_some();
+    let lines = staff.import(&form.table, !is_meant).await?;
+    let (house, course) = (staff.member().house(), staff.member().course().title);
+    let lines = lines.into_iter().map(|one| line(house, &course, one)).collect();
+    import_page(&staff, form.table, lines, is_meant)
+}

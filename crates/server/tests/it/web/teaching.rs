@@ -1,0 +1,103 @@
+//! What teachers do by hand: a class by a table, more time, other points, an answer.
+use crate::support::{
+    engines::{Fresh, on_both_engines},
+    server::{JSON, Server, program},
+};
+
+on_both_engines!(a_class_comes_in_by_a_table, staff_overrules_answers_and_gives_time);
+
+async fn a_class_comes_in_by_a_table(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let teacher = server.member(&admin, "physics", "teacher", "staff");
+    let csv = [("Content-Type", "text/csv")];
+    let path = "/api/v1/courses/physics/members";
+    let members = || teacher.get(path).expect(200).json().as_array().expect("a list").len();
+    // A line that is wrong is told by its number, and then nothing is done.
+    let wrong = teacher.send("POST", path, &csv, b"Ada,ada\nEve,e v e\n").expect(200).json();
+    assert!(wrong[0]["error"].is_null() && wrong[1]["error"].is_string() && wrong[1]["line"] == 2, "{wrong}");
+    let page =
+        teacher.post_form("/c/physics/members/import", "table=Ada,ada%0AEve,e+v+e&import=yes").expect(200).text();
+    assert!(page.contains("nothing was done"), "{page}");
+    let table = "name,login,email,role\nAda,ada,ada@example.org,\nCarol,carol,,staff\nBoss,admin,,staff\n";
+    let form = "table=name,login,email,role%0AAda,ada,ada@example.org,%0ACarol,carol,,staff%0ABoss,admin,,staff%0A";
+    let page = teacher.post_form("/c/physics/members/import", form).expect(200).text();
+    assert!(page.contains("What would be done") && page.contains("Make these members"), "{page}");
+    teacher.send("POST", &format!("{path}?preview=true"), &csv, table.as_bytes()).expect(200);
+    assert_eq!(members(), 1);
+    let page = teacher.post_form("/c/physics/members/import", &format!("{form}&import=yes")).expect(200).text();
+    for part in ["mailto:ada%40example.org?", "data:text/csv", "/welcome/", "/invitation/"] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    assert_eq!(members(), 4);
+    let link = page.split("<code>").nth(1).and_then(|rest| rest.split('<').next()).expect("a link");
+    let ada = server.visitor().welcome(link.rsplit('/').next().expect("a secret"));
+    assert_eq!(ada.get("/api/v1/me").expect(200).json()["login"], "ada");
+    // Once more it makes nothing new.
+    let again = teacher.send("POST", path, &csv, table.as_bytes()).expect(200).json();
+    assert!(again[0]["link"].is_null() && again[0]["error"].is_null(), "{again}");
+    assert_eq!(members(), 4);
+}
+
+async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let teacher = server.member(&admin, "physics", "teacher", "staff");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let eve = server.member(&admin, "physics", "eve", "student");
+    let ids: Vec<i64> = [40, 30].map(|points| ada.submit("physics", &program("WA", points))).to_vec();
+    for id in &ids {
+        ada.wait_for_grade("physics", *id);
+    }
+    let place = |id: i64| format!("/api/v1/courses/physics/submissions/{id}");
+    // The student asks, staff sees it and answers with other points.
+    ada.post_form(&format!("/c/physics/s/{}/request", ids[1]), "text=The+scene+is+%3Cb%3Eodd%3C/b%3E").expect(303);
+    eve.post_json(&format!("{}/request", place(ids[1])), r#"{"text": "me, too"}"#).expect(404);
+    let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
+    assert!(class.contains("The scene is &#60;b&#62;odd"), "{class}");
+    assert!(class.contains("mean 40 %") && class.contains("40 to 50 %"), "{class}");
+    for bad in [r#"{"points": -1, "comment": "x"}"#, r#"{"points": 10}"#, r#"{"points": 1e300, "comment": "x"}"#] {
+        teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, bad.as_bytes()).expect(400);
+    }
+    ada.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"points": 100, "comment": "x"}"#).expect(403);
+    teacher.post_form(&format!("/c/physics/s/{}/mark", ids[1]), "points=68.5&comment=You+are+right").expect(303);
+    assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "68.5");
+    let page = ada.get(&format!("/c/physics/s/{}", ids[1])).expect(200).text();
+    assert!(page.contains("68.5 / 100 points") && page.contains("You are right"), "{page}");
+    let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
+    assert!(class.contains("68.5 / 100") && !class.contains("odd"), "{class}");
+    assert!(teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text().contains(",68.5,"));
+    // A class is searched, and sorted.
+    let eve_handed_in = eve.submit("physics", &program("WA", 90));
+    eve.wait_for_grade("physics", eve_handed_in);
+    let class = teacher.get("/c/physics/a/m1/class?q=EVE").expect(200).text();
+    assert!(
+        class.contains("1 students") && class.contains("students/eve") && !class.contains("students/ada"),
+        "{class}"
+    );
+    let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
+    assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
+    // All attempts on one page.
+    let page = teacher.get("/c/physics/a/m1/students/ada").expect(200).text();
+    assert!(page.contains(">Submission 1<") && page.contains(">Submission 2<") && page.contains("40 / 100"), "{page}");
+    teacher.get("/c/physics/a/m1/students/nobody").expect(404);
+    teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "after all"}"#).expect(200);
+    assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "30");
+    // More time for one.
+    let wish = r#"{"title": "M", "visible": true, "settings": {"per_hour": 0, "due_at": "2026-01-01T00:00Z"}}"#;
+    teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
+    let upload = "/api/v1/courses/physics/assignments/m1/submissions?name=FOSSSim";
+    ada.send("POST", upload, &[], &program("AC", 100)).expect(409);
+    let extension = "/api/v1/courses/physics/assignments/m1/extensions/ada";
+    teacher.send("PUT", extension, JSON, br#"{"due_at": "2096-01-01T00:00Z"}"#).expect(204);
+    ada.send("POST", upload, &[], &program("AC", 100)).expect(201);
+    eve.send("POST", upload, &[], &program("AC", 100)).expect(409);
+    assert!(ada.get("/c/physics/a/m1").expect(200).text().contains("2096-01-01 00:00 UTC"));
+    teacher.post_form("/c/physics/a/m1/students/ada/extension", "due=&due_zone=0").expect(303);
+    ada.send("POST", upload, &[], &program("AC", 90)).expect(409);
+    // Nothing of it is left when the person goes.
+    teacher.send("PUT", extension, JSON, br#"{"due_at": "2096-01-01T00:00Z"}"#).expect(204);
+    admin.send("DELETE", "/api/v1/accounts/ada/data", &[], b"").expect(204);
+}
