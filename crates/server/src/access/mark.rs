@@ -53,9 +53,15 @@ impl Staff {
     /// # Errors
     /// When there is no such submission, or these are no points.
     pub async fn mark(&self, id: i64, points: Option<&str>, comment: &str) -> Result<Submission, Problem> {
-        check_words("a comment", comment, usize::from(points.is_some()))?;
-        let is_number =
-            |text: &str| text.len() <= 20 && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points));
+        check_words("a comment", comment, 0)?;
+        if points.is_some() && comment.is_empty() {
+            return Err(Problem::conflict("other points need a reason", "say it in the comment"));
+        }
+        let is_number = |text: &str| {
+            text.len() <= 30
+                && text.bytes().all(|c| c.is_ascii_digit() || c == b'.')
+                && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points))
+        };
         if points.is_some_and(|points| !is_number(points)) {
             return Err(Problem::invalid("points are a number between 0 and a million"));
         }

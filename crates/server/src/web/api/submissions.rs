@@ -130,6 +130,7 @@ pub(super) struct MarkWish {
     points: Option<f64>,
     /// Why, as the student reads it.
     #[serde(default)]
+    #[schema(max_length = 2000)]
     comment: String,
 }
 
@@ -137,6 +138,8 @@ pub(super) struct MarkWish {
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RequestWish {
+    /// What is wrong with the grade.
+    #[schema(min_length = 1, max_length = 2000)]
     text: String,
 }
 
