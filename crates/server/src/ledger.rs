@@ -1,6 +1,7 @@
 //! What became of jobs: results, grades and the history of both, written in one transaction with the end of the job.
 use crate::{
     db::{DbError, Transaction},
+    health,
     lti::score,
     queue::{self, Buried, Completion, Failure, Lease, Policy, Tick},
     suspect,
@@ -16,7 +17,8 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     let completion = queue::complete(transaction, lease).await?;
     match completion {
         Completion::Done => {
-            write_result(transaction, lease.job, lease.attempt, outcome).await?;
+            let about = write_result(transaction, lease.job, lease.attempt, outcome).await?;
+            health::graded(transaction, &about.worker).await?;
         }
         Completion::Late => note_late(transaction, lease, &format!("a result, {}", outcome.code)).await?,
         Completion::Repeated => {}
@@ -34,14 +36,25 @@ pub async fn fail(
     lease: &Lease,
     fault: &str,
 ) -> Result<Failure, DbError> {
+    let fault = &health::without_paths(fault);
     let failure = queue::fail(transaction, policy, lease, fault).await?;
-    match failure {
-        Failure::Buried => bury(transaction, lease.job, lease.attempt, fault).await?,
-        Failure::Late => note_late(transaction, lease, "a failure").await?,
-        Failure::Retried => {
-            let row = about(transaction, lease.job).await?;
-            note(transaction, &row, "failed try", fault).await?;
-        }
+    if failure == Failure::Late {
+        note_late(transaction, lease, "a failure").await?;
+        return Ok(failure);
+    }
+    let row = about(transaction, lease.job).await?;
+    health::failed(transaction, &row.worker, fault).await?;
+    if failure == Failure::Buried {
+        bury(transaction, lease.job, lease.attempt, fault).await?;
+    } else {
+        note(transaction, &row, "failed try", fault).await?;
+    }
+    if let Some(assignment) = row.assignment
+        && health::pause_broken(transaction, policy, assignment, &row.task, fault).await?
+    {
+        let text = format!("nothing can be graded by this suite, so its submissions wait for staff: {fault}");
+        let of_all = About { submission: None, ..row };
+        note(transaction, &of_all, "assignment paused", &text).await?;
     }
     Ok(failure)
 }
@@ -81,7 +94,8 @@ struct About {
 async fn about(transaction: &mut Transaction, job: i64) -> Result<About, DbError> {
     let row = transaction
         .one(
-            "SELECT job.submission, job.campaign, job.payload, job.worker, submission.assignment, assignment.course,
+            "SELECT job.submission, job.campaign, job.payload, coalesce(job.worker, job.failed_by) AS worker,
+                submission.assignment, assignment.course,
                 {now} - coalesce(job.started_at, {now}) AS took
              FROM job
              LEFT JOIN submission ON submission.id = job.submission
@@ -133,7 +147,7 @@ async fn bury_all(transaction: &mut Transaction, jobs: &[Buried]) -> Result<(), 
 }
 
 async fn bury(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str) -> Result<(), DbError> {
-    let row = write_result(transaction, job, attempt, &Outcome::judge_error(fault)).await?;
+    let row = write_result(transaction, job, attempt, &Outcome::judge_error()).await?;
     if row.submission.is_none() && score::give_up(transaction, &row.task, fault).await? {
         return Ok(());
     }
@@ -199,11 +213,16 @@ async fn write_result(
     let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;
     // A grader that failed takes nobody's grade away.
     if about.campaign.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
-        let change = GradeChange { submission, result, by: None, campaign: None, reason: "graded" };
+        let reason = if counted.is_some() { "graded again" } else { "graded" };
+        let change = GradeChange { submission, result, by: None, campaign: None, reason };
         set_grade(transaction, &change).await?;
         if let (Some(course), Some(assignment), false) = (about.course, about.assignment, outcome.wrong.is_empty()) {
             suspect::look(transaction, course, assignment).await?;
         }
+    }
+    // Judge errors are told of by those who bury.
+    if outcome.code == JUDGE_ERROR {
+        return Ok(about);
     }
     let text = match (&outcome.points, &outcome.max_points) {
         (Some(points), Some(most)) => {

@@ -6,6 +6,7 @@ pub mod archive;
 pub mod calendar;
 pub mod cli;
 pub mod db;
+pub mod health;
 pub mod instruments;
 pub mod ledger;
 pub mod lti;

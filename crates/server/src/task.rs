@@ -147,15 +147,15 @@ impl<F> Outcome<F> {
 }
 
 impl Outcome {
-    /// The outcome of a job that was tried too often: our fault, and nobody's zero.
+    /// The outcome of a job that was tried too often: our fault, and nobody's zero. Why is staff's to read, in the job.
     #[must_use]
-    pub fn judge_error(fault: &str) -> Self {
+    pub fn judge_error() -> Self {
         Self {
             verdict: "judge error".to_owned(),
             code: JUDGE_ERROR.to_owned(),
             points: None,
             max_points: None,
-            summary: format!("the grader failed: {fault}"),
+            summary: "the grader failed, which is no fault of the submission; the course's staff is told".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             grader: String::new(),
             essence: String::new(),

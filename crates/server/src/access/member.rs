@@ -109,6 +109,9 @@ impl Member {
         let assignment = self.find_assignment(&mut transaction, assignment).await?;
         let mut submissions = view::submissions_of(&mut transaction, assignment.id, self.account.id).await?;
         for submission in &mut submissions {
+            if !self.is_staff {
+                submission.fault = None;
+            }
             // Nobody has looked at what is hidden in it yet, which takes its files.
             if submission.grade.as_ref().is_some_and(|grade| !self.is_staff && grade.shown.is_none()) {
                 *submission = self.find_submission(&mut transaction, submission.id).await?;
@@ -143,6 +146,9 @@ impl Member {
         let found = view::submission(transaction, &self.house, self.course, id).await?;
         let found = found.filter(|submission| self.is_staff || submission.account == self.account.id);
         let mut submission = found.ok_or_else(|| Problem::not_found("submission"))?;
+        if !self.is_staff {
+            submission.fault = None;
+        }
         self.withhold(&mut submission).await?;
         Ok(submission)
     }

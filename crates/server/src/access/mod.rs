@@ -5,7 +5,11 @@
 
 mod account;
 mod admin;
+mod again;
+mod bulk;
+mod campaign;
 mod choice;
+mod counts;
 mod example;
 mod file_name;
 mod identity;
@@ -34,7 +38,9 @@ mod visitor;
 
 pub use account::Account;
 pub use admin::Admin;
+pub use campaign::run as work_on_regrades;
 pub use choice::{Choice, Chosen};
+pub use counts::Counts;
 pub use file_name::is_file_name;
 pub use identity::{NewSecret, Session};
 pub use import::Imported;
@@ -47,7 +53,7 @@ pub use members::{Added, MemberInfo};
 pub use password::Passwords;
 pub use person::{CourseOf, Person, TokenInfo};
 pub use platform::{RosterRead, ScoreInfo};
-pub use regrade::{Change, Regrade, RegradeState};
+pub use regrade::{Change, Doing, Regrade, RegradeState};
 pub use remote::{Claimed, Remote};
 pub use request::{Renewed, Secrets, SignedIn, browser_cookie, cookie_name};
 pub use settings::Settings;
@@ -87,6 +93,10 @@ pub struct Parts {
     pub policy: Policy,
     /// The suites that come with the grader.
     pub suites: Suites,
+    /// The grader, where there is one: it looks at suites before anybody is graded by them.
+    pub grader: Option<PathBuf>,
+    /// Numbers for monitors.
+    pub counts: Counts,
     /// Whether there is room, and whether it can be written.
     pub storage: Storage,
     /// What the server counts about itself.
@@ -148,6 +158,12 @@ impl House {
     #[must_use]
     pub fn suites(&self) -> &Suites {
         &self.0.suites
+    }
+
+    /// The grader, where there is one.
+    #[must_use]
+    pub fn grader(&self) -> Option<&std::path::Path> {
+        self.0.grader.as_deref()
     }
 
     /// Whether people come by HTTPS.

@@ -1,19 +1,25 @@
-//! A regrade: new results beside the old ones, at low priority, until somebody of the staff applies or discards them as
-//! one step. Until then no grade changes.
+//! A regrade: new results beside the old ones, at low priority, until somebody of the staff applies or discards them.
+//! Until then no grade changes. The work is done in the background ([`campaign`]): of a class of thousands nobody waits
+//! for an answer.
 use super::{
-    Settings, Staff, submit,
+    Settings, Staff, campaign,
     view::{self, Assignment},
 };
 use crate::{
     db::{DbError, Row, Transaction},
-    ledger::{self, GradeChange},
     problem::Problem,
-    queue::{self, Bell, Lane, NewJob, Turn},
-    task::{Form, Input, JUDGE_ERROR, Task},
+    task::{JUDGE_ERROR, Task},
     values,
 };
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 use utoipa::ToSchema;
+
+/// For so long a request does the work itself; the rest is done after its answer.
+const HURRY: Duration = Duration::from_secs(2);
+
+/// Changes that are told at one time, at most.
+const CHANGES: i64 = 1000;
 
 /// Where a regrade is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -48,8 +54,27 @@ pub struct Regrade {
     pub left: usize,
     /// How many the grader failed on: their grades stay.
     pub failed: usize,
-    /// What changes.
+    /// What is being done for it in the background; nothing when there is nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doing: Option<Doing>,
+    /// How many grades change.
+    pub changed: usize,
+    /// What changes: as many as were asked for, by submission.
     pub changes: Vec<Change>,
+    /// The submission after which there are more changes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<i64>,
+}
+
+/// Work on a regrade that goes on after the answer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Doing {
+    /// `begin` (submissions are put into the queue), `apply` (results begin to count) or `discard`.
+    pub what: String,
+    /// For how many submissions it is done.
+    pub done: i64,
+    /// For how many in all.
+    pub total: i64,
 }
 
 /// A grade that changes, and why.
@@ -94,20 +119,26 @@ impl Staff {
         }
         let campaign = transaction
             .one(
-                "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at)
-                 VALUES (?, 'open', ?, ?, ?, {now}) RETURNING id",
-                values![assignment.id, reason, settings.text(), self.member().account.id],
+                "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at, doing, total)
+                 VALUES (?, 'open', ?, ?, ?, {now}, 'begin',
+                    (SELECT count(*) FROM submission WHERE assignment = ? AND removed_at IS NULL)) RETURNING id, total",
+                values![assignment.id, reason, settings.text(), self.member().account.id, assignment.id],
             )
-            .await?
-            .int("id")?;
-        let newly = Assignment { settings, ..assignment };
-        let count = enqueue_missing(&mut transaction, campaign, &newly).await?;
+            .await?;
+        let (campaign, count) = (campaign.int("id")?, campaign.int("total")?);
         let text = format!("regrade {campaign} of {count} submissions: {reason}");
-        view::note(&mut transaction, &self.deed("regrade", Some(newly.id), &text)).await?;
-        Bell::ring(&mut transaction).await?;
+        view::note(&mut transaction, &self.deed("regrade", Some(assignment.id), &text)).await?;
         transaction.commit().await?;
-        self.member().house.0.bell.strike();
-        self.show_regrade(slug, campaign).await
+        self.hurry(campaign).await?;
+        self.show_regrade(slug, campaign, None).await
+    }
+
+    /// Does what there is to do for a regrade, as far as it is done soon.
+    async fn hurry(&self, id: i64) -> Result<(), Problem> {
+        let parts = &self.member().house.0;
+        campaign::hurry(&parts.database, id, HURRY).await?;
+        parts.bell.strike();
+        Ok(())
     }
 
     /// The regrades of an assignment, latest first, without their changes.
@@ -120,27 +151,27 @@ impl Staff {
         let rows = transaction
             .rows(
                 "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
-                    account.login
+                    campaign.doing, campaign.done, campaign.total, account.login
                  FROM campaign JOIN account ON account.id = campaign.started_by
-                 WHERE campaign.assignment = ? ORDER BY campaign.id DESC",
+                 WHERE campaign.assignment = ? ORDER BY campaign.id DESC LIMIT 100",
                 values![assignment.id],
             )
             .await?;
         rows.iter().map(read_regrade).collect()
     }
 
-    /// A regrade and what it would change, or did.
+    /// A regrade and what it would change, or did, for submissions after one.
     ///
     /// # Errors
     /// When there is none of this number.
-    pub async fn show_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
+    pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
         let mut transaction = self.member().house.0.database.read().await?;
         let assignment = self.member().find_assignment(&mut transaction, slug).await?;
-        find(&mut transaction, &assignment, id).await
+        find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
     }
 
-    /// Makes the results of a regrade count, all in one step, and its settings the assignment's. Where the grader
-    /// failed, the old grade stays.
+    /// Makes the results of a regrade count, and its settings the assignment's. Where the grader failed, the old grade
+    /// stays.
     ///
     /// # Errors
     /// When it is not finished; submissions that came in meanwhile are graded first, too.
@@ -148,49 +179,49 @@ impl Staff {
         let assignment = self.member().assignment(slug).await?;
         let mut transaction = self.begin().await?;
         self.lock_open(&mut transaction, &assignment, id).await?;
-        let regrade = find(&mut transaction, &assignment, id).await?;
-        let newly = Assignment { settings: regrade.settings.clone(), ..assignment };
-        let missing = enqueue_missing(&mut transaction, id, &newly).await?;
+        let row = transaction
+            .one(
+                "SELECT settings, doing,
+                    (SELECT count(*) FROM submission WHERE assignment = ? AND id > campaign.cursor
+                        AND removed_at IS NULL) AS missing,
+                    (SELECT count(*) FROM job WHERE campaign = ? AND state IN ('waiting', 'running')) AS waiting
+                 FROM campaign WHERE id = ?",
+                values![assignment.id, id, id],
+            )
+            .await?;
+        if row.maybe_text("doing")?.is_some() {
+            return Err(Problem::conflict("something is being done for this regrade", "wait"));
+        }
+        let missing = row.int("missing")?;
         if missing > 0 {
-            Bell::ring(&mut transaction).await?;
+            transaction
+                .execute("UPDATE campaign SET doing = 'begin', total = done + ? WHERE id = ?", values![missing, id])
+                .await?;
             transaction.commit().await?;
-            self.member().house.0.bell.strike();
+            self.hurry(id).await?;
             return Err(Problem::conflict(
                 format!("{missing} submissions came in meanwhile, and are graded now"),
                 "look at them, and apply then",
             ));
         }
-        if regrade.left > 0 {
-            return Err(Problem::conflict(format!("{} submissions are not graded yet", regrade.left), "wait"));
+        let waiting = row.int("waiting")?;
+        if waiting > 0 {
+            return Err(Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"));
         }
-        let results = transaction
-            .rows(
-                "SELECT id, submission FROM result WHERE campaign = ? AND code <> ? ORDER BY id",
-                values![id, JUDGE_ERROR],
+        // From now on submissions are graded by these settings; the grades of others change one after the other.
+        transaction
+            .execute("UPDATE assignment SET settings = ? WHERE id = ?", values![row.text("settings")?, assignment.id])
+            .await?;
+        transaction
+            .execute(
+                "UPDATE campaign SET doing = 'apply', decided_by = ?, cursor = 0, done = 0,
+                    total = (SELECT count(*) FROM result WHERE campaign = ?) WHERE id = ?",
+                values![self.member().account.id, id, id],
             )
             .await?;
-        for row in &results {
-            let change = GradeChange {
-                submission: row.int("submission")?,
-                result: row.int("id")?,
-                by: Some(self.member().account.id),
-                campaign: Some(id),
-                reason: &regrade.reason,
-            };
-            ledger::set_grade(&mut transaction, &change).await?;
-        }
-        for change in &regrade.changes {
-            let mut deed = self.deed("grade changed", Some(newly.id), &regrade.reason);
-            deed.submission = Some(change.submission);
-            view::note(&mut transaction, &deed).await?;
-        }
-        transaction
-            .execute("UPDATE assignment SET settings = ? WHERE id = ?", values![newly.settings.text(), newly.id])
-            .await?;
-        self.decide(&mut transaction, &newly, id, "applied").await?;
         transaction.commit().await?;
-        self.member().house.0.bell.strike();
-        self.show_regrade(slug, id).await
+        self.hurry(id).await?;
+        self.show_regrade(slug, id, None).await
     }
 
     /// Gives a regrade up: its waiting jobs are cancelled, and nothing changes.
@@ -203,81 +234,36 @@ impl Staff {
         self.lock_open(&mut transaction, &assignment, id).await?;
         transaction
             .execute(
-                "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
-                 WHERE campaign = ? AND state IN ('waiting', 'running')",
-                values![id],
+                "UPDATE campaign SET state = 'discarded', decided_by = ?, decided_at = {now}, doing = 'discard'
+                 WHERE id = ?",
+                values![self.member().account.id, id],
             )
             .await?;
-        self.decide(&mut transaction, &assignment, id, "discarded").await?;
+        let text = format!("regrade {id} discarded");
+        view::note(&mut transaction, &self.deed("regrade", Some(assignment.id), &text)).await?;
         transaction.commit().await?;
-        self.show_regrade(slug, id).await
+        self.hurry(id).await?;
+        self.show_regrade(slug, id, None).await
     }
 
     async fn lock_open(&self, transaction: &mut Transaction, assignment: &Assignment, id: i64) -> Result<(), Problem> {
         let row = transaction
-            .row("SELECT state FROM campaign WHERE id = ? AND assignment = ? {for update}", values![id, assignment.id])
+            .row(
+                "SELECT state, doing FROM campaign WHERE id = ? AND assignment = ? {for update}",
+                values![id, assignment.id],
+            )
             .await?;
+        if let Some(row) = &row
+            && row.maybe_text("doing")?.as_deref() == Some("apply")
+        {
+            return Err(Problem::conflict("this regrade is being applied", "wait until it is"));
+        }
         match row.map(|row| row.text("state")).transpose()?.as_deref() {
             None => Err(Problem::not_found("regrade")),
             Some("open") => Ok(()),
             Some(state) => Err(Problem::conflict(format!("this regrade is {state}"), "begin a new one")),
         }
     }
-
-    async fn decide(
-        &self,
-        transaction: &mut Transaction,
-        assignment: &Assignment,
-        id: i64,
-        state: &'static str,
-    ) -> Result<(), DbError> {
-        transaction
-            .execute(
-                "UPDATE campaign SET state = ?, decided_by = ?, decided_at = {now} WHERE id = ?",
-                values![state, self.member().account.id, id],
-            )
-            .await?;
-        let text = format!("regrade {id} {state}");
-        view::note(transaction, &self.deed("regrade", Some(assignment.id), &text)).await
-    }
-}
-
-/// Enqueues the submissions that the regrade does not know yet, and says how many these are.
-async fn enqueue_missing(transaction: &mut Transaction, campaign: i64, newly: &Assignment) -> Result<usize, Problem> {
-    let rows = transaction
-        .rows(
-            "SELECT id, form, file_name, digest, size FROM submission
-             WHERE assignment = ? AND removed_at IS NULL
-                AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.campaign = ?)
-             ORDER BY id",
-            values![newly.id, campaign],
-        )
-        .await?;
-    for row in &rows {
-        let payload = serde_json::to_string(&submit::task(newly, read_input(row)?)).map_err(|_| Problem::fault())?;
-        let job = NewJob {
-            lane: Lane::Grading,
-            submission: Some(row.int("id")?),
-            campaign: Some(campaign),
-            turn: Turn::Campaign(campaign),
-            payload: &payload,
-        };
-        queue::enqueue(transaction, &job).await?;
-    }
-    Ok(rows.len())
-}
-
-fn read_input(row: &Row) -> Result<Input, DbError> {
-    let wrong = |what: &str| DbError::Other(format!("a submission's {what} is none"));
-    let form = match row.text("form")?.as_str() {
-        "program" => Form::Program,
-        "sources" => Form::Sources,
-        "traces" => Form::Traces,
-        _ => return Err(wrong("form")),
-    };
-    let digest = row.text("digest")?.parse().map_err(|_| wrong("digest"))?;
-    let size = u64::try_from(row.int("size")?).map_err(|_| wrong("size"))?;
-    Ok(Input { form, name: row.text("file_name")?, artefact: crate::store::Artefact { digest, size } })
 }
 
 fn read_regrade(row: &Row) -> Result<Regrade, Problem> {
@@ -295,15 +281,43 @@ fn read_regrade(row: &Row) -> Result<Regrade, Problem> {
         submissions: 0,
         left: 0,
         failed: 0,
+        doing: row.maybe_text("doing")?.map(|what| doing(row, what)).transpose()?,
+        changed: 0,
         changes: Vec::new(),
+        next: None,
     })
 }
 
-async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64) -> Result<Regrade, Problem> {
+fn doing(row: &Row, what: String) -> Result<Doing, DbError> {
+    Ok(Doing { what, done: row.int("done")?, total: row.int("total")? })
+}
+
+/// The jobs of a regrade whose results differ from what counts, or counted before it was applied.
+macro_rules! changes {
+    ($columns:literal, $rest:literal) => {
+        concat!(
+            "SELECT ",
+            $columns,
+            " FROM job
+             JOIN submission ON submission.id = job.submission
+             JOIN account ON account.id = submission.account
+             JOIN result AS new ON new.job = job.id
+             LEFT JOIN grade ON grade.submission = submission.id
+             LEFT JOIN grade_change ON grade_change.submission = submission.id AND grade_change.campaign = job.campaign
+             LEFT JOIN result AS old ON old.id =
+                CASE WHEN grade_change.id IS NULL THEN grade.result ELSE grade_change.old_result END
+             WHERE job.campaign = ? AND new.code <> 'JE' AND (old.id IS NULL OR old.code <> new.code
+                OR coalesce(old.points, '') <> coalesce(new.points, '')) ",
+            $rest
+        )
+    };
+}
+
+async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, after: i64) -> Result<Regrade, Problem> {
     let row = transaction
         .row(
             "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
-                account.login
+                campaign.doing, campaign.done, campaign.total, account.login
              FROM campaign JOIN account ON account.id = campaign.started_by
              WHERE campaign.id = ? AND campaign.assignment = ?",
             values![id, assignment.id],
@@ -311,49 +325,50 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64) -
         .await?;
     let Some(row) = row else { return Err(Problem::not_found("regrade")) };
     let mut regrade = read_regrade(&row)?;
-    // What a regrade replaced: the grade before it where it was applied, and the one that counts otherwise.
-    let rows = transaction
-        .rows(
-            "SELECT job.state, job.submission, account.login, new.code AS new_code, new.points AS new_points,
-                new.summary AS new_summary, new.version AS new_version, new.task AS new_task, old.code AS old_code,
-                old.points AS old_points, old.summary AS old_summary, old.version AS old_version, old.task AS old_task
-             FROM job
-             JOIN submission ON submission.id = job.submission
-             JOIN account ON account.id = submission.account
-             LEFT JOIN result AS new ON new.job = job.id
-             LEFT JOIN grade ON grade.submission = submission.id
-             LEFT JOIN grade_change ON grade_change.submission = submission.id AND grade_change.campaign = job.campaign
-             LEFT JOIN result AS old ON old.id =
-                CASE WHEN grade_change.id IS NULL THEN grade.result ELSE grade_change.old_result END
-             WHERE job.campaign = ? ORDER BY job.id",
+    let count = |number: i64| usize::try_from(number).unwrap_or(0);
+    let jobs = transaction
+        .one(
+            "SELECT count(*) AS n, count(CASE WHEN state IN ('waiting', 'running') THEN 1 END) AS waiting
+             FROM job WHERE campaign = ?",
             values![id],
         )
         .await?;
+    let failed = transaction
+        .one("SELECT count(*) AS n FROM result WHERE campaign = ? AND code = ?", values![id, JUDGE_ERROR])
+        .await?;
+    let coming = regrade.doing.as_ref().filter(|doing| doing.what == "begin");
+    let coming = coming.map_or(0, |doing| count(doing.total - doing.done));
+    regrade.submissions = count(jobs.int("n")?) + coming;
+    regrade.left = count(jobs.int("waiting")?) + coming;
+    regrade.failed = count(failed.int("n")?);
+    regrade.changed = count(transaction.one(changes!("count(*) AS n", ""), values![id]).await?.int("n")?);
+    let rows = transaction
+        .rows(
+            changes!(
+                "job.submission, account.login, new.code AS new_code, new.points AS new_points,
+                    new.summary AS new_summary, new.version AS new_version, new.task AS new_task,
+                    old.code AS old_code, old.points AS old_points, old.summary AS old_summary,
+                    old.version AS old_version, old.task AS old_task",
+                "AND job.submission > ? ORDER BY job.submission LIMIT ?"
+            ),
+            values![id, after, CHANGES],
+        )
+        .await?;
     for row in &rows {
-        regrade.submissions += 1;
-        if matches!(row.text("state")?.as_str(), "waiting" | "running") {
-            regrade.left += 1;
-        }
-        let Some(new_code) = row.maybe_text("new_code")? else { continue };
-        if new_code == JUDGE_ERROR {
-            regrade.failed += 1;
-            continue;
-        }
-        let change = Change {
+        regrade.changes.push(Change {
             submission: row.int("submission")?,
             login: row.text("login")?,
             old_code: row.maybe_text("old_code")?,
             old_points: row.maybe_text("old_points")?,
             old_summary: row.maybe_text("old_summary")?,
-            new_code,
+            new_code: row.text("new_code")?,
             new_points: row.maybe_text("new_points")?,
             new_summary: row.text("new_summary")?,
             why: why(row)?,
-        };
-        if (change.old_code.as_ref(), &change.old_points) != (Some(&change.new_code), &change.new_points) {
-            regrade.changes.push(change);
-        }
+        });
     }
+    let is_full = i64::try_from(rows.len()).is_ok_and(|rows| rows == CHANGES);
+    regrade.next = regrade.changes.last().filter(|_| is_full).map(|change| change.submission);
     Ok(regrade)
 }
 

@@ -16,6 +16,7 @@ use utoipa::ToSchema;
 /// A worker with a token.
 pub struct Remote {
     house: House,
+    token: i64,
     worker: String,
 }
 
@@ -48,9 +49,9 @@ impl From<DeskError> for Problem {
 }
 
 impl Remote {
-    pub(super) fn new(house: House, token: &str, name: &str) -> Self {
+    pub(super) fn new(house: House, id: i64, token: &str, name: &str) -> Self {
         let plain: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || "-_.".contains(*c)).take(80).collect();
-        Self { house, worker: format!("{token}/{plain}") }
+        Self { house, token: id, worker: format!("{token}/{plain}") }
     }
 
     fn desk(&self) -> LocalDesk {
@@ -62,6 +63,16 @@ impl Remote {
             parts.policy,
             self.worker.clone(),
         )
+        .with_token(self.token)
+    }
+
+    /// Whether a lease was given to this token: another's counts for nothing.
+    async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
+        let row = transaction
+            .row("SELECT token FROM job WHERE id = ? AND attempt = ?", values![lease.job, lease.attempt])
+            .await?;
+        Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
     }
 
     /// The house.
@@ -76,12 +87,12 @@ impl Remote {
         u64::try_from(self.house.0.policy.tick_every().as_millis()).unwrap_or(u64::MAX)
     }
 
-    /// The next job, if there is one.
+    /// The next job, if there is one; one that must run alone only for a worker that is idle.
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn claim(&self) -> Result<Option<Claimed>, Problem> {
-        let job = self.desk().claim().await?;
+    pub async fn claim(&self, is_idle: bool) -> Result<Option<Claimed>, Problem> {
+        let job = self.desk().claim(is_idle).await?;
         Ok(job.map(|job| Claimed {
             lease: job.lease,
             renew_every: u64::try_from(job.renew_every.as_millis()).unwrap_or(u64::MAX),
@@ -90,12 +101,13 @@ impl Remote {
         }))
     }
 
-    /// Says that it is alive, with so many slots.
+    /// Says that it is alive, with so many slots, or why it can't grade.
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn tick(&self, slots: usize) -> Result<(), Problem> {
-        Ok(self.desk().tick(slots.min(10_000)).await?)
+    pub async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), Problem> {
+        let fault = fault.map(|fault| plain(fault, 2000));
+        Ok(self.desk().tick(slots.min(MANY_SLOTS), fault.as_deref()).await?)
     }
 
     /// Extends a lease.
@@ -103,7 +115,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn renew(&self, lease: &Lease) -> Result<bool, Problem> {
-        Ok(self.desk().renew(lease).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.desk().renew(lease).await? == Answer::Held)
     }
 
     /// Gives a job back.
@@ -111,7 +123,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn release(&self, lease: &Lease) -> Result<bool, Problem> {
-        Ok(self.desk().release(lease).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.desk().release(lease).await? == Answer::Held)
     }
 
     /// Says that a try came to nothing.
@@ -119,7 +131,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn fail(&self, lease: &Lease, fault: &str) -> Result<bool, Problem> {
-        Ok(self.desk().fail(lease, &plain(fault, 2000)).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.desk().fail(lease, &plain(fault, 2000)).await? == Answer::Held)
     }
 
     /// Brings a result. It is looked at as what a stranger says: of files it may name those that it stored for this
@@ -128,6 +140,9 @@ impl Remote {
     /// # Errors
     /// When it makes no sense.
     pub async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<bool, Problem> {
+        if !self.owns(lease).await? {
+            return Ok(false);
+        }
         let outcome = self.checked(lease, outcome).await?;
         Ok(self.desk().finish(lease, &outcome).await? == Answer::Held)
     }
@@ -144,6 +159,12 @@ impl Remote {
             if !is_number {
                 return Err(Problem::invalid("points and seconds are numbers"));
             }
+        }
+        let value = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
+        if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MOST_POINTS))
+            && !(0.0..=most.min(MOST_POINTS)).contains(&points)
+        {
+            return Err(Problem::invalid("points lie between 0 and the most that could be had"));
         }
         let mut outcome = outcome.clone();
         outcome.verdict = plain(&outcome.verdict, 200);
@@ -189,8 +210,9 @@ impl Remote {
         let mut transaction = self.house.0.database.read().await?;
         let row = transaction
             .row(
-                "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'",
-                values![lease.job, lease.attempt, &lease.key],
+                "SELECT payload FROM job
+                 WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?",
+                values![lease.job, lease.attempt, &lease.key, self.token],
             )
             .await?;
         let Some(row) = row else { return Err(Problem::not_found("job of yours")) };
@@ -238,6 +260,10 @@ impl Remote {
         self.held(lease).await.map(|_| MAX_FILE)
     }
 }
+
+/// More points than any suite has, and slots than any machine.
+const MOST_POINTS: f64 = 1e9;
+const MANY_SLOTS: usize = 256;
 
 /// A submission that is nearly right is wrong in fewer scenes.
 const MANY_SCENES: usize = 1000;

@@ -217,6 +217,6 @@ impl FromRequestParts<House> for Remote {
         let Some(row) = row else { return Err(Problem::unknown_secret("worker token")) };
         parts.extensions.insert(SignedIn);
         let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
-        Ok(Self::new(house.clone(), &row.text("name")?, name))
+        Ok(Self::new(house.clone(), row.int("id")?, &row.text("name")?, name))
     }
 }

@@ -1,6 +1,6 @@
 //! The staff of a course.
 use super::{
-    Member, Settings, identity,
+    Member, Settings, bulk, identity,
     view::{self, Assignment, Deed, Event, Queue, Submission},
 };
 use crate::{
@@ -76,6 +76,8 @@ impl Staff {
             )
             .await?;
         let assignment = view::read_assignment(&row)?;
+        // What waits because nothing could be graded is tried by the new settings.
+        bulk::resume(&mut transaction, &assignment).await?;
         let text = format!("{slug} ({title}), {}: {}", if visible { "visible" } else { "hidden" }, settings.text());
         view::note(&mut transaction, &self.deed("assignment", Some(assignment.id), &text)).await?;
         transaction.commit().await?;

@@ -149,7 +149,7 @@ impl Member {
         let row = transaction
             .one(
                 "SELECT {now} AS now, count(*) AS n,
-                    count(CASE WHEN submission.created_at > {now} - ? THEN 1 END) AS recent
+                    count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END) AS recent
                  FROM submission
                  LEFT JOIN grade ON grade.submission = submission.id
                  LEFT JOIN result ON result.id = grade.result

@@ -2,6 +2,7 @@
 use super::{House, Settings};
 use crate::{
     db::{DbError, Row, Transaction, Value},
+    health,
     problem::Problem,
     queue::{self, Lane},
     shown::Shown,
@@ -88,6 +89,12 @@ pub struct Submission {
     pub is_withheld: bool,
     #[serde(skip)]
     pub(super) is_published: bool,
+    /// Whether it waits for staff: nothing can be graded by its suite.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub is_paused: bool,
+    /// Why the grader failed on it last; for staff.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<String>,
     #[serde(skip)]
     job: Option<i64>,
     #[serde(skip)]
@@ -195,6 +202,8 @@ pub struct Queue {
     pub running: i64,
     /// Jobs that were given up, of which somebody should know.
     pub buried: i64,
+    /// Jobs of assignments that wait for staff.
+    pub paused: i64,
     /// Workers that were seen lately.
     pub workers: Vec<QueueWorker>,
 }
@@ -212,6 +221,17 @@ pub struct QueueWorker {
     pub running: i64,
     /// When it was last seen, in milliseconds since 1970.
     pub seen_at: i64,
+    /// Since when it takes no jobs because it can't grade.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub aside_since: Option<i64>,
+    /// How often something went wrong with it.
+    pub faults: i64,
+    /// What went wrong last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<String>,
+    /// When that was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault_at: Option<i64>,
 }
 
 /// The columns of submissions; what follows says which.
@@ -220,7 +240,8 @@ macro_rules! submissions {
         concat!(
             "SELECT submission.id, submission.number, submission.form, submission.file_name, submission.digest,
                 submission.size, submission.created_at, submission.removed_at, submission.account, assignment.slug AS assignment,
-                assignment.title, assignment.published_at, account.login, account.name, job.id AS job, job.state, grade.result, result.verdict,
+                assignment.title, assignment.published_at, account.login, account.name, job.id AS job, job.state,
+                job.lane, job.last_fault, grade.result, result.verdict,
                 result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
                 result.grader, result.essence, result.shown, result.created_at AS graded_at,
                 mark.points AS mark_points, mark.comment, mark.marked_at, mark.request, mark.requested_at,
@@ -228,7 +249,7 @@ macro_rules! submissions {
              FROM submission
              JOIN assignment ON assignment.id = submission.assignment
              JOIN account ON account.id = submission.account
-             LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL
+             LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL AND job.replaced = 0
              LEFT JOIN grade ON grade.submission = submission.id
              LEFT JOIN result ON result.id = grade.result
              LEFT JOIN mark ON mark.submission = submission.id
@@ -292,6 +313,8 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
         grade,
         is_withheld: false,
         is_published: row.maybe_int("published_at")?.is_some(),
+        is_paused: row.maybe_text("lane")?.as_deref() == Some("paused"),
+        fault: row.maybe_text("last_fault")?,
         job: row.maybe_int("job")?,
         account: row.int("account")?,
         mark,
@@ -351,7 +374,7 @@ pub(super) async fn submission(
     let statement = submissions!("submission.id = ? AND assignment.course = ?");
     let found = read_all(transaction, statement, values![id, course]).await?.into_iter().next();
     let Some(mut submission) = found else { return Ok(None) };
-    if let Some(job) = submission.job
+    if let Some(job) = submission.job.filter(|_| !submission.is_paused)
         && let Some(place) = queue::place(transaction, &house.0.policy, Lane::Grading, job).await?
     {
         submission.ahead = Some(place.ahead);
@@ -490,23 +513,25 @@ pub(super) async fn note(transaction: &mut Transaction, deed: &Deed<'_>) -> Resu
 
 /// The queue as everybody of the staff may see it.
 pub(super) async fn queue(transaction: &mut Transaction, house: &House) -> Result<Queue, DbError> {
+    // Each by its index: of all jobs few are one of these.
     let counts = transaction
         .one(
-            "SELECT count(CASE WHEN state = 'waiting' AND campaign IS NULL THEN 1 END) AS waiting,
-                count(CASE WHEN state = 'waiting' AND campaign IS NOT NULL THEN 1 END) AS regrades,
-                count(CASE WHEN state = 'running' THEN 1 END) AS running,
-                count(CASE WHEN state = 'buried' THEN 1 END) AS buried
-             FROM job WHERE lane = ?",
-            values![Lane::Grading.name()],
+            "SELECT
+                (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting' AND campaign IS NULL) AS waiting,
+                (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,
+                (SELECT count(*) FROM job WHERE lane = 'paused' AND state = 'waiting') AS paused,
+                (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,
+                (SELECT count(*) FROM job WHERE lane = ? AND state = 'buried' AND replaced = 0) AS buried",
+            values![Lane::Grading.name(), Lane::Grading.name(), Lane::Grading.name(), Lane::Grading.name()],
         )
         .await?;
-    let recent = i64::try_from(2 * house.0.policy.lease.as_millis()).unwrap_or(i64::MAX);
+    let recent = health::recent(&house.0.policy);
     let rows = transaction
         .rows(
-            "SELECT name, version, slots, seen_at,
+            "SELECT name, version, slots, seen_at, aside_since, faults, fault, fault_at,
                 (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
-             FROM worker WHERE seen_at > {now} - ? ORDER BY name",
-            values![recent],
+             FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ? ORDER BY name LIMIT 1000",
+            values![recent, recent],
         )
         .await?;
     let read = |row: &Row| {
@@ -516,6 +541,10 @@ pub(super) async fn queue(transaction: &mut Transaction, house: &House) -> Resul
             slots: row.int("slots")?,
             running: row.int("running")?,
             seen_at: row.int("seen_at")?,
+            aside_since: row.maybe_int("aside_since")?,
+            faults: row.int("faults")?,
+            fault: row.maybe_text("fault")?,
+            fault_at: row.maybe_int("fault_at")?,
         })
     };
     Ok(Queue {
@@ -523,6 +552,7 @@ pub(super) async fn queue(transaction: &mut Transaction, house: &House) -> Resul
         regrades: counts.int("regrades")?,
         running: counts.int("running")?,
         buried: counts.int("buried")?,
+        paused: counts.int("paused")?,
         workers: rows.iter().map(read).collect::<Result<_, DbError>>()?,
     })
 }

@@ -3,7 +3,7 @@ use super::{
     House, Session,
     identity::{self, Way},
 };
-use crate::{db, problem::Problem, queue::Lane, values};
+use crate::{db, problem::Problem};
 use std::net::IpAddr;
 
 /// Somebody who need not be signed in.
@@ -27,6 +27,10 @@ pub struct Metrics {
     pub workers: i64,
     /// Their slots.
     pub slots: i64,
+    /// Workers that take no jobs, because they can't grade.
+    pub aside: i64,
+    /// Jobs of assignments by whose suite nothing can be graded; they wait for staff.
+    pub paused: i64,
     /// Events by kind, of those kinds that somebody should look at.
     pub events: Vec<(String, i64)>,
     /// Submissions in all.
@@ -128,45 +132,6 @@ impl Visitor {
     /// # Errors
     /// When the database does not answer.
     pub async fn metrics(&self) -> Result<Metrics, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
-        let mut metrics = Metrics::default();
-        for row in
-            transaction.rows("SELECT lane, state, count(*) AS n FROM job GROUP BY lane, state", values![]).await?
-        {
-            let (state, count) = (row.text("state")?, row.int("n")?);
-            let lane = if row.text("lane")? == Lane::Grading.name() { &mut metrics.jobs } else { &mut metrics.scores };
-            lane.push((state, count));
-        }
-        let row = transaction
-            .one(
-                "SELECT coalesce({now} - min(enqueued_at), 0) AS oldest FROM job
-                 WHERE lane = ? AND state = 'waiting' AND campaign IS NULL",
-                values![Lane::Grading.name()],
-            )
-            .await?;
-        metrics.oldest = row.int("oldest")?;
-        let recent = i64::try_from(2 * self.house.0.policy.lease.as_millis()).unwrap_or(i64::MAX);
-        let row = transaction
-            .one(
-                "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
-                 WHERE seen_at > {now} - ?",
-                values![recent],
-            )
-            .await?;
-        (metrics.workers, metrics.slots) = (row.int("n")?, row.int("slots")?);
-        let events = transaction
-            .rows(
-                "SELECT kind, count(*) AS n FROM event WHERE kind IN ('late answer', 'failed try', 'buried', 'graded')
-                 GROUP BY kind",
-                values![],
-            )
-            .await?;
-        for row in events {
-            metrics.events.push((row.text("kind")?, row.int("n")?));
-        }
-        metrics.submissions = transaction.one("SELECT count(*) AS n FROM submission", values![]).await?.int("n")?;
-        metrics.suspicions =
-            transaction.one("SELECT count(*) AS n FROM suspicion WHERE state = 'open'", values![]).await?.int("n")?;
-        Ok(metrics)
+        Ok(self.house.0.counts.of(&self.house.0.database, &self.house.0.policy).await?)
     }
 }

@@ -6,7 +6,7 @@ use super::{
     worker::{Local, grader, policy},
 };
 use crate::{
-    access::{House, Limits, Parts, Passwords, Suites, Throttle},
+    access::{self, Counts, House, Limits, Parts, Passwords, Suites, Throttle},
     db::{self, Address, Database},
     instruments::Instruments,
     lti::{self, Lti, PlatformWish},
@@ -51,7 +51,8 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let store = folders.store(&arguments.place)?;
     clear_incoming(&folders.incoming())?;
     let bell = Bell::default();
-    tokio::spawn(bell.clone().listen(database.clone()));
+    tokio::spawn(bell.clone().listen(database.clone(), arguments.place.database_direct.clone()));
+    tokio::spawn(access::work_on_regrades(database.clone(), bell.clone(), stop.clone()));
     let listener = tokio::net::TcpListener::bind(arguments.listen)
         .await
         .with_context(|| format!("cannot listen on {}", arguments.listen))?;
@@ -66,6 +67,8 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         bell: bell.clone(),
         policy,
         suites: suites(arguments.work.grader.as_deref()).await,
+        grader: grader(arguments.work.grader.as_deref()).ok(),
+        counts: Counts::default(),
         storage: Storage::new(database.clone(), store.clone(), folders.incoming(), arguments.low_water * MIB),
         instruments: Instruments::new()?,
         incoming: folders.incoming(),
@@ -237,6 +240,8 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
         policy: crate::queue::Policy::default(),
         suites: Suites::default(),
         instruments: Instruments::new()?,
+        grader: None,
+        counts: Counts::default(),
         incoming: folders.incoming(),
         public: arguments.public_url.clone(),
         patience: Duration::from_secs(30),

@@ -10,9 +10,9 @@ use crate::{
     queue::{Bell, Policy},
     secret,
     store::Store,
-    worker::{self, Desk, Liveness, LocalDesk, Options, Program, RemoteDesk},
+    worker::{self, Desk, DeskError, Liveness, LocalDesk, Options, Program, RemoteDesk},
 };
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use std::{
     num::NonZeroUsize,
     path::{Path, PathBuf},
@@ -38,7 +38,7 @@ pub(super) async fn run(arguments: &Worker) -> Result<()> {
     }
     let store = folders.store(&arguments.place)?;
     let bell = Bell::default();
-    tokio::spawn(bell.clone().listen(database.clone()));
+    tokio::spawn(bell.clone().listen(database.clone(), arguments.place.database_direct.clone()));
     let local = Local {
         folders,
         database: database.clone(),
@@ -74,7 +74,9 @@ async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: Can
         worker::forget(&folders.remote_workers(), &dead);
     }
     let desk = RemoteDesk::new(server, token, &name);
-    desk.tick(slots(arguments.slots)).await.map_err(|error| anyhow!("{server}: {error}"))?;
+    if !greet(&desk, server, &stop).await? {
+        return Ok(());
+    }
     let folder = folders.work(&name);
     heartbeat::ready();
     // A worker whose server is away is well: it goes on trying, and has what it holds.
@@ -86,6 +88,23 @@ async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: Can
     drop(alive);
     tracing::info!(worker = name, "stopped");
     Ok(())
+}
+
+/// Says hello to a server, as often as it takes: one that is away may come back. False when the worker is to stop.
+async fn greet(desk: &RemoteDesk, server: &str, stop: &CancellationToken) -> Result<bool> {
+    let mut wait = Duration::from_secs(1);
+    loop {
+        match desk.tick(0, None).await {
+            Ok(()) => return Ok(true),
+            Err(DeskError::Refused(error)) => bail!("{server}: {error}"),
+            Err(error) => tracing::warn!(%error, server, "the server does not answer yet"),
+        }
+        tokio::select! {
+            () = tokio::time::sleep(wait) => {}
+            () = stop.cancelled() => return Ok(false),
+        }
+        wait = (wait * 2).min(Duration::from_secs(30));
+    }
 }
 
 /// Two workers of one name are two workers: what tells them apart comes from the process.

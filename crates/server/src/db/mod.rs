@@ -8,6 +8,7 @@
 mod address;
 mod fault;
 mod migrate;
+mod pooler;
 mod statement;
 mod transaction;
 mod value;
@@ -15,6 +16,7 @@ mod value;
 pub use address::Address;
 pub use fault::DbError;
 pub use migrate::{LATEST, MigrateError, changes_after, migrate, version};
+pub(crate) use pooler::is_pooled;
 pub use transaction::Transaction;
 pub use value::{Row, Value};
 
@@ -46,6 +48,16 @@ const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s
 /// counts as open for ever and could begin no other; the pool closes it and opens a new one.
 fn has_ended(connection: &impl Connection) -> bool {
     !connection.is_in_transaction()
+}
+
+/// How to reach a PostgreSQL. A pooler refuses start-up settings that it does not know.
+pub(crate) fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
+    let options: PgConnectOptions = url.parse().map_err(DbError::from)?;
+    Ok(options
+        .extra_float_digits(None)
+        .statement_cache_capacity(0)
+        .application_name("fosssim-server")
+        .disable_statement_logging())
 }
 
 /// An open database. Cloning it is cheap and shares the connections.
@@ -126,13 +138,7 @@ impl Database {
                 Engine::Sqlite { writer, readers: pool(4).connect_lazy_with(options) }
             }
             Address::Postgres(url) => {
-                let options: PgConnectOptions = url.parse().map_err(DbError::from)?;
-                // A pooler refuses start-up settings that it does not know.
-                let options = options
-                    .extra_float_digits(None)
-                    .statement_cache_capacity(0)
-                    .application_name("fosssim-server")
-                    .disable_statement_logging();
+                let options = postgres_options(url)?;
                 let pool = PgPoolOptions::new()
                     .before_acquire(|connection, _| Box::pin(std::future::ready(Ok(has_ended(connection)))))
                     .max_connections(CONNECTIONS)

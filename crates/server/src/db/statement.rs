@@ -22,10 +22,10 @@ pub(super) fn parts(script: &str, dialect: Dialect) -> String {
 
 /// The statement as the engine wants it: `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
 /// definitions, `{each}` are the rows of a JSON array that is a value, `wanted.value`, `{strpos}` tells where a text
-/// stands in another, and PostgreSQL counts its placeholders. Statements hold no braces and no question marks of their own:
-/// values never stand in a statement's text.
+/// stands in another, `{quoted}` makes JSON of a text, and PostgreSQL counts its placeholders. Statements hold no braces
+/// and no question marks of their own: values never stand in a statement's text.
 pub(super) fn text(statement: &str, dialect: Dialect) -> String {
-    let words: [(&str, &str); 10] = match dialect {
+    let words: [(&str, &str); 11] = match dialect {
         Dialect::Sqlite => [
             ("{now}", "CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER)"),
             ("{int}", "INTEGER"),
@@ -38,6 +38,7 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{each}", "json_each(?) AS wanted"),
             ("{strpos}", "instr"),
             ("{for removal}", ""),
+            ("{quoted}", "json_quote"),
         ],
         Dialect::Postgres => [
             // Not now(), which stands still within a transaction: a lease counts from when it is given.
@@ -55,6 +56,7 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{strpos}", "strpos"),
             // Rows that refer to it can't be written meanwhile either.
             ("{for removal}", "FOR UPDATE"),
+            ("{quoted}", "to_json"),
         ],
     };
     let mut text = statement.to_owned();

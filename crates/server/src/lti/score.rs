@@ -46,6 +46,32 @@ pub(crate) async fn changed(transaction: &mut Transaction, submission: i64) -> R
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
+/// The same for results of a regrade that begin to count: those after one, up to another.
+pub(crate) async fn changed_by(
+    transaction: &mut Transaction,
+    campaign: i64,
+    after: i64,
+    last: i64,
+) -> Result<(), DbError> {
+    let rows = transaction
+        .rows(
+            "SELECT DISTINCT platform_link.id AS link, submission.account FROM result
+             JOIN submission ON submission.id = result.submission
+             JOIN assignment ON assignment.id = submission.assignment
+             JOIN member ON member.course = assignment.course AND member.account = submission.account
+                AND member.role = 'student'
+             JOIN platform_link ON platform_link.assignment = submission.assignment
+             JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
+                AND platform_member.account = submission.account
+             WHERE result.campaign = ? AND result.id > ? AND result.id <= ?
+                AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
+             ORDER BY platform_link.id, submission.account",
+            values![campaign, after, last],
+        )
+        .await?;
+    enqueue(transaction, &rows, false).await.map(drop)
+}
+
 /// Has all scores of an assignment sent, with `again` also those that platforms know; how many these are.
 pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, again: bool) -> Result<usize, DbError> {
     let rows = transaction
@@ -185,7 +211,7 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
             "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown, mark.points AS mark FROM submission
              LEFT JOIN mark ON mark.submission = submission.id
              JOIN assignment ON assignment.id = submission.assignment
-             LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL
+             LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL AND job.replaced = 0
              LEFT JOIN grade ON grade.submission = submission.id
              LEFT JOIN result ON result.id = grade.result
              WHERE submission.assignment = ? AND submission.account = ? ORDER BY submission.id",
@@ -292,8 +318,9 @@ pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i6
     let mine = transaction
         .execute(
             "UPDATE platform_link SET making_until = {now} + ?
-             WHERE id = ? AND line_item IS NULL AND coalesce(making_until, 0) < {now}",
-            values![at_most, link],
+             WHERE id = ? AND line_item IS NULL
+                AND (coalesce(making_until, 0) < {now} OR making_until > {now} + ?)",
+            values![at_most, link, at_most],
         )
         .await?;
     if mine > 0 {

@@ -8,7 +8,7 @@ use crate::{
     calendar,
     db::{Database, DbError},
     ledger,
-    queue::{self, Bell, Claim, Completion, Failure, Lane, Policy},
+    queue::{self, Bell, Claim, Claimant, Completion, Failure, Lane, Policy},
 };
 use serde::Deserialize;
 use serde_json::json;
@@ -29,6 +29,9 @@ const PATIENT: u32 = 32;
 /// One that refuses may have been set up wrongly, and mended soon.
 const REFUSED: u32 = 6;
 
+/// A message takes no longer.
+const MOST: Duration = Duration::from_secs(600);
+
 /// The longest wait between two tries.
 const LONGEST_WAIT: Duration = Duration::from_secs(3600);
 
@@ -39,7 +42,7 @@ const LOOKS: u32 = 100;
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 
 /// Who holds the jobs.
-const WORKER: &str = "scores";
+const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", is_idle: true, token: None };
 
 /// Sends scores until `stop` is cancelled. What was sent and not noted then is sent once more, and changes nothing.
 pub async fn run(database: Database, bell: Bell, policy: Policy, lti: Arc<Lti>, stop: CancellationToken) {
@@ -77,13 +80,13 @@ async fn take(
     room: &Arc<Semaphore>,
 ) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
     // A server without platforms never writes for them.
-    if !queue::is_due(&mut database.read().await?, Lane::Passback).await? {
+    if !queue::is_due(&mut database.read().await?, policy, Lane::Passback).await? {
         return Ok(None);
     }
     let place = room.clone().acquire_owned().await.map_err(|error| DbError::Other(error.to_string()))?;
     let mut transaction = database.begin().await?;
     ledger::tick(&mut transaction, policy).await?;
-    let claim = queue::claim(&mut transaction, policy, Lane::Passback, WORKER).await?;
+    let claim = queue::claim(&mut transaction, policy, Lane::Passback, CLAIMANT).await?;
     transaction.commit().await?;
     Ok(claim.map(|claim| (claim, place)))
 }
@@ -96,7 +99,7 @@ async fn work(database: &Database, policy: &Policy, lti: &Lti, claim: &Claim) ->
             sent = &mut sending => break sent,
             () = tokio::time::sleep(policy.renew_every()) => {
                 let mut transaction = database.begin().await?;
-                queue::renew(&mut transaction, policy, &claim.lease).await?;
+                queue::renew(&mut transaction, policy, &claim.lease, MOST).await?;
                 transaction.commit().await?;
             }
         }

@@ -1,7 +1,7 @@
 //! A bell that tells waiting workers to look at once. Only a convenience: nothing is told by it but that something may
 //! have changed, and whoever misses it looks again a little later anyway.
 use crate::{
-    db::{Database, DbError, Dialect, Transaction},
+    db::{Address, Database, DbError, Dialect, Transaction, is_pooled, postgres_options},
     values,
 };
 use sqlx::postgres::{PgConnectOptions, PgListener, PgPoolOptions};
@@ -48,19 +48,29 @@ impl Bell {
         Ear(self.strokes.subscribe())
     }
 
-    /// Passes PostgreSQL's bell on to this process, for ever; ends at once where there is none. Behind a pooler that
-    /// gives every transaction another connection nobody hears it: then polling has to do.
-    pub async fn listen(self, database: Database) {
-        let Some(options) = database.postgres_options().cloned() else { return };
+    /// Passes PostgreSQL's bell on to this process, for ever; ends at once where there is none. It listens where
+    /// `direct` says, or where the database is. Behind a pooler that gives every transaction another connection it
+    /// does not: the wish to be told would stay in a connection that others get next. Then polling has to do.
+    pub async fn listen(self, database: Database, direct: Option<Address>) {
+        let options = match direct {
+            Some(Address::Postgres(url)) => postgres_options(&url).ok(),
+            _ => database.postgres_options().cloned(),
+        };
+        let Some(options) = options else { return };
         loop {
-            if let Err(error) = self.listen_once(&options).await {
-                tracing::warn!(%error, "the database's bell is not heard, so workers look by the clock");
+            match self.listen_once(&options).await {
+                Ok(()) => return tracing::info!("behind a pooler workers look by the clock: --database-direct"),
+                Err(error) => tracing::warn!(%error, "the database's bell is not heard, so workers look by the clock"),
             }
             tokio::time::sleep(RECONNECT).await;
         }
     }
 
+    /// Ends well behind a pooler only.
     async fn listen_once(&self, options: &PgConnectOptions) -> Result<(), sqlx::Error> {
+        if is_pooled(options).await? {
+            return Ok(());
+        }
         let pool = PgPoolOptions::new().max_connections(1).connect_with(options.clone()).await?;
         let mut listener = PgListener::connect_with(&pool).await?;
         listener.listen(CHANNEL).await?;

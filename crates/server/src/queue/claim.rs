@@ -1,9 +1,21 @@
 //! Claiming.
-use super::{Claim, Lane, Lease, Policy, millis};
+use super::{Claim, Lane, Lease, Policy, SUSPECTED_AFTER, millis};
 use crate::{
     db::{DbError, Transaction},
     secret, values,
 };
+
+/// Who claims.
+#[derive(Debug, Clone, Copy)]
+pub struct Claimant<'a> {
+    /// What the worker is called.
+    pub worker: &'a str,
+    /// Whether it runs nothing else, and would run a suspected job alone. One that is busy leaves these to others,
+    /// until their turn has come all the same; then it has to wait until its other jobs have ended.
+    pub is_idle: bool,
+    /// The token that it came by, if any.
+    pub token: Option<i64>,
+}
 
 /// Claims the job whose turn it is, if there is one. A job on which this worker failed last is left to others for a
 /// third of a lease: the fault may be the worker's. Two workers never get the same: the row is locked, and passed over
@@ -15,14 +27,18 @@ pub async fn claim(
     transaction: &mut Transaction,
     policy: &Policy,
     lane: Lane,
-    worker: &str,
+    claimant: Claimant<'_>,
 ) -> Result<Option<Claim>, DbError> {
+    let Claimant { worker, is_idle, token } = claimant;
+    let bound = millis(lane.longest_wait(policy));
     let next = transaction
         .row(
-            "SELECT id FROM job WHERE lane = ? AND state = 'waiting' AND run_after <= {now}
-                AND (failed_by IS NULL OR failed_by <> ? OR run_after <= {now} - ?)
+            // Nothing waits longer than its bound: a time that lies further ahead is of a clock that was set back.
+            "SELECT id FROM job WHERE lane = ? AND state = 'waiting' AND (run_after > {now} + ? OR run_after <= {now}
+                AND (failed_by IS NULL OR failed_by <> ? OR run_after <= {now} - ?))
+                AND (? = 1 OR failures + deaths < ? OR rank <= {now})
              ORDER BY rank, id LIMIT 1 {skip locked}",
-            values![lane.name(), worker, millis(policy.lease / 3)],
+            values![lane.name(), bound, worker, millis(policy.lease / 3), is_idle, SUSPECTED_AFTER],
         )
         .await?;
     let Some(next) = next else { return Ok(None) };
@@ -31,9 +47,10 @@ pub async fn claim(
     let row = transaction
         .one(
             "UPDATE job SET state = 'running', attempt = attempt + 1, worker = ?, lease_key = ?,
-                lease_until = {now} + ?, started_at = {now}
-             WHERE id = ? RETURNING attempt, failures, submission, payload",
-            values![worker, &key, millis(policy.lease), job],
+                lease_until = {now} + ?, started_at = {now},
+                token = ?, is_alone = CASE WHEN failures + deaths >= ? THEN ? ELSE 0 END
+             WHERE id = ? RETURNING attempt, failures, deaths, submission, payload",
+            values![worker, &key, millis(policy.lease), token, SUSPECTED_AFTER, is_idle, job],
         )
         .await?;
     Ok(Some(Claim {
@@ -41,6 +58,7 @@ pub async fn claim(
         submission: row.maybe_int("submission")?,
         payload: row.text("payload")?,
         failures: row.int("failures")?,
+        deaths: row.int("deaths")?,
     }))
 }
 
@@ -49,13 +67,13 @@ pub async fn claim(
 ///
 /// # Errors
 /// What the database says.
-pub async fn is_due(transaction: &mut Transaction, lane: Lane) -> Result<bool, DbError> {
+pub async fn is_due(transaction: &mut Transaction, policy: &Policy, lane: Lane) -> Result<bool, DbError> {
     let row = transaction
         .row(
             "SELECT id FROM job WHERE lane = ? AND (
-                (state = 'waiting' AND run_after <= {now}) OR (state = 'running' AND lease_until < {now})
+                (state = 'waiting' AND (run_after <= {now} OR run_after > {now} + ?)) OR (state = 'running' AND lease_until < {now})
              ) LIMIT 1",
-            values![lane.name()],
+            values![lane.name(), millis(lane.longest_wait(policy))],
         )
         .await?;
     Ok(row.is_some())

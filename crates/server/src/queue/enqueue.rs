@@ -41,7 +41,27 @@ impl Turn {
         }
     }
 
-    fn key(self) -> String {
+    /// How much later a further job of the same owner comes, in milliseconds.
+    pub(crate) fn spacing_millis(self) -> i64 {
+        millis(self.spacing())
+    }
+
+    /// The rank of its next job.
+    pub(crate) async fn next(self, transaction: &mut Transaction) -> Result<i64, DbError> {
+        // Two uploads of one student at the same moment may get the same rank: then the number decides, and nobody is
+        // hurt.
+        let last = transaction
+            .one(
+                "SELECT max(rank) AS last, {now} AS now FROM job
+                 WHERE fair_key = ? AND state IN ('waiting', 'running')",
+                values![self.key()],
+            )
+            .await?;
+        let own = last.int("now")? + millis(self.delay());
+        Ok(last.maybe_int("last")?.map_or(own, |last| own.max(last + self.spacing_millis())))
+    }
+
+    pub(crate) fn key(self) -> String {
         match self {
             Self::Student(account) => format!("student {account}"),
             Self::Campaign(campaign) => format!("campaign {campaign}"),
@@ -72,18 +92,7 @@ pub struct NewJob<'a> {
 /// What the database says.
 pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<i64, DbError> {
     let key = job.turn.key();
-    // Two uploads of one student at the same moment may get the same rank: then the number decides, and nobody is hurt.
-    let last = transaction
-        .one(
-            "SELECT max(rank) AS last, {now} AS now FROM job WHERE fair_key = ? AND state IN ('waiting', 'running')",
-            values![&key],
-        )
-        .await?;
-    let own = last.int("now")? + millis(job.turn.delay());
-    let rank = match last.maybe_int("last")? {
-        Some(last) => own.max(last + millis(job.turn.spacing())),
-        None => own,
-    };
+    let rank = job.turn.next(transaction).await?;
     let row = transaction
         .one(
             "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)

@@ -1,7 +1,7 @@
 //! What the holder of a lease may say. Everything is fenced: it counts only while the job runs under this very lease.
-use super::{Lease, Policy, millis};
+use super::{A_DAY, Lease, Policy, SUSPECTED_AFTER, SUSPECTED_LATER, millis};
 use crate::{
-    db::{DbError, Transaction},
+    db::{DbError, Row, Transaction},
     values,
 };
 use std::time::Duration;
@@ -28,19 +28,38 @@ pub enum Failure {
     Late,
 }
 
-/// Extends a lease from now on; false when it was lost, and the work is for nothing.
+/// Extends a lease from now on, at most until a claim is so old; false when it was lost, and the work is for nothing.
 ///
 /// # Errors
 /// What the database says.
-pub async fn renew(transaction: &mut Transaction, policy: &Policy, lease: &Lease) -> Result<bool, DbError> {
+pub async fn renew(
+    transaction: &mut Transaction,
+    policy: &Policy,
+    lease: &Lease,
+    most: Duration,
+) -> Result<bool, DbError> {
     let changed = transaction
         .execute(
             "UPDATE job SET lease_until = {now} + ?
-             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'",
-            values![millis(policy.lease), lease.job, lease.attempt, &lease.key],
+             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND started_at >= {now} - ?",
+            values![millis(policy.lease), lease.job, lease.attempt, &lease.key, millis(most)],
         )
         .await?;
     Ok(changed > 0)
+}
+
+/// What the holder of a lease is to do; nothing when the lease was lost.
+///
+/// # Errors
+/// What the database says.
+pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Option<String>, DbError> {
+    let row = transaction
+        .row(
+            "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'",
+            values![lease.job, lease.attempt, &lease.key],
+        )
+        .await?;
+    row.map(|row| row.text("payload")).transpose()
 }
 
 /// Ends a job. A lease that ran out but was given to nobody else still counts: the work is done.
@@ -109,43 +128,94 @@ pub async fn fail_for(
 ) -> Result<Failure, DbError> {
     let held = transaction
         .row(
-            "SELECT failures FROM job
+            "SELECT failures, deaths, lone_deaths FROM job
              WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' {for update}",
             values![lease.job, lease.attempt, &lease.key],
         )
         .await?;
-    match held {
-        None => Ok(Failure::Late),
-        Some(row) => lose(transaction, policy, lease.job, row.int("failures")? + 1, fault, least).await,
+    let Some(row) = held else { return Ok(Failure::Late) };
+    let failures = row.int("failures")? + 1;
+    let loss = Loss {
+        job: lease.job,
+        failures,
+        deaths: row.int("deaths")?,
+        lone_deaths: row.int("lone_deaths")?,
+        wait: policy.wait(failures).max(least).min(A_DAY),
+        fault,
+    };
+    if failures >= i64::from(policy.max_failures) {
+        bury(transaction, &loss).await
+    } else {
+        retry(transaction, &loss).await
     }
 }
 
-/// Counts a failure of a job whose row is locked by this transaction.
-pub(super) async fn lose(
-    transaction: &mut Transaction,
-    policy: &Policy,
+/// A try that came to nothing, with what its job has counted by now.
+struct Loss<'a> {
     job: i64,
     failures: i64,
+    deaths: i64,
+    lone_deaths: i64,
+    /// Before the next try.
+    wait: Duration,
+    fault: &'a str,
+}
+
+/// The worker of a job died, or may have: the row, which this transaction has locked, has the counts.
+pub(super) async fn die(
+    transaction: &mut Transaction,
+    policy: &Policy,
+    row: &Row,
     fault: &str,
-    least: Duration,
 ) -> Result<Failure, DbError> {
-    if failures >= i64::from(policy.max_failures) {
-        transaction
-            .execute(
-                "UPDATE job SET state = 'buried', failures = ?, finished_at = {now}, lease_key = NULL,
-                    lease_until = NULL, last_fault = ?
-                 WHERE id = ?",
-                values![failures, fault, job],
-            )
-            .await?;
-        return Ok(Failure::Buried);
+    let lone_deaths = row.int("lone_deaths")? + row.int("is_alone")?;
+    let loss = Loss {
+        job: row.int("id")?,
+        failures: row.int("failures")?,
+        deaths: row.int("deaths")? + 1,
+        lone_deaths,
+        wait: policy.wait_after_death(lone_deaths),
+        fault,
+    };
+    if lone_deaths >= policy.max_lone_deaths() {
+        bury(transaction, &loss).await
+    } else {
+        retry(transaction, &loss).await
     }
+}
+
+async fn bury(transaction: &mut Transaction, loss: &Loss<'_>) -> Result<Failure, DbError> {
     transaction
         .execute(
-            "UPDATE job SET state = 'waiting', failures = ?, run_after = {now} + ?, failed_by = worker, worker = NULL,
+            "UPDATE job SET state = 'buried', failures = ?, deaths = ?, lone_deaths = ?, finished_at = {now},
                 lease_key = NULL, lease_until = NULL, last_fault = ?
              WHERE id = ?",
-            values![failures, millis(policy.wait(failures).max(least)), fault, job],
+            values![loss.failures, loss.deaths, loss.lone_deaths, loss.fault, loss.job],
+        )
+        .await?;
+    Ok(Failure::Buried)
+}
+
+/// Has a job wait again; one that is suspected by now after the others.
+async fn retry(transaction: &mut Transaction, loss: &Loss<'_>) -> Result<Failure, DbError> {
+    let later = if loss.failures + loss.deaths >= SUSPECTED_AFTER { millis(SUSPECTED_LATER) } else { 0 };
+    transaction
+        .execute(
+            "UPDATE job SET state = 'waiting', failures = ?, deaths = ?, lone_deaths = ?, run_after = {now} + ?,
+                rank = CASE WHEN ? > 0 AND rank < {now} + ? THEN {now} + ? ELSE rank END, failed_by = worker,
+                worker = NULL, lease_key = NULL, lease_until = NULL, last_fault = ?
+             WHERE id = ?",
+            values![
+                loss.failures,
+                loss.deaths,
+                loss.lone_deaths,
+                millis(loss.wait),
+                later,
+                later,
+                later,
+                loss.fault,
+                loss.job
+            ],
         )
         .await?;
     Ok(Failure::Retried)

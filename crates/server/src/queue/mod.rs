@@ -3,9 +3,12 @@
 //!
 //! A worker **claims** a job and holds it under a lease, which it **renews**; it **finishes** it, gives it back
 //! (**releases**) or says that it **failed**. Every claim has a number of its own, the attempt, and a key that only the
-//! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job
-//! whose worker went silent waits again, later each time, and after [`Policy::max_failures`] failures it is **buried**:
-//! somebody is to look at it. What a job is about, and what is written when it ends, is the concern of the rooms above.
+//! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job that
+//! failed waits again, later each time, and after [`Policy::max_failures`] failures it is **buried**: somebody is to
+//! look at it. A worker that died, or went silent, is no failure of its job. But a job that was there several times is
+//! **suspected**: it is run alone, and after the others that wait; only one that takes its worker down over and over
+//! while nothing else runs there is buried. What a job is about, and what is written when it ends, is the concern of the
+//! rooms above.
 
 mod bell;
 mod claim;
@@ -15,9 +18,9 @@ mod place;
 mod tick;
 
 pub use bell::{Bell, Ear};
-pub use claim::{claim, is_due};
+pub use claim::{Claimant, claim, is_due};
 pub use enqueue::{NewJob, Turn, cancel, enqueue, waits};
-pub use hold::{Completion, Failure, complete, fail, fail_for, release, renew};
+pub use hold::{Completion, Failure, complete, fail, fail_for, payload, release, renew};
 pub use place::{Place, place};
 pub use tick::{Buried, Tick, abandon, tick};
 
@@ -45,7 +48,19 @@ impl Lane {
             Self::Passback => "passback",
         }
     }
+
+    /// How long a job of it may wait between two tries.
+    fn longest_wait(self, policy: &Policy) -> Duration {
+        match self {
+            Self::Grading => policy.longest_wait,
+            // Platforms may wish to be left alone for longer.
+            Self::Passback => A_DAY.max(policy.longest_wait),
+        }
+    }
 }
+
+/// The longest that a platform may have us wait.
+const A_DAY: Duration = Duration::from_secs(86_400);
 
 /// How patient the queue is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,6 +104,17 @@ impl Policy {
         self.lease / 2
     }
 
+    /// So often a worker may die with a job that it runs alone. Far more often than a job may fail: a server in a crash
+    /// loop, whatever kills it, is no fault of what it is at.
+    fn max_lone_deaths(&self) -> i64 {
+        8 * i64::from(self.max_failures)
+    }
+
+    /// How long a job waits after its worker died: not long, since workers seldom die of what they do.
+    fn wait_after_death(&self, lone_deaths: i64) -> Duration {
+        self.first_wait * u32::try_from(lone_deaths).unwrap_or(0).clamp(1, 10)
+    }
+
     /// How long a job waits after its `failures`th failure, at most.
     fn longest(&self, failures: i64) -> Duration {
         let steps = u32::try_from(failures.max(1) - 1).unwrap_or(u32::MAX).min(16);
@@ -116,9 +142,12 @@ pub struct Lease {
     pub key: String,
 }
 
-/// From so many failures on a job is suspected of killing its worker, and runs alone: others that would die with it
-/// count their failures, too.
+/// From so many failures and deaths of workers on a job is suspected of killing its worker, and runs alone: others
+/// would die with it.
 const SUSPECTED_AFTER: i64 = 2;
+
+/// So much later comes the turn of a job that is suspected.
+const SUSPECTED_LATER: Duration = Duration::from_secs(1800);
 
 /// A job that was claimed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -131,13 +160,15 @@ pub struct Claim {
     pub payload: String,
     /// How often it failed before.
     pub failures: i64,
+    /// How often its worker died before.
+    pub deaths: i64,
 }
 
 impl Claim {
     /// Whether the job is to run alone in its worker.
     #[must_use]
     pub fn is_suspected(&self) -> bool {
-        self.failures >= SUSPECTED_AFTER
+        self.failures + self.deaths >= SUSPECTED_AFTER
     }
 }
 

@@ -52,8 +52,9 @@ pub async fn place(
         .maybe_int("took")?;
     let slots = transaction
         .one(
-            "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker WHERE seen_at > {now} - ?",
-            values![2 * millis(policy.lease)],
+            "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
+             WHERE seen_at > {now} - ? AND seen_at <= {now} + ?",
+            values![2 * millis(policy.lease), 2 * millis(policy.lease)],
         )
         .await?
         .int("slots")?;

@@ -2,25 +2,24 @@
 //!
 //! Everybody who is alive ticks, and leases run out only while somebody does: after a gap the database itself was away,
 //! nobody could renew, and every lease begins anew. So a restart of PostgreSQL costs no job a try.
-use super::{Failure, Policy, hold::lose, millis};
+use super::{Failure, Policy, hold::die, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
 };
-use std::time::Duration;
 
 /// What a tick found.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Tick {
     /// How many jobs wait again.
     pub retried: usize,
-    /// Jobs that were tried too often; whoever called writes what follows in the same transaction.
+    /// Jobs that took their worker down too often, alone; whoever called writes what follows in the same transaction.
     pub buried: Vec<Buried>,
     /// Whether leases began anew because nobody had ticked.
     pub outage: bool,
 }
 
-/// A job that was tried too often.
+/// A job that took its worker down too often.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Buried {
     /// Its number.
@@ -47,21 +46,40 @@ pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick
         return Ok(Tick::default());
     }
     transaction.execute("UPDATE pulse SET beat_at = {now} WHERE id = 1", values![]).await?;
+    if now < beat {
+        // What came after the last beat goes on before what comes now, too.
+        set_back(transaction, beat - now + millis(policy.tick_every())).await?;
+    }
     // A clock that was set back, or far ahead, is an outage, too.
     if now < beat || now - beat > millis(policy.outage()) {
         transaction
-            .execute("UPDATE job SET lease_until = {now} + ? WHERE state = 'running'", values![millis(policy.lease)])
+            .execute(
+                "UPDATE job SET lease_until = {now} + ?, started_at = {now} WHERE state = 'running'",
+                values![millis(policy.lease)],
+            )
             .await?;
         return Ok(Tick { outage: true, ..Tick::default() });
     }
     let lost = transaction
         .rows(
-            "SELECT id, attempt, failures, worker FROM job WHERE state = 'running' AND lease_until < {now}
-             ORDER BY id {skip locked}",
+            "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
+             WHERE state = 'running' AND lease_until < {now} ORDER BY id {skip locked}",
             values![],
         )
         .await?;
     give_up(transaction, policy, lost, "its worker went silent").await
+}
+
+/// The clock was set back by so much: what waits would wait for it to catch up, and be passed by whatever comes now.
+async fn set_back(transaction: &mut Transaction, by: i64) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "UPDATE job SET rank = rank - ?, run_after = CASE WHEN run_after > {now} THEN {now} ELSE run_after END
+             WHERE state = 'waiting'",
+            values![by],
+        )
+        .await?;
+    Ok(())
 }
 
 /// Gives up on a worker that is known to be dead, before its leases run out.
@@ -71,8 +89,8 @@ pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick
 pub async fn abandon(transaction: &mut Transaction, policy: &Policy, worker: &str) -> Result<Tick, DbError> {
     let lost = transaction
         .rows(
-            "SELECT id, attempt, failures, worker FROM job WHERE state = 'running' AND worker = ?
-             ORDER BY id {skip locked}",
+            "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
+             WHERE state = 'running' AND worker = ? ORDER BY id {skip locked}",
             values![worker],
         )
         .await?;
@@ -84,7 +102,7 @@ async fn give_up(transaction: &mut Transaction, policy: &Policy, lost: Vec<Row>,
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
-        match lose(transaction, policy, job, row.int("failures")? + 1, fault, Duration::ZERO).await? {
+        match die(transaction, policy, &row, fault).await? {
             Failure::Buried => tick.buried.push(Buried { job, attempt, worker, fault: fault.to_owned() }),
             Failure::Retried | Failure::Late => tick.retried += 1,
         }

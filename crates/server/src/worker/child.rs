@@ -1,5 +1,6 @@
 //! A child process that never outlives its owner: it leads a process group that is killed as a whole, and the kernel
-//! kills it when this process dies, however that happens.
+//! kills it when this process dies, however that happens. A [`guard`](super::guard) stands between the two.
+use super::guard;
 use std::{
     io,
     os::unix::process::{CommandExt, ExitStatusExt},
@@ -33,7 +34,7 @@ impl Child {
     pub(super) fn start(mut command: Command) -> io::Result<Self> {
         command.stdin(Stdio::null()).stdout(Stdio::null()).process_group(0);
         let parent = std::process::id();
-        // SAFETY: prctl and getppid may be called between fork and exec.
+        // SAFETY: what is called between fork and exec may be called there.
         unsafe {
             command.pre_exec(move || {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
@@ -41,7 +42,7 @@ impl Child {
                 if libc::getppid().unsigned_abs() != parent {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
-                Ok(())
+                guard::stand_between()
             });
         }
         let (started_sender, started) = std::sync::mpsc::channel();
@@ -56,8 +57,6 @@ impl Child {
             };
             let number = child.id().cast_signed();
             *known.lock().unwrap_or_else(PoisonError::into_inner) = Some(number);
-            // When memory runs short the grader goes first, and not the worker.
-            drop(std::fs::write(format!("/proc/{number}/oom_score_adj"), "800"));
             drop(started_sender.send(Ok(())));
             wait_without_reaping(number);
             let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
@@ -111,16 +110,28 @@ impl Drop for Child {
     }
 }
 
-/// Waits until a child has ended, and leaves its number taken.
+/// Waits until a child has ended, and leaves its number taken. A child that was stopped goes on: somebody may wait for
+/// it for ever.
 fn wait_without_reaping(number: libc::pid_t) {
-    loop {
+    let wait = |options| {
         // SAFETY: a zeroed siginfo_t is valid, and the call writes it only.
-        let result = unsafe {
+        unsafe {
             let mut info: libc::siginfo_t = std::mem::zeroed();
-            libc::waitid(libc::P_PID, number.unsigned_abs(), &raw mut info, libc::WEXITED | libc::WNOWAIT)
-        };
-        if result == 0 || io::Error::last_os_error().raw_os_error() != Some(libc::EINTR) {
-            return;
+            let result = libc::waitid(libc::P_PID, number.unsigned_abs(), &raw mut info, options);
+            (result, info.si_code)
+        }
+    };
+    loop {
+        match wait(libc::WEXITED | libc::WSTOPPED | libc::WNOWAIT) {
+            (0, libc::CLD_STOPPED) => {
+                // Heard of; the next wait is for what comes then.
+                wait(libc::WSTOPPED | libc::WNOHANG);
+                // SAFETY: the child is not reaped.
+                unsafe { libc::kill(number, libc::SIGCONT) };
+            }
+            (0, _) => return,
+            _ if io::Error::last_os_error().raw_os_error() != Some(libc::EINTR) => return,
+            _ => {}
         }
     }
 }
@@ -141,6 +152,18 @@ mod tests {
         assert_eq!(end("exit 3").await, End::Code(3));
         assert_eq!(end("kill -SEGV $$").await, End::Signal(libc::SIGSEGV));
         assert!(Child::start(Command::new("/nowhere/fosssim-oracle")).is_err());
+    }
+
+    #[tokio::test]
+    async fn a_grader_reaches_its_guard_and_not_its_worker() {
+        let end = async |script| Child::start(shell(script)).expect("a child").ended().await;
+        assert_eq!(end("kill -KILL $PPID; sleep 1000").await, End::Signal(libc::SIGKILL));
+        assert_eq!(end("kill -STOP $PPID; exit 4").await, End::Code(4), "a guard that was stopped goes on");
+        let child = Child::start(shell("trap 'exit 7' TERM; kill -USR1 $PPID; while :; do sleep 0.01; done"));
+        let child = child.expect("a child");
+        // The trap may not be set yet: the shell ends by the signal then.
+        child.interrupt();
+        assert!(matches!(child.ended().await, End::Code(7) | End::Signal(libc::SIGTERM | libc::SIGUSR1)));
     }
 
     #[tokio::test]

@@ -42,8 +42,9 @@ pub enum DeskError {
 
 /// Where workers get their jobs and bring their results.
 pub trait Desk: Clone + Send + Sync + 'static {
-    /// The next job, if there is one. Not to be interrupted: the desk might have given away a job that nobody gets.
-    fn claim(&self) -> impl Future<Output = Result<Option<Job>, DeskError>> + Send;
+    /// The next job, if there is one. Not to be interrupted: the desk might have given away a job that nobody gets. A
+    /// worker that is idle also gets jobs that must run alone.
+    fn claim(&self, is_idle: bool) -> impl Future<Output = Result<Option<Job>, DeskError>> + Send;
 
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;
@@ -66,8 +67,9 @@ pub trait Desk: Clone + Send + Sync + 'static {
     /// Stores a file for the result of the job.
     fn store(&self, lease: &Lease, file: &Path) -> impl Future<Output = Result<Artefact, DeskError>> + Send;
 
-    /// Says that this worker is alive; called every now and then.
-    fn tick(&self, slots: usize) -> impl Future<Output = Result<(), DeskError>> + Send;
+    /// Says that this worker is alive, with so many slots, and why it can't grade where it can't; called every now and
+    /// then.
+    fn tick(&self, slots: usize, fault: Option<&str>) -> impl Future<Output = Result<(), DeskError>> + Send;
 
     /// How often [`tick`](Self::tick) is to be called.
     fn tick_every(&self) -> Duration;

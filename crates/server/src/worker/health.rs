@@ -7,12 +7,12 @@ use super::Grader;
 use std::{
     path::{Path, PathBuf},
     sync::{
-        Arc,
+        Arc, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
     time::Duration,
 };
-use tokio::sync::Mutex;
+use tokio::sync::{Mutex, Notify};
 use tokio_util::sync::CancellationToken;
 
 /// The wait after a failed proof; it doubles up to the longest.
@@ -25,14 +25,28 @@ pub(super) struct Health<G> {
     grader: G,
     folder: PathBuf,
     is_proven: Arc<AtomicBool>,
-    /// Held by the slot that proves; the others wait for what it finds.
+    /// Held by the slot that asks for proofs until there is one; the others wait for it.
+    asking: Arc<Mutex<()>>,
+    /// Held while there is a proof.
     proving: Arc<Mutex<()>>,
+    /// Why the last proof failed.
+    fault: Arc<std::sync::Mutex<Option<String>>>,
+    /// Rings when the worker begins or ceases to be able to grade.
+    change: Arc<Notify>,
 }
 
 impl<G: Grader> Health<G> {
     /// The health of a worker with this grader, which may make folders in this one.
     pub(super) fn new(grader: G, folder: PathBuf) -> Self {
-        Self { grader, folder, is_proven: Arc::default(), proving: Arc::default() }
+        Self {
+            grader,
+            folder,
+            is_proven: Arc::default(),
+            asking: Arc::default(),
+            proving: Arc::default(),
+            fault: Arc::default(),
+            change: Arc::default(),
+        }
     }
 
     /// Whether the worker may claim.
@@ -40,11 +54,30 @@ impl<G: Grader> Health<G> {
         self.is_proven.load(Ordering::Acquire)
     }
 
+    /// Why it may not, as far as a proof has told.
+    pub(super) fn fault(&self) -> Option<String> {
+        self.fault.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Waits until that has changed.
+    pub(super) async fn changed(&self) {
+        self.change.notified().await;
+    }
+
     /// Waits until the worker can grade; false when it is to stop before.
     pub(super) async fn well(&self, stop: &CancellationToken) -> bool {
         let mut wait = FIRST_WAIT;
+        if self.is_proven() {
+            return !stop.is_cancelled();
+        }
+        // One slot asks, and asks again; the others wait until it knows.
+        let asking = tokio::select! {
+            asking = self.asking.lock() => asking,
+            () = stop.cancelled() => return false,
+        };
         while !stop.is_cancelled() {
             if self.is_proven() || self.prove(stop).await {
+                drop(asking);
                 return true;
             }
             tokio::select! {
@@ -71,11 +104,15 @@ impl<G: Grader> Health<G> {
             Err(error) => Err(format!("no folder to work in: {error}")),
             Ok(folder) => self.grader.prove(folder.path(), stop.child_token()).await,
         };
-        match proof {
-            Ok(()) => self.is_proven.store(true, Ordering::Release),
-            Err(_) if stop.is_cancelled() => {}
-            Err(error) => tracing::error!(error, "this worker can't grade, and takes no jobs until it can"),
+        if proof.is_err() && stop.is_cancelled() {
+            return false;
         }
+        if let Err(error) = &proof {
+            tracing::error!(error, "this worker can't grade, and takes no jobs until it can");
+        }
+        self.is_proven.store(proof.is_ok(), Ordering::Release);
+        *self.fault.lock().unwrap_or_else(PoisonError::into_inner) = proof.err();
+        self.change.notify_one();
         self.is_proven()
     }
 }

@@ -1,19 +1,21 @@
 //! The desk of workers that hold the database themselves: those within the server, and those of who wants it so.
-use super::{Answer, Desk, DeskError, Job};
+use super::{Answer, Desk, DeskError, GRACE, Job};
 use crate::{
     db::{Database, DbError},
-    ledger,
-    queue::{self, Bell, Completion, Ear, Failure, Lane, Lease, Policy},
+    health, ledger,
+    queue::{self, Bell, Claimant, Completion, Ear, Failure, Lane, Lease, Policy},
     shown,
     store::{Artefact, Digest, Store, StoreError},
-    task::Outcome,
-    values,
+    task::{Outcome, Task},
 };
 use std::{path::Path, time::Duration};
 use tokio::sync::Mutex;
 
 /// How often a worker looks although nobody rang.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
+
+/// What a job may take besides its grading, at least.
+const LEAST_MARGIN: Duration = Duration::from_secs(60);
 
 /// The database and the store as a desk.
 #[derive(Debug)]
@@ -25,11 +27,14 @@ pub struct LocalDesk {
     ear: Mutex<Ear>,
     policy: Policy,
     worker: String,
+    /// The token that the worker came by, if any.
+    token: Option<i64>,
 }
 
 impl Clone for LocalDesk {
     fn clone(&self) -> Self {
-        Self::new(self.database.clone(), self.store.clone(), self.bell.clone(), self.policy, self.worker.clone())
+        let (database, store, bell) = (self.database.clone(), self.store.clone(), self.bell.clone());
+        Self { token: self.token, ..Self::new(database, store, bell, self.policy, self.worker.clone()) }
     }
 }
 
@@ -53,8 +58,19 @@ impl LocalDesk {
     #[must_use]
     pub fn new(database: Database, store: Store, bell: Bell, policy: Policy, worker: String) -> Self {
         let ear = Mutex::new(bell.ear());
-        Self { database, store, bell, ear, policy, worker }
+        Self { database, store, bell, ear, policy, worker, token: None }
     }
+
+    /// The same for a worker that came by this token.
+    #[must_use]
+    pub fn with_token(self, token: i64) -> Self {
+        Self { token: Some(token), ..self }
+    }
+}
+
+/// A job's end comes no later than its grading's and so much more, for what is fetched, stored and waited for.
+fn longest(task: &Task, policy: &Policy) -> Duration {
+    Duration::from_secs(task.seconds) + GRACE + LEAST_MARGIN.max(policy.lease * 10)
 }
 
 fn report(tick: &queue::Tick) {
@@ -70,11 +86,16 @@ fn report(tick: &queue::Tick) {
 }
 
 impl Desk for LocalDesk {
-    async fn claim(&self) -> Result<Option<Job>, DeskError> {
+    async fn claim(&self, is_idle: bool) -> Result<Option<Job>, DeskError> {
+        let claimant = Claimant { worker: &self.worker, is_idle, token: self.token };
         loop {
             let mut transaction = self.database.begin().await?;
             let tick = ledger::tick(&mut transaction, &self.policy).await?;
-            let claim = queue::claim(&mut transaction, &self.policy, Lane::Grading, &self.worker).await?;
+            let claim = if health::may_claim(&mut transaction, &self.policy, claimant).await? {
+                queue::claim(&mut transaction, &self.policy, Lane::Grading, claimant).await?
+            } else {
+                None
+            };
             transaction.commit().await?;
             report(&tick);
             let Some(claim) = claim else { return Ok(None) };
@@ -97,8 +118,15 @@ impl Desk for LocalDesk {
 
     async fn renew(&self, lease: &Lease) -> Result<Answer, DeskError> {
         let mut transaction = self.database.begin().await?;
-        let held = queue::renew(&mut transaction, &self.policy, lease).await?;
+        // A step of the clock is noticed before it can end a lease.
+        let tick = ledger::tick(&mut transaction, &self.policy).await?;
+        let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());
+        let held = match task {
+            Some(task) => queue::renew(&mut transaction, &self.policy, lease, longest(&task, &self.policy)).await?,
+            None => false,
+        };
         transaction.commit().await?;
+        report(&tick);
         Ok(if held { Answer::Held } else { Answer::Lost })
     }
 
@@ -150,16 +178,9 @@ impl Desk for LocalDesk {
         Ok(self.store.put_file(file).await?)
     }
 
-    async fn tick(&self, slots: usize) -> Result<(), DeskError> {
-        let slots = i64::try_from(slots).unwrap_or(i64::MAX);
+    async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), DeskError> {
         let mut transaction = self.database.begin().await?;
-        transaction
-            .execute(
-                "INSERT INTO worker (name, version, slots, started_at, seen_at) VALUES (?, ?, ?, {now}, {now})
-                 ON CONFLICT (name) DO UPDATE SET slots = excluded.slots, seen_at = excluded.seen_at",
-                values![&self.worker, env!("CARGO_PKG_VERSION"), slots],
-            )
-            .await?;
+        health::seen(&mut transaction, &self.worker, self.token, slots, fault).await?;
         let tick = ledger::tick(&mut transaction, &self.policy).await?;
         transaction.commit().await?;
         report(&tick);

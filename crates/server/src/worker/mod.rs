@@ -4,6 +4,7 @@
 mod child;
 mod desk;
 mod grader;
+mod guard;
 mod health;
 mod liveness;
 mod local;
@@ -11,12 +12,15 @@ mod program;
 mod reading;
 mod remote;
 mod slots;
+mod suite_check;
 
 pub use desk::{Answer, Desk, DeskError, Job};
 pub use grader::{Graded, Grader, GraderFault, NewFile};
 pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalDesk;
+use program::GRACE;
 pub use program::{Program, REPORTS};
 pub(crate) use reading::essence;
 pub use remote::RemoteDesk;
 pub use slots::{Options, work};
+pub use suite_check::check_suite;

@@ -21,7 +21,7 @@ use std::{
 use tokio_util::sync::CancellationToken;
 
 /// How long the grader may take to write its reports after it was asked to stop.
-const GRACE: Duration = Duration::from_secs(20);
+pub(super) const GRACE: Duration = Duration::from_secs(20);
 
 /// How much of the grader's messages is kept for the administrator.
 const MESSAGE: usize = 2000;
@@ -161,7 +161,7 @@ impl Program {
 }
 
 /// Lets a command run in a folder, with nothing of the server's surroundings, which may hold secrets.
-fn at_home(command: &mut Command, folder: &Path) {
+pub(super) fn at_home(command: &mut Command, folder: &Path) {
     command.env_clear().current_dir(folder);
     for name in ["PATH", "HOME", "LANG", "TMPDIR"] {
         if let Some(value) = std::env::var_os(name) {

@@ -142,10 +142,11 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, DeskError> {
 }
 
 impl Desk for RemoteDesk {
-    async fn claim(&self) -> Result<Option<Job>, DeskError> {
+    async fn claim(&self, is_idle: bool) -> Result<Option<Job>, DeskError> {
         let claimed: Option<Claimed> = self
-            .call(|parts| {
-                let mut answer = checked(parts.post("claim", &serde_json::json!({}))?)?;
+            .call(move |parts| {
+                let path = if is_idle { "claim" } else { "claim?idle=false" };
+                let mut answer = checked(parts.post(path, &serde_json::json!({}))?)?;
                 if answer.status() == 204 {
                     return Ok(None);
                 }
@@ -234,8 +235,9 @@ impl Desk for RemoteDesk {
         Ok(artefact)
     }
 
-    async fn tick(&self, slots: usize) -> Result<(), DeskError> {
-        let manners: Manners = self.call(move |parts| parts.json("tick", &Alive { slots })).await?;
+    async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), DeskError> {
+        let alive = Alive { slots, fault: fault.map(str::to_owned) };
+        let manners: Manners = self.call(move |parts| parts.json("tick", &alive)).await?;
         self.0.tick_every.store(manners.tick_every.clamp(100, 60_000), Ordering::Relaxed);
         Ok(())
     }

@@ -12,7 +12,7 @@ use std::{
     sync::Arc,
     time::{Duration, Instant},
 };
-use tokio::sync::{OwnedRwLockWriteGuard, RwLock};
+use tokio::sync::{OwnedRwLockReadGuard, OwnedRwLockWriteGuard, RwLock};
 use tokio_util::sync::CancellationToken;
 
 /// How long a slot waits for a job before it asks again.
@@ -46,10 +46,13 @@ pub async fn work<D: Desk, G: Grader>(desk: D, grader: G, options: Options, stop
     let ticking = async {
         loop {
             let slots = if health.is_proven() { options.slots } else { 0 };
-            if let Err(error) = desk.tick(slots).await {
+            if let Err(error) = desk.tick(slots, health.fault().as_deref()).await {
                 tracing::warn!(%error, "the worker can't say that it is alive");
             }
-            tokio::time::sleep(desk.tick_every()).await;
+            tokio::select! {
+                () = tokio::time::sleep(desk.tick_every()) => {}
+                () = health.changed() => {}
+            }
         }
     };
     tokio::select! {
@@ -68,13 +71,11 @@ async fn slot<D: Desk, G: Grader>(
 ) {
     let mut wait = FIRST_WAIT;
     while health.well(&stop).await {
-        // Held together by all slots that claim or work; a job that must run alone waits until it has the gate for
-        // itself.
-        let mut passed = Some(gate.read().await);
-        match desk.claim().await {
+        let pass = Pass::through(&gate).await;
+        match desk.claim(matches!(pass, Pass::Alone(_))).await {
             Ok(None) => {
                 wait = FIRST_WAIT;
-                passed.take();
+                drop(pass);
                 tokio::select! {
                     () = desk.wait(PATIENCE) => {}
                     () = stop.cancelled() => {}
@@ -84,13 +85,9 @@ async fn slot<D: Desk, G: Grader>(
                 wait = FIRST_WAIT;
                 // A panic is this job's, not the worker's.
                 let lease = job.lease.clone();
-                let mine = gate.clone();
-                let alone = job.alone.then(|| {
-                    passed.take();
-                    mine.write_owned()
-                });
+                let pass = pass.for_job(job.alone, gate.clone());
                 let running =
-                    run(desk.clone(), grader.clone(), health.clone(), job, folder.clone(), alone, stop.clone());
+                    run(desk.clone(), grader.clone(), health.clone(), job, folder.clone(), pass, stop.clone());
                 let done = tokio::spawn(running);
                 if let Err(error) = done.await {
                     tracing::error!(job = lease.job, %error, "the worker failed");
@@ -98,7 +95,7 @@ async fn slot<D: Desk, G: Grader>(
                 }
             }
             Err(error) => {
-                passed.take();
+                drop(pass);
                 tracing::warn!(%error, "no job to be had");
                 tokio::select! {
                     () = tokio::time::sleep(wait) => {}
@@ -106,6 +103,34 @@ async fn slot<D: Desk, G: Grader>(
                 }
                 wait = (wait * 2).min(LONGEST_WAIT);
             }
+        }
+    }
+}
+
+/// The gate is held together by all slots that claim or work, or by one that has the worker for itself.
+enum Pass {
+    Shared(#[expect(dead_code, reason = "held")] OwnedRwLockReadGuard<()>),
+    Alone(OwnedRwLockWriteGuard<()>),
+}
+
+impl Pass {
+    /// Alone where no other slot claims or works.
+    async fn through(gate: &Arc<RwLock<()>>) -> Self {
+        match gate.clone().try_write_owned() {
+            Ok(guard) => Self::Alone(guard),
+            Err(_) => Self::Shared(gate.clone().read_owned().await),
+        }
+    }
+
+    /// What a job needs; one that must run alone waits until the others have ended.
+    async fn for_job(self, alone: bool, gate: Arc<RwLock<()>>) -> Self {
+        match self {
+            Self::Alone(guard) if !alone => Self::Shared(guard.downgrade()),
+            Self::Shared(_) if alone => {
+                drop(self);
+                Self::Alone(gate.write_owned().await)
+            }
+            pass => pass,
         }
     }
 }
@@ -126,15 +151,12 @@ async fn run<D: Desk, G: Grader>(
     health: Health<G>,
     job: Job,
     folder: PathBuf,
-    alone: Option<impl Future<Output = OwnedRwLockWriteGuard<()>>>,
+    pass: impl Future<Output = Pass>,
     stop: CancellationToken,
 ) {
     let lost = CancellationToken::new();
     let keeping = tokio::spawn(keep(desk.clone(), job.lease.clone(), job.renew_every, lost.clone()));
-    let _gate = match alone {
-        Some(alone) => Some(alone.await),
-        None => None,
-    };
+    let _pass = pass.await;
     let ending = match job_folder(&folder) {
         Err(error) => Ending::Failed(format!("no folder for the job: {error}")),
         Ok(folder) => {

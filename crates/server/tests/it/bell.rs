@@ -14,7 +14,7 @@ async fn the_bell_is_heard_by_other_processes(fresh: Fresh) {
     let other = Database::open(&fresh.address).await.expect("a second connection");
     let postgres = other.dialect() == Dialect::Postgres;
     let mut ear = if postgres { there.ear() } else { here.ear() };
-    let listening = tokio::spawn(there.clone().listen(other));
+    let listening = tokio::spawn(there.clone().listen(other, None));
     if postgres {
         // The first stroke says that it listens.
         assert!(ear.wait(Duration::from_secs(60)).await);

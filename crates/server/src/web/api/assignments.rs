@@ -8,6 +8,7 @@ use crate::{
     archive::{self, Limits},
     problem::Problem,
     schema::Title,
+    worker,
 };
 use axum::{
     Json,
@@ -139,15 +140,19 @@ pub(in crate::web) async fn receive_suite(
     request: Request,
 ) -> Result<Assignment, Problem> {
     let received = upload::receive(staff.member().house(), request, SUITE).await?;
-    let (path, incoming) = (received.file.to_path_buf(), staff.member().house().incoming().to_owned());
-    let looked = tokio::task::spawn_blocking(move || check_suite(&path, &incoming)).await;
-    looked.map_err(|_| Problem::fault())??;
+    let house = staff.member().house();
+    let (path, incoming) = (received.file.to_path_buf(), house.incoming().to_owned());
+    let looked = tokio::task::spawn_blocking(move || unpack_suite(&path, &incoming)).await;
+    let folder = looked.map_err(|_| Problem::fault())??;
+    if let Some(grader) = house.grader() {
+        worker::check_suite(grader, folder.path()).await.map_err(Problem::unusable)?;
+    }
     staff.set_suite(assignment, &received.file).await
 }
 
-/// Whether an archive holds a suite that keeps to itself: its scenes lie in the archive, or come with the program. A
+/// Unpacks an archive with a suite that keeps to itself: its scenes lie in the archive, or come with the program. A
 /// worker would read any other file of its machine for it.
-fn check_suite(archive: &Path, incoming: &Path) -> Result<(), Problem> {
+fn unpack_suite(archive: &Path, incoming: &Path) -> Result<tempfile::TempDir, Problem> {
     let folder = tempfile::tempdir_in(incoming)?;
     archive::unpack(archive, folder.path(), Limits::USUAL).map_err(|error| Problem::unusable(error.to_string()))?;
     let Ok(text) = std::fs::read_to_string(folder.path().join("suite.toml")) else {
@@ -162,7 +167,7 @@ fn check_suite(archive: &Path, incoming: &Path) -> Result<(), Problem> {
             return Err(Problem::unusable(format!("the scene {scene} does not lie in the archive")));
         }
     }
-    Ok(())
+    Ok(folder)
 }
 
 /// Shows students what the suite hides: groups that are not visible count in what they see from now on, too.

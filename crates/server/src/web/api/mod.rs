@@ -1,6 +1,7 @@
 //! The API. Each handler says by its first argument whom it serves.
 
 mod accounts;
+mod again;
 mod assignments;
 mod courses;
 mod operations;
@@ -58,6 +59,9 @@ pub(super) fn routes() -> OpenApiRouter<House> {
         .routes(routes!(submissions::events))
         .routes(routes!(submissions::report))
         .routes(routes!(submissions::upload))
+        .routes(routes!(again::grade_again))
+        .routes(routes!(again::grade_errors_again))
+        .routes(routes!(again::grade_all_errors_again))
         .routes(routes!(regrades::regrades, regrades::begin))
         .routes(routes!(regrades::show))
         .routes(routes!(regrades::apply))

@@ -72,6 +72,8 @@ fn of_queue(text: &mut String, metrics: &Metrics) {
     for (name, help, value) in [
         ("workers", "Workers that were seen lately.", metrics.workers),
         ("slots", "Their slots.", metrics.slots),
+        ("workers_aside", "Workers that take no jobs, because they can't grade.", metrics.aside),
+        ("jobs_paused", "Jobs that wait for staff: nothing can be graded by their suite.", metrics.paused),
         ("suspicions", "Scenes in which the reference may be wrong, undecided.", metrics.suspicions),
     ] {
         head(text, name, "gauge", help);

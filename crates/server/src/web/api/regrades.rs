@@ -1,5 +1,5 @@
 //! Regrades: begun, looked at, applied or discarded.
-use super::super::input::{Body, Params};
+use super::super::input::{Asked, Body, Params};
 use crate::{
     access::{Regrade, Settings, Staff},
     problem::Problem,
@@ -34,45 +34,63 @@ pub(super) async fn regrades(
 /// Grades all submissions again, beside their grades. Nothing changes until it is applied.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
     params(("course" = String, Path), ("assignment" = String, Path)), request_body = RegradeWish,
-    responses((status = 201, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 201, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`"),
+        (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn begin(
     staff: Staff,
     Params((_, assignment)): Params<(String, String)>,
     Body(wish): Body<RegradeWish>,
 ) -> Result<(StatusCode, Json<Regrade>), Problem> {
     let regrade = staff.regrade(&assignment, &wish.reason, wish.settings.as_ref()).await?;
-    Ok((StatusCode::CREATED, Json(regrade)))
+    Ok((status(&regrade, StatusCode::CREATED), Json(regrade)))
 }
 
 /// What a regrade would change, or did, and why.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
-    params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
+    params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path),
+        ("after" = Option<i64>, Query, description = "Only changes of submissions after this one: `next` of the answer before")),
     responses((status = 200, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn show(
     staff: Staff,
     Params((_, assignment, id)): Params<(String, String, i64)>,
+    Asked(asked): Asked<After>,
 ) -> Result<Json<Regrade>, Problem> {
-    Ok(Json(staff.show_regrade(&assignment, id).await?))
+    Ok(Json(staff.show_regrade(&assignment, id, asked.after).await?))
 }
 
-/// Makes its results count, all in one step.
+/// Where to go on.
+#[derive(Deserialize)]
+pub(super) struct After {
+    after: Option<i64>,
+}
+
+/// A regrade that is worked on after the answer was accepted only.
+fn status(regrade: &Regrade, done: StatusCode) -> StatusCode {
+    if regrade.doing.is_some() { StatusCode::ACCEPTED } else { done }
+}
+
+/// Makes its results count.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply",
     tag = "regrades", params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`"),
+        (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn apply(
     staff: Staff,
     Params((_, assignment, id)): Params<(String, String, i64)>,
-) -> Result<Json<Regrade>, Problem> {
-    Ok(Json(staff.apply_regrade(&assignment, id).await?))
+) -> Result<(StatusCode, Json<Regrade>), Problem> {
+    let regrade = staff.apply_regrade(&assignment, id).await?;
+    Ok((status(&regrade, StatusCode::OK), Json(regrade)))
 }
 
 /// Gives it up; nothing changes.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard",
     tag = "regrades", params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`"),
+        (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn discard(
     staff: Staff,
     Params((_, assignment, id)): Params<(String, String, i64)>,
-) -> Result<Json<Regrade>, Problem> {
-    Ok(Json(staff.discard_regrade(&assignment, id).await?))
+) -> Result<(StatusCode, Json<Regrade>), Problem> {
+    let regrade = staff.discard_regrade(&assignment, id).await?;
+    Ok((status(&regrade, StatusCode::OK), Json(regrade)))
 }

@@ -2,7 +2,7 @@
 //! in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
 use super::super::{
     download,
-    input::{Body, Params},
+    input::{Asked, Body, Params},
     upload,
 };
 use crate::{
@@ -25,9 +25,12 @@ use utoipa::ToSchema;
 #[derive(Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Alive {
-    /// How many gradings it does at one time.
+    /// How many gradings it does at one time; 0 while it can't grade.
     #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
+    /// Why it can't.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) fault: Option<String>,
 }
 
 /// What a worker is to know.
@@ -65,16 +68,24 @@ pub(crate) struct Finished {
 #[utoipa::path(post, path = "/api/v1/worker/tick", tag = "workers", request_body = Alive,
     responses((status = 200, body = Manners), (status = "default", body = Problem, content_type = "application/problem+json")))]
 pub(super) async fn tick(remote: Remote, Body(alive): Body<Alive>) -> Result<Json<Manners>, Problem> {
-    remote.tick(alive.slots).await?;
+    remote.tick(alive.slots, alive.fault.as_deref()).await?;
     Ok(Json(Manners { tick_every: remote.tick_every() }))
+}
+
+/// Who claims.
+#[derive(Deserialize)]
+pub(super) struct Claimant {
+    idle: Option<bool>,
 }
 
 /// Claims the next job; 204 when there is none.
 #[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
+    params(("idle" = Option<bool>, Query, description = "Whether nothing else runs in this worker (the default): then \
+        it may get a job that must run alone")),
     responses((status = 200, body = Claimed), (status = 204, description = "No job"),
         (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
-    Ok(match remote.claim().await? {
+pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> Result<Response, Problem> {
+    Ok(match remote.claim(claimant.idle.unwrap_or(true)).await? {
         Some(job) => Json(job).into_response(),
         None => StatusCode::NO_CONTENT.into_response(),
     })

@@ -141,6 +141,11 @@ pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<H
     show(&AuditPage { frame, slug, events: staff.audit(asked.before).await? })
 }
 
+pub(super) async fn grade_errors_again(staff: Staff) -> Result<Redirect, Problem> {
+    staff.grade_errors_again(None).await?;
+    Ok(see(&format!("/c/{}/queue", staff.member().course().slug)))
+}
+
 pub(super) async fn queue(staff: Staff) -> Result<Html<String>, Problem> {
     let slug = staff.member().course().slug;
     let frame = Frame::course(staff.member()).then(format!("/c/{slug}/queue"), "Queue");

@@ -87,6 +87,11 @@ impl Look {
 }
 
 #[derive(Deserialize)]
+pub(super) struct After {
+    after: Option<i64>,
+}
+
+#[derive(Deserialize)]
 pub(super) struct NewRegrade {
     reason: String,
     #[serde(flatten)]
@@ -153,9 +158,15 @@ pub(super) async fn withhold(
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
-async fn show_page(staff: &Staff, slug: String, assignment: &str, id: i64) -> Result<Html<String>, Problem> {
+async fn show_page(
+    staff: &Staff,
+    slug: String,
+    assignment: &str,
+    id: i64,
+    after: Option<i64>,
+) -> Result<Html<String>, Problem> {
     let assignment = staff.member().assignment(assignment).await?;
-    let regrade = staff.show_regrade(&assignment.slug, id).await?;
+    let regrade = staff.show_regrade(&assignment.slug, id, after).await?;
     let frame = Frame::course(staff.member())
         .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
         .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class")
@@ -166,8 +177,9 @@ async fn show_page(staff: &Staff, slug: String, assignment: &str, id: i64) -> Re
 pub(super) async fn show_regrade(
     staff: Staff,
     Params((slug, assignment, id)): Params<(String, String, i64)>,
+    Asked(asked): Asked<After>,
 ) -> Result<Html<String>, Problem> {
-    show_page(&staff, slug, &assignment, id).await
+    show_page(&staff, slug, &assignment, id, asked.after).await
 }
 
 pub(super) async fn apply(
@@ -184,6 +196,14 @@ pub(super) async fn discard(
 ) -> Result<Redirect, Problem> {
     staff.discard_regrade(&assignment, id).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{id}")))
+}
+
+pub(super) async fn grade_errors_again(
+    staff: Staff,
+    Params((slug, assignment)): Params<(String, String)>,
+) -> Result<Redirect, Problem> {
+    staff.grade_errors_again(Some(&assignment)).await?;
+    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
 pub(super) async fn dismiss(

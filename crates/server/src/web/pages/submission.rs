@@ -4,7 +4,7 @@ use super::{
     Frame, see, show, text,
 };
 use crate::{
-    access::{Assignment, History, Member, Submission},
+    access::{Assignment, History, Member, Staff, Submission},
     problem::Problem,
     secret,
 };
@@ -96,6 +96,11 @@ pub(super) async fn submission(
         report,
         submission,
     })
+}
+
+pub(super) async fn grade_again(staff: Staff, Params((slug, id)): Params<(String, i64)>) -> Result<Redirect, Problem> {
+    staff.grade_again(id).await?;
+    Ok(see(&format!("/c/{slug}/s/{id}")))
 }
 
 pub(super) async fn report(

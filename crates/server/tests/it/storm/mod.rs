@@ -5,6 +5,7 @@
 
 mod arena;
 mod grader;
+mod servers;
 mod weather;
 
 use arena::{Arena, Expected};

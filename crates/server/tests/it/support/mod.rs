@@ -3,4 +3,5 @@ pub(crate) mod cluster;
 pub(crate) mod disk;
 pub(crate) mod engines;
 pub(crate) mod platform;
+pub(crate) mod rows;
 pub(crate) mod server;

@@ -23,6 +23,11 @@ if [ "$1 $2" = "suite list" ]; then
         {"name": "course-2027", "title": "New", "default": false}]}'
     exit 0
 fi
+if [ "$1 $2" = "suite check" ]; then
+    grep -q broken suite.toml || exit 0
+    printf 'error: the suite has a problem:\n%s/suite.toml:1:1: it is broken\n' "$PWD" >&2
+    exit 2
+fi
 [ "$1" = grade ] || exit 2
 program=$2
 rules=of-the-suite
@@ -44,6 +49,20 @@ done
 [ -d "$program" ] && program=$program/FOSSSim
 read -r _ code points scene right < "$program"
 [ "$code" = HANG ] && exec sleep 600
+if [ "$code" = POISON ]; then
+    kill -KILL $PPID
+    sleep 60
+fi
+if [ "$code" = SLOW ]; then
+    sleep 1
+    code=AC
+fi
+# Fails until somebody has mended it.
+if [ "$code" = FAIL ] && [ ! -e "$0.mended" ]; then
+    echo "$PWD/suite/suite.toml:5:9: a secret of the machine" >&2
+    exit 3
+fi
+[ "$code" = FAIL ] && code=WA
 # By the other rules everything is worth half.
 [ "$rules" = parity ] && points=$((points / 2))
 printf '<script>alert(1)</script> %s by %s\n' "$(basename "$program")" "$(basename "$suite")" > "$text"
@@ -89,9 +108,12 @@ impl Server {
     }
 
     fn start_with(fresh: &Fresh, options: &[&str], folder: PathBuf, temp: tempfile::TempDir) -> Self {
-        let grader = temp.path().join("grader");
-        fs::write(&grader, GRADER).expect("a script");
-        fs::set_permissions(&grader, fs::Permissions::from_mode(0o755)).expect("permissions");
+        let grader = folder.with_file_name("grader");
+        // Another server in this place may be using it.
+        if !grader.exists() {
+            fs::write(&grader, GRADER).expect("a script");
+            fs::set_permissions(&grader, fs::Permissions::from_mode(0o755)).expect("permissions");
+        }
         let database = match &fresh.address {
             Address::Sqlite(file) => format!("sqlite:{}", file.display()),
             Address::Postgres(url) => url.clone(),
@@ -174,6 +196,12 @@ impl Server {
     pub(crate) fn kill(&mut self) {
         self.child.kill().expect("kill");
         self.child.wait().expect("wait");
+    }
+
+    /// Sends it a signal.
+    pub(crate) fn signal(&self, signal: i32) {
+        // SAFETY: the process is this test's own child, and not reaped.
+        unsafe { libc::kill(self.child.id().cast_signed(), signal) };
     }
 
     /// Asks it to end, and returns how it did.

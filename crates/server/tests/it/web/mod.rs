@@ -1,6 +1,8 @@
 //! The server as a process, spoken to over HTTP.
 
+mod again;
 mod backup;
+mod crashes;
 mod description;
 mod example;
 mod flows;

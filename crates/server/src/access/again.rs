@@ -1,0 +1,82 @@
+//! Grading once more what the grader failed on, and going on with what waits for staff.
+use super::{
+    Staff,
+    bulk::{enqueue_replaced, resume},
+    view,
+};
+use crate::{db::Transaction, problem::Problem, queue::Bell, values};
+
+impl Staff {
+    /// Grades a submission once more, by the assignment's settings as they are.
+    ///
+    /// # Errors
+    /// When there is none of this number, it is being graded, or its bytes are not kept any longer.
+    pub async fn grade_again(&self, id: i64) -> Result<i64, Problem> {
+        let submission = self.member().submission(id).await?;
+        let assignment = self.member().assignment(&submission.assignment).await?;
+        if submission.removed_at.is_some() {
+            return Err(Problem::removed());
+        }
+        let mut transaction = self.begin().await?;
+        transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
+        let replaced = transaction
+            .execute(
+                "UPDATE job SET replaced = 1 WHERE submission = ? AND campaign IS NULL AND replaced = 0
+                    AND state IN ('done', 'buried', 'cancelled')",
+                values![id],
+            )
+            .await?;
+        if replaced == 0 {
+            return Err(Problem::conflict("it is being graded", "wait for its grade"));
+        }
+        let jobs = enqueue_replaced(&mut transaction, &assignment, id..=id).await?;
+        let mut deed = self.deed("graded again", Some(assignment.id), "one submission");
+        deed.submission = Some(id);
+        view::note(&mut transaction, &deed).await?;
+        self.rung(transaction).await?;
+        Ok(jobs)
+    }
+
+    /// Grades all submissions of an assignment, or of all assignments of the course, on which the grader failed once
+    /// more, and goes on with those that wait for staff; how many these are.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<i64, Problem> {
+        let assignments = match assignment {
+            Some(slug) => vec![self.member().assignment(slug).await?],
+            None => self.member().assignments().await?,
+        };
+        let mut jobs = 0;
+        for assignment in assignments {
+            let mut transaction = self.begin().await?;
+            transaction.row("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
+            let mut found = resume(&mut transaction, &assignment).await?;
+            transaction
+                .execute(
+                    "UPDATE job SET replaced = 1 WHERE campaign IS NULL AND replaced = 0 AND state = 'buried'
+                        AND submission IN (SELECT submission.id FROM submission
+                            JOIN grade ON grade.submission = submission.id
+                            JOIN result ON result.id = grade.result AND result.code = 'JE'
+                            WHERE submission.assignment = ? AND submission.removed_at IS NULL)",
+                    values![assignment.id],
+                )
+                .await?;
+            found += enqueue_replaced(&mut transaction, &assignment, 0..=i64::MAX).await?;
+            if found > 0 {
+                let text = format!("{found} submissions on which the grader failed");
+                view::note(&mut transaction, &self.deed("graded again", Some(assignment.id), &text)).await?;
+            }
+            self.rung(transaction).await?;
+            jobs += found;
+        }
+        Ok(jobs)
+    }
+
+    async fn rung(&self, mut transaction: Transaction) -> Result<(), Problem> {
+        Bell::ring(&mut transaction).await?;
+        transaction.commit().await?;
+        self.member().house.0.bell.strike();
+        Ok(())
+    }
+}

@@ -1,0 +1,100 @@
+//! Jobs for many submissions at once, made by the database.
+use super::{submit, view::Assignment};
+use crate::{
+    db::{DbError, Transaction, Value},
+    problem::Problem,
+    task::{Form, Input},
+    values,
+};
+use std::ops::RangeInclusive;
+
+/// The payload of a job for a row of `submission`, as [`pieces`] says.
+macro_rules! payload {
+    () => {
+        "CAST(? AS TEXT) || submission.form || CAST(? AS TEXT) || {quoted}(submission.file_name) || CAST(? AS TEXT)
+            || submission.digest || CAST(? AS TEXT) || CAST(submission.size AS TEXT) || CAST(? AS TEXT)"
+    };
+}
+pub(super) use payload;
+
+/// What stands between the columns in a [`payload`]: the same for all submissions to an assignment.
+pub(super) fn pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
+    let any = crate::store::Artefact { digest: crate::store::Digest::of(b""), size: 0 };
+    let task = submit::task(assignment, Input { form: Form::Program, name: String::new(), artefact: any });
+    let mut task = serde_json::to_value(task).map_err(|_| Problem::fault())?;
+    if let Some(fields) = task.as_object_mut() {
+        fields.remove("submission");
+    }
+    let rest = task.to_string();
+    Ok([
+        r#"{"submission":{"form":""#.to_owned(),
+        r#"","name":"#.to_owned(),
+        r#","digest":""#.to_owned(),
+        r#"","size":"#.to_owned(),
+        format!("}},{}", rest.trim_start_matches('{')),
+    ])
+}
+
+/// Enqueues the submissions to an assignment, of these numbers, whose jobs are replaced.
+pub(super) async fn enqueue_replaced(
+    transaction: &mut Transaction,
+    assignment: &Assignment,
+    ids: RangeInclusive<i64>,
+) -> Result<i64, Problem> {
+    let pieces = pieces(assignment)?;
+    let mut values: Vec<Value> = vec![format!("again {}", assignment.id).into()];
+    values.extend(pieces.into_iter().map(Value::from));
+    values.extend([assignment.id, *ids.start(), *ids.end()].map(Value::from));
+    // A second apart: uploads that come meanwhile are graded in between.
+    let jobs = transaction
+        .execute(
+            concat!(
+                "INSERT INTO job (lane, submission, fair_key, payload, state, rank, run_after, enqueued_at)
+                 SELECT 'grading', submission.id, CAST(? AS TEXT), ",
+                payload!(),
+                ", 'waiting', {now} + 1000 * row_number() OVER (ORDER BY submission.id), {now}, {now}
+                 FROM submission WHERE submission.assignment = ? AND submission.id BETWEEN ? AND ?
+                    AND submission.removed_at IS NULL
+                    AND EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.replaced = 1)
+                    AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.campaign IS NULL
+                        AND job.replaced = 0)"
+            ),
+            &values,
+        )
+        .await?;
+    Ok(i64::try_from(jobs).unwrap_or(i64::MAX))
+}
+
+/// Goes on with the jobs of an assignment that wait for staff, by its settings as they are; how many these are.
+pub(super) async fn resume(transaction: &mut Transaction, assignment: &Assignment) -> Result<i64, Problem> {
+    let paused = transaction
+        .row("SELECT id FROM assignment WHERE id = ? AND paused_at IS NOT NULL", values![assignment.id])
+        .await?;
+    if paused.is_none() {
+        return Ok(0);
+    }
+    let mut values: Vec<Value> = pieces(assignment)?.into_iter().map(Value::from).collect();
+    values.push(assignment.id.into());
+    let jobs = transaction
+        .execute(
+            concat!(
+                "UPDATE job SET lane = 'grading', failures = 0, failed_by = NULL, run_after = {now}, payload =
+                    CASE WHEN campaign IS NOT NULL THEN payload ELSE (SELECT ",
+                payload!(),
+                " FROM submission WHERE submission.id = job.submission) END
+                 WHERE lane = 'paused' AND state = 'waiting'
+                    AND submission IN (SELECT id FROM submission WHERE assignment = ?)"
+            ),
+            &values,
+        )
+        .await?;
+    forget(transaction, assignment.id).await?;
+    Ok(i64::try_from(jobs).unwrap_or(i64::MAX))
+}
+
+async fn forget(transaction: &mut Transaction, assignment: i64) -> Result<(), DbError> {
+    transaction
+        .execute("UPDATE assignment SET paused_at = NULL, paused_fault = NULL WHERE id = ?", values![assignment])
+        .await?;
+    Ok(())
+}

@@ -1,0 +1,248 @@
+//! The work of regrades: set-based statements over some hundred submissions at a time, so that nobody who writes waits
+//! for long. Where a regrade is stands in its row: whoever looks goes on with it, also after the server died.
+use super::{
+    Settings,
+    bulk::{payload, pieces},
+    view::{self, Assignment},
+};
+use crate::{
+    db::{Database, DbError, Row, Transaction, Value},
+    lti::score,
+    problem::Problem,
+    queue::{Bell, Turn},
+    task::JUDGE_ERROR,
+    values,
+};
+use std::time::{Duration, Instant};
+use tokio_util::sync::CancellationToken;
+
+/// Submissions in one transaction.
+const BATCH: i64 = 500;
+
+/// How often somebody looks although nobody rang.
+const LOOK_EVERY: Duration = Duration::from_secs(2);
+
+/// Works on regrades until `stop` is cancelled.
+pub async fn run(database: Database, bell: Bell, stop: CancellationToken) {
+    let mut ear = bell.ear();
+    while !stop.is_cancelled() {
+        match step(&database, None).await {
+            // Others who write come in between.
+            Ok(Step::Done) => continue,
+            Ok(Step::Busy | Step::Nothing) => {}
+            Err(problem) => tracing::warn!(detail = problem.detail, "a regrade does not go on yet"),
+        }
+        tokio::select! {
+            () = stop.cancelled() => return,
+            _ = ear.wait(LOOK_EVERY) => {}
+        }
+    }
+}
+
+/// Works on one regrade while somebody waits for the answer, and not for longer than that: a small one is done then.
+pub(super) async fn hurry(database: &Database, campaign: i64, at_most: Duration) -> Result<(), Problem> {
+    let start = Instant::now();
+    while start.elapsed() < at_most {
+        match step(database, Some(campaign)).await? {
+            Step::Done => {}
+            Step::Busy => tokio::time::sleep(Duration::from_millis(10)).await,
+            Step::Nothing => break,
+        }
+    }
+    Ok(())
+}
+
+/// What became of a wish to do a batch.
+enum Step {
+    Done,
+    /// Somebody else is at it.
+    Busy,
+    Nothing,
+}
+
+/// A regrade that there is something to do for.
+struct Campaign {
+    id: i64,
+    /// The last row that was looked at.
+    cursor: i64,
+    assignment: Assignment,
+    course: i64,
+    reason: String,
+    by: i64,
+}
+
+/// Does the next batch of a regrade, or of any.
+async fn step(database: &Database, wanted: Option<i64>) -> Result<Step, Problem> {
+    // A reader's transaction only, where there is nothing to do.
+    let due = "SELECT id FROM campaign WHERE doing IS NOT NULL AND (id = ? OR ? = 0) ORDER BY id LIMIT 1";
+    let wanted = wanted.unwrap_or(0);
+    if database.read().await?.row(due, values![wanted, wanted]).await?.is_none() {
+        return Ok(Step::Nothing);
+    }
+    let mut transaction = database.begin().await?;
+    let row = transaction
+        .row(
+            "SELECT id, doing, cursor, assignment, settings, reason, coalesce(decided_by, started_by) AS by
+             FROM campaign WHERE doing IS NOT NULL AND (id = ? OR ? = 0) ORDER BY id LIMIT 1 {skip locked}",
+            values![wanted, wanted],
+        )
+        .await?;
+    let Some(row) = row else { return Ok(Step::Busy) };
+    let of = transaction
+        .one(
+            "SELECT id, slug, title, visible, settings, published_at, course FROM assignment WHERE id = ?",
+            values![row.int("assignment")?],
+        )
+        .await?;
+    let campaign = Campaign {
+        id: row.int("id")?,
+        cursor: row.int("cursor")?,
+        assignment: Assignment { settings: Settings::read(&row.text("settings")?)?, ..view::read_assignment(&of)? },
+        course: of.int("course")?,
+        reason: row.text("reason")?,
+        by: row.int("by")?,
+    };
+    match row.text("doing")?.as_str() {
+        "begin" => begin(&mut transaction, &campaign).await?,
+        "apply" => apply(&mut transaction, &campaign).await?,
+        _ => discard(&mut transaction, &campaign).await?,
+    }
+    Bell::ring(&mut transaction).await?;
+    transaction.commit().await?;
+    Ok(Step::Done)
+}
+
+/// The rows of the next batch: their last number and how many there are.
+fn batch(row: &Row) -> Result<Option<(i64, i64)>, DbError> {
+    row.maybe_int("last")?.map(|last| row.int("n").map(|n| (last, n))).transpose()
+}
+
+async fn advance(transaction: &mut Transaction, campaign: i64, last: i64, count: i64) -> Result<(), DbError> {
+    transaction
+        .execute("UPDATE campaign SET cursor = ?, done = done + ? WHERE id = ?", values![last, count, campaign])
+        .await?;
+    Ok(())
+}
+
+async fn finish(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
+    transaction.execute("UPDATE campaign SET doing = NULL WHERE id = ?", values![campaign]).await?;
+    Ok(())
+}
+
+/// Enqueues submissions that the regrade does not know yet.
+async fn begin(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), Problem> {
+    let row = transaction
+        .one(
+            "SELECT max(id) AS last, count(*) AS n FROM (SELECT id FROM submission
+                WHERE assignment = ? AND id > ? AND removed_at IS NULL ORDER BY id LIMIT ?) AS batch",
+            values![campaign.assignment.id, campaign.cursor, BATCH],
+        )
+        .await?;
+    let Some((last, count)) = batch(&row)? else { return Ok(finish(transaction, campaign.id).await?) };
+    let turn = Turn::Campaign(campaign.id);
+    let from = turn.next(transaction).await?;
+    let mut values: Vec<Value> = vec![campaign.id.into(), turn.key().into()];
+    values.extend(pieces(&campaign.assignment)?.into_iter().map(Value::from));
+    values.push(from.into());
+    values.push(turn.spacing_millis().into());
+    values.extend([campaign.assignment.id, campaign.cursor, last, campaign.id].map(Value::from));
+    transaction
+        .execute(
+            concat!(
+                "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
+                 SELECT 'grading', submission.id, CAST(? AS {int}), CAST(? AS TEXT), ",
+                payload!(),
+                ", 'waiting', ? + ? * (row_number() OVER (ORDER BY submission.id) - 1), {now}, {now}
+                 FROM submission
+                 WHERE submission.assignment = ? AND submission.id > ? AND submission.id <= ?
+                    AND submission.removed_at IS NULL
+                    AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.campaign = ?)"
+            ),
+            &values,
+        )
+        .await?;
+    Ok(advance(transaction, campaign.id, last, count).await?)
+}
+
+/// Makes results count.
+async fn apply(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), Problem> {
+    let row = transaction
+        .one(
+            "SELECT max(id) AS last, count(*) AS n FROM (SELECT id FROM result
+                WHERE campaign = ? AND id > ? ORDER BY id LIMIT ?) AS batch",
+            values![campaign.id, campaign.cursor, BATCH],
+        )
+        .await?;
+    let Some((last, count)) = batch(&row)? else { return Ok(applied(transaction, campaign).await?) };
+    transaction
+        .execute(
+            "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
+             SELECT result.submission, grade.result, result.id, CAST(? AS {int}), CAST(? AS {int}), CAST(? AS TEXT), {now}
+             FROM result LEFT JOIN grade ON grade.submission = result.submission
+             WHERE result.campaign = ? AND result.id > ? AND result.id <= ? AND result.code <> ?",
+            values![campaign.by, campaign.id, &campaign.reason, campaign.id, campaign.cursor, last, JUDGE_ERROR],
+        )
+        .await?;
+    transaction
+        .execute(
+            "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
+             SELECT {now}, 'grade changed', CAST(? AS {int}), CAST(? AS {int}), CAST(? AS {int}), result.submission,
+                CAST(? AS TEXT)
+             FROM result LEFT JOIN grade ON grade.submission = result.submission
+             LEFT JOIN result AS old ON old.id = grade.result
+             WHERE result.campaign = ? AND result.id > ? AND result.id <= ? AND result.code <> ?
+                AND (old.id IS NULL OR old.code <> result.code
+                    OR coalesce(old.points, '') <> coalesce(result.points, ''))",
+            values![
+                campaign.by,
+                campaign.course,
+                campaign.assignment.id,
+                &campaign.reason,
+                campaign.id,
+                campaign.cursor,
+                last,
+                JUDGE_ERROR
+            ],
+        )
+        .await?;
+    transaction
+        .execute(
+            "INSERT INTO grade (submission, result, set_at)
+             SELECT submission, id, {now} FROM result
+             WHERE campaign = ? AND id > ? AND id <= ? AND code <> ?
+             ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at",
+            values![campaign.id, campaign.cursor, last, JUDGE_ERROR],
+        )
+        .await?;
+    score::changed_by(transaction, campaign.id, campaign.cursor, last).await?;
+    Ok(advance(transaction, campaign.id, last, count).await?)
+}
+
+async fn applied(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), DbError> {
+    transaction
+        .execute("UPDATE campaign SET state = 'applied', decided_at = {now} WHERE id = ?", values![campaign.id])
+        .await?;
+    finish(transaction, campaign.id).await?;
+    let text = format!("regrade {} applied", campaign.id);
+    let deed = view::Deed {
+        kind: "regrade",
+        actor: campaign.by,
+        course: Some(campaign.course),
+        assignment: Some(campaign.assignment.id),
+        submission: None,
+        text: &text,
+    };
+    view::note(transaction, &deed).await
+}
+
+/// Takes what is left of a regrade out of the queue.
+async fn discard(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), DbError> {
+    let cancelled = transaction
+        .execute(
+            "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+             WHERE id IN (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running') LIMIT ?)",
+            values![campaign.id, BATCH],
+        )
+        .await?;
+    if cancelled == 0 { finish(transaction, campaign.id).await } else { Ok(()) }
+}

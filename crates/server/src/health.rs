@@ -1,0 +1,234 @@
+//! How workers and suites are doing: faults of the grader are counted by both, so that a worker that fails leaves the
+//! work to others, and a suite by which nothing can be graded waits for staff.
+use crate::{
+    db::{DbError, Transaction},
+    queue::{Claimant, Policy},
+    values,
+};
+use std::time::Duration;
+
+/// After so many faults in a row a worker leaves jobs to others that had none since their last result.
+const STEPS_ASIDE: i64 = 3;
+
+/// For so long, at most; it doubles from a second on.
+const LONGEST_ASIDE: Duration = Duration::from_secs(60);
+
+/// When so many submissions failed, and none was ever graded by the same suite, the suite is taken for broken.
+const BROKEN: i64 = 5;
+
+/// How long after its last sign of life a worker counts as alive, in milliseconds.
+#[must_use]
+pub fn recent(policy: &Policy) -> i64 {
+    i64::try_from(2 * policy.lease.as_millis()).unwrap_or(i64::MAX)
+}
+
+/// A worker is alive, and can or can't grade.
+///
+/// # Errors
+/// What the database says.
+pub async fn seen(
+    transaction: &mut Transaction,
+    worker: &str,
+    token: Option<i64>,
+    slots: usize,
+    fault: Option<&str>,
+) -> Result<(), DbError> {
+    let slots = i64::try_from(slots).unwrap_or(i64::MAX);
+    let fault = fault.map(without_paths);
+    transaction
+        .execute(
+            "INSERT INTO worker (name, version, slots, started_at, seen_at, token) VALUES (?, ?, ?, {now}, {now}, ?)
+             ON CONFLICT (name) DO UPDATE SET slots = excluded.slots, seen_at = excluded.seen_at",
+            values![worker, env!("CARGO_PKG_VERSION"), slots, token],
+        )
+        .await?;
+    if let Some(fault) = &fault {
+        transaction
+            .execute(
+                "UPDATE worker SET fault = ?, fault_at = {now}, aside_since = coalesce(aside_since, {now}),
+                    faults = faults + CASE WHEN aside_since IS NULL THEN 1 ELSE 0 END WHERE name = ?",
+                values![fault, worker],
+            )
+            .await?;
+    } else if slots > 0 {
+        transaction
+            .execute("UPDATE worker SET aside_since = NULL WHERE name = ? AND aside_since IS NOT NULL", values![worker])
+            .await?;
+    }
+    Ok(())
+}
+
+/// Whether a worker may claim: it holds no more jobs than its token has slots, and it does not fail while others do
+/// not.
+///
+/// # Errors
+/// What the database says.
+pub async fn may_claim(
+    transaction: &mut Transaction,
+    policy: &Policy,
+    claimant: Claimant<'_>,
+) -> Result<bool, DbError> {
+    let recent = recent(policy);
+    if let Some(token) = claimant.token {
+        // One after another, so that the count holds.
+        transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token]).await?;
+        let room = transaction
+            .one(
+                "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots,
+                    (SELECT count(*) FROM job WHERE token = ? AND state = 'running') AS held
+                 FROM worker WHERE token = ? AND seen_at > {now} - ?",
+                values![token, token, recent],
+            )
+            .await?;
+        if room.int("held")? >= room.int("slots")?.max(1) {
+            return Ok(false);
+        }
+    }
+    let row = transaction
+        .row(
+            "SELECT in_a_row, {now} - fault_at AS since FROM worker WHERE name = ? AND in_a_row >= ?",
+            values![claimant.worker, STEPS_ASIDE],
+        )
+        .await?;
+    let Some(row) = row else { return Ok(true) };
+    let steps = u32::try_from(row.int("in_a_row")? - STEPS_ASIDE).unwrap_or(0).min(16);
+    let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(LONGEST_ASIDE);
+    // A fault that lies ahead is of a clock that was set back.
+    let since = row.maybe_int("since")?.and_then(|since| u64::try_from(since).ok());
+    if since.is_none_or(|since| Duration::from_millis(since) >= aside) {
+        return Ok(true);
+    }
+    let better = transaction
+        .row(
+            "SELECT name FROM worker WHERE name <> ? AND slots > 0 AND in_a_row = 0 AND seen_at > {now} - ?
+                AND seen_at <= {now} + ? LIMIT 1",
+            values![claimant.worker, recent, recent],
+        )
+        .await?;
+    Ok(better.is_none())
+}
+
+/// The grader failed in this worker, which says that it can grade.
+pub(crate) async fn failed(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
+    transaction
+        .execute(
+            "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
+             WHERE name = ?",
+            values![fault, worker],
+        )
+        .await?;
+    Ok(())
+}
+
+/// The worker brought a result.
+pub(crate) async fn graded(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
+    transaction.execute("UPDATE worker SET in_a_row = 0 WHERE name = ? AND in_a_row > 0", values![worker]).await?;
+    Ok(())
+}
+
+/// After a fault: has an assignment's jobs wait for staff when nothing can be graded by their suite. It is taken for
+/// broken when many submissions failed, none was ever graded by it, and that more than one worker found, or the only
+/// one. Whether it was paused.
+pub(crate) async fn pause_broken(
+    transaction: &mut Transaction,
+    policy: &Policy,
+    assignment: i64,
+    task: &str,
+    fault: &str,
+) -> Result<bool, DbError> {
+    let Some(suite) = suite_of(task) else { return Ok(false) };
+    let graded = transaction
+        .row(
+            "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
+             WHERE submission.assignment = ? AND result.code <> 'JE' AND result.task LIKE ? LIMIT 1",
+            values![assignment, &suite],
+        )
+        .await?;
+    if graded.is_some() {
+        return Ok(false);
+    }
+    let failed = transaction
+        .one(
+            "SELECT count(*) AS jobs, count(DISTINCT job.failed_by) AS workers FROM submission
+             JOIN job ON job.submission = submission.id
+             WHERE submission.assignment = ? AND job.failures > 0 AND job.state IN ('waiting', 'running', 'buried')
+                AND job.payload LIKE ?",
+            values![assignment, &suite],
+        )
+        .await?;
+    if failed.int("jobs")? < BROKEN {
+        return Ok(false);
+    }
+    let alive = transaction
+        .one("SELECT count(*) AS n FROM worker WHERE slots > 0 AND seen_at > {now} - ?", values![recent(policy)])
+        .await?;
+    if failed.int("workers")? < 2 && alive.int("n")? > 1 {
+        return Ok(false);
+    }
+    transaction
+        .execute(
+            "UPDATE job SET lane = 'paused' WHERE lane = 'grading' AND state = 'waiting' AND payload LIKE ?
+                AND submission IN (SELECT id FROM submission WHERE assignment = ?)",
+            values![&suite, assignment],
+        )
+        .await?;
+    let newly = transaction
+        .execute(
+            "UPDATE assignment SET paused_at = {now}, paused_fault = ? WHERE id = ? AND paused_at IS NULL",
+            values![fault, assignment],
+        )
+        .await?;
+    Ok(newly > 0)
+}
+
+/// What a task's suite looks like in its text.
+fn suite_of(task: &str) -> Option<String> {
+    let value: serde_json::Value = serde_json::from_str(task).ok()?;
+    Some(format!("%\"suite\":{}%", value.get("suite")?))
+}
+
+/// A message without the folders of the machine that it comes from: of an absolute path the last name is left.
+#[must_use]
+pub fn without_paths(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find('/') {
+        let before = rest[..at].chars().next_back();
+        let (head, tail) = rest.split_at(at);
+        plain.push_str(head);
+        let end = tail.find(|c: char| c.is_whitespace() || "\"'`(),;:<>|".contains(c)).unwrap_or(tail.len());
+        let (path, after) = tail.split_at(end);
+        // `Group/scene` and `asset:Group/scene` are names.
+        let is_name = before.is_some_and(|c| c.is_alphanumeric() || "_.-@*".contains(c));
+        plain.push_str(if is_name { path } else { path.trim_end_matches('/').rsplit('/').next().unwrap_or("") });
+        rest = after;
+    }
+    plain.push_str(rest);
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_cut_and_names_are_not() {
+        for (said, told) in [
+            ("/var/lib/f/work/w.1/job-a/work/suite/suite.toml:5:9: no", "suite.toml:5:9: no"),
+            ("cannot read `/etc/passwd`, (/tmp/a b)", "cannot read `passwd`, (a b)"),
+            ("no embedded scene matches asset:No/such", "no embedded scene matches asset:No/such"),
+            ("file:///srv/x/y failed in Group/scene-1", "file:y failed in Group/scene-1"),
+            ("1 / 2 and /", "1  2 and "),
+            ("", ""),
+        ] {
+            assert_eq!(without_paths(said), told);
+        }
+    }
+
+    #[test]
+    fn a_suite_is_found_in_its_tasks() {
+        let task = r#"{"submission":{"form":"program"},"suite":{"named":"t2m2@2"},"seconds":5}"#;
+        assert_eq!(suite_of(task).as_deref(), Some(r#"%"suite":{"named":"t2m2@2"}%"#));
+        assert_eq!(suite_of("score"), None);
+    }
+}

@@ -1,0 +1,90 @@
+//! Who stands between a worker and its grader: a process that does nothing but wait, so that a grader which kills or
+//! stops its parent meets the guard, and not the worker with all its other jobs.
+use std::{
+    io,
+    sync::atomic::{AtomicI32, Ordering},
+};
+
+/// The grader, for the guard's handler of signals.
+static GRADER: AtomicI32 = AtomicI32::new(0);
+
+/// Forks. The child returns and becomes the grader; this process becomes its guard, and ends as it does.
+///
+/// # Safety
+/// Only between fork and exec of a child that leads a process group: nothing of the process is left but its memory.
+///
+/// # Errors
+/// When there can't be another process.
+pub(super) unsafe fn stand_between() -> io::Result<()> {
+    // SAFETY: these calls may be made between fork and exec, and take no memory of ours but the text.
+    unsafe {
+        // When memory runs short the grader goes first, and not the worker.
+        let file = libc::open(c"/proc/self/oom_score_adj".as_ptr(), libc::O_WRONLY | libc::O_CLOEXEC);
+        if file >= 0 {
+            libc::write(file, c"800".as_ptr().cast(), 3);
+            libc::close(file);
+        }
+        let guard = libc::getpid();
+        let mut ready = [0; 2];
+        if libc::pipe2(ready.as_mut_ptr(), libc::O_CLOEXEC) != 0 {
+            return Err(io::Error::last_os_error());
+        }
+        match libc::fork() {
+            -1 => Err(io::Error::last_os_error()),
+            0 => {
+                libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
+                // The guard died before the line above.
+                if libc::getppid() != guard {
+                    return Err(io::Error::from_raw_os_error(libc::ESRCH));
+                }
+                // Until the guard has closed its files, and keeps nobody waiting whatever becomes of it.
+                libc::close(ready[1]);
+                libc::read(ready[0], ready.as_mut_ptr().cast(), 1);
+                libc::close(ready[0]);
+                Ok(())
+            }
+            grader => watch(grader),
+        }
+    }
+}
+
+/// Passes the wish to stop on.
+extern "C" fn pass_on(signal: libc::c_int) {
+    // SAFETY: kill may be called in a handler; the grader is not reaped before the guard ends.
+    unsafe { libc::kill(GRADER.load(Ordering::Relaxed), signal) };
+}
+
+/// Waits for the grader, and ends as it did.
+unsafe fn watch(grader: libc::pid_t) -> ! {
+    GRADER.store(grader, Ordering::Relaxed);
+    // SAFETY: system calls on numbers, and structures that are zeroed first.
+    unsafe {
+        // Handlers of the worker would speak to it by files that are closed here. What says that the grader has
+        // started is one of them: the worker waits until nobody holds it.
+        for signal in [libc::SIGINT, libc::SIGHUP, libc::SIGQUIT, libc::SIGCHLD, libc::SIGUSR1, libc::SIGUSR2] {
+            libc::signal(signal, libc::SIG_DFL);
+        }
+        let mut action: libc::sigaction = std::mem::zeroed();
+        action.sa_sigaction = pass_on as extern "C" fn(libc::c_int) as libc::sighandler_t;
+        libc::sigaction(libc::SIGTERM, &raw const action, std::ptr::null_mut());
+        if libc::syscall(libc::SYS_close_range, 0, libc::c_uint::MAX, 0) != 0 {
+            // Kernels before 5.9.
+            for file in 0..65_536 {
+                libc::close(file);
+            }
+        }
+        let mut status = 0;
+        while libc::waitpid(grader, &raw mut status, 0) != grader {
+            if *libc::__errno_location() != libc::EINTR {
+                libc::_exit(127);
+            }
+        }
+        if libc::WIFSIGNALED(status) {
+            let no_core = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+            libc::setrlimit(libc::RLIMIT_CORE, &raw const no_core);
+            libc::signal(libc::WTERMSIG(status), libc::SIG_DFL);
+            libc::kill(libc::getpid(), libc::WTERMSIG(status));
+        }
+        libc::_exit(libc::WEXITSTATUS(status))
+    }
+}

@@ -1,0 +1,55 @@
+//! Asks the grader whether a suite can be graded by, before anybody's submission is.
+use super::{
+    child::{Child, End},
+    program::at_home,
+};
+use crate::health::without_paths;
+use std::{fs, os::unix::process::CommandExt, path::Path, process::Command, time::Duration};
+
+/// How long the grader may look, in seconds on the clock and of the processor.
+const SECONDS: u64 = 60;
+
+/// How much memory it may take for that.
+const MEMORY: u64 = 2 << 30;
+
+/// How much of what it says is told.
+const MESSAGE: usize = 2000;
+
+/// Has the grader look at the suite in a folder. A grader that knows no `suite check` has no objections.
+///
+/// # Errors
+/// What the grader says is wrong with it, without the folders of this machine.
+pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
+    let messages = tempfile::NamedTempFile::new_in(folder).map_err(|error| error.to_string())?;
+    let mut command = Command::new(grader);
+    command.args(["suite", "check", "suite.toml"]);
+    at_home(&mut command, folder);
+    command.stderr(messages.reopen().map_err(|error| error.to_string())?);
+    // SAFETY: setrlimit may be called between fork and exec.
+    unsafe {
+        command.pre_exec(|| {
+            for (what, most) in [(libc::RLIMIT_AS, MEMORY), (libc::RLIMIT_CPU, SECONDS), (libc::RLIMIT_CORE, 0)] {
+                let limit = libc::rlimit { rlim_cur: most, rlim_max: most };
+                libc::setrlimit(what, &raw const limit);
+            }
+            Ok(())
+        });
+    }
+    let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
+    let Ok(end) = tokio::time::timeout(Duration::from_secs(SECONDS), child.ended()).await else {
+        child.kill();
+        child.ended().await;
+        return Err(format!("the grader has looked at it for {SECONDS} seconds and not come to an end"));
+    };
+    let said = fs::read(messages.path()).unwrap_or_default();
+    let said = String::from_utf8_lossy(&said[..said.len().min(MESSAGE)]).into_owned();
+    tracing::info!(?end, said, "the grader looked at a suite");
+    match (end, said.trim().strip_prefix("error:")) {
+        (End::Code(0), _) => Ok(()),
+        (End::Code(_), Some(said)) if !said.contains("unrecognized subcommand") => Err(without_paths(
+            &said.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join("; "),
+        )),
+        (End::Code(_), _) => Ok(()),
+        (End::Signal(_), _) => Err("the grader failed while it looked at it, which may be for its size".to_owned()),
+    }
+}

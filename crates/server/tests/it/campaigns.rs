@@ -1,0 +1,162 @@
+//! Regrades of whole classes. `FOSSSIM_ROWS=20000` grades so many submissions again, and prints how long it took.
+use crate::support::{
+    engines::{Fresh, on_both_engines},
+    rows,
+    server::{Client, Server, program},
+};
+use fosssim_server::values;
+use std::time::{Duration, Instant};
+
+on_both_engines!(a_class_is_graded_again_in_the_background, a_regrade_goes_on_after_the_server_died);
+
+const BASE: &str = "/api/v1/courses/physics/assignments/m1/regrades";
+
+/// Waits until nothing is being done for a regrade.
+fn settled(admin: &Client, id: &serde_json::Value) -> serde_json::Value {
+    let start = Instant::now();
+    loop {
+        let regrade = admin.get(&format!("{BASE}/{id}")).expect(200).json();
+        if regrade["doing"].is_null() {
+            return regrade;
+        }
+        assert!(start.elapsed() < Duration::from_secs(300), "{regrade}");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+async fn assignment(fresh: &Fresh) -> i64 {
+    let mut transaction = fresh.database.read().await.expect("a transaction");
+    let row = transaction.one("SELECT id FROM assignment WHERE slug = 'm1'", values![]).await;
+    row.and_then(|row| row.int("id")).expect("a number")
+}
+
+/// Ends the jobs of a regrade with half the points for every second submission.
+async fn grade_all(fresh: &Fresh) {
+    let mut transaction = fresh.database.begin().await.expect("a transaction");
+    for statement in [
+        "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
+            version, task, seconds, created_at)
+         SELECT id, submission, campaign, 1, 'w', 'v', CASE WHEN id % 2 = 0 THEN 'AC' ELSE 'WA' END,
+            CASE WHEN id % 2 = 0 THEN '100' ELSE '50' END, '100', 's', '2', payload, '1', {now}
+         FROM job WHERE campaign IS NOT NULL AND state = 'waiting'",
+        "UPDATE job SET state = 'done', finished_at = {now} WHERE campaign IS NOT NULL AND state = 'waiting'",
+    ] {
+        transaction.execute(statement, values![]).await.expect("results");
+    }
+    transaction.commit().await.expect("commit");
+}
+
+async fn number(fresh: &Fresh, statement: &'static str) -> i64 {
+    let mut transaction = fresh.database.read().await.expect("a transaction");
+    transaction.one(statement, values![]).await.and_then(|row| row.int("n")).expect("a number")
+}
+
+async fn a_class_is_graded_again_in_the_background(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0", "--requests-per-minute", "100000"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let all = rows::count(1200);
+    rows::fill(&fresh.database, assignment(&fresh).await, 100, all).await;
+    let ada = server.member(&admin, "physics", "ada", "student");
+    // Somebody hands in all the while: the longest wait is that for a batch.
+    let stop = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+    let uploading = std::thread::spawn({
+        let stop = stop.clone();
+        move || {
+            let mut longest = Duration::ZERO;
+            while !stop.load(std::sync::atomic::Ordering::SeqCst) {
+                let start = Instant::now();
+                ada.submit("physics", &program("AC", 1));
+                longest = longest.max(start.elapsed());
+                std::thread::sleep(Duration::from_millis(50));
+            }
+            longest
+        }
+    });
+    let start = Instant::now();
+    let begun = admin.post_json(BASE, r#"{"reason": "another rule", "settings": {"rules": "parity", "per_hour": 0}}"#);
+    assert!(matches!(begun.status, 201 | 202), "{}", begun.text());
+    let answered = start.elapsed();
+    let id = begun.json()["id"].clone();
+    let regrade = settled(&admin, &id);
+    let began = start.elapsed();
+    stop.store(true, std::sync::atomic::Ordering::SeqCst);
+    let longest = uploading.join().expect("uploads");
+    assert!(regrade["left"].as_i64() >= Some(all), "{}", regrade["left"]);
+    let payload =
+        number(&fresh, "SELECT count(*) AS n FROM job WHERE campaign IS NOT NULL AND payload LIKE '%parity%'");
+    assert!(payload.await >= all);
+    // One of them as a worker gets it.
+    let mut transaction = fresh.database.read().await.expect("a transaction");
+    let row =
+        transaction.one("SELECT payload FROM job WHERE campaign IS NOT NULL ORDER BY id LIMIT 1", values![]).await;
+    let task: fosssim_server::task::Task =
+        serde_json::from_str(&row.and_then(|row| row.text("payload")).expect("text")).expect("a task");
+    drop(transaction);
+    assert_eq!((task.submission.name.as_str(), task.submission.artefact.size), ("FOSS\"Sim", 12));
+    // What came in while it began is graded, too.
+    let path = format!("{BASE}/{id}");
+    grade_all(&fresh).await;
+    let start = Instant::now();
+    let mut applied = admin.post_json(&format!("{path}/apply"), "");
+    while applied.status == 409 {
+        settled(&admin, &id);
+        grade_all(&fresh).await;
+        applied = admin.post_json(&format!("{path}/apply"), "");
+    }
+    assert!(matches!(applied.status, 200 | 202), "{}", applied.text());
+    let regrade = settled(&admin, &id);
+    let took = start.elapsed();
+    assert_eq!(regrade["state"], "applied");
+    let changed = regrade["changed"].as_i64().expect("a number");
+    assert!(changed >= all / 2, "{changed}");
+    let halves = number(
+        &fresh,
+        "SELECT count(*) AS n FROM grade JOIN result ON result.id = grade.result
+         WHERE result.points = '50'",
+    );
+    assert!(halves.await >= all / 2);
+    let told = number(&fresh, "SELECT count(*) AS n FROM event WHERE kind = 'grade changed'");
+    assert_eq!(told.await, changed);
+    // Changes are told page by page.
+    let (mut seen, mut after) = (0, serde_json::json!(0));
+    while !after.is_null() {
+        let page = admin.get(&format!("{path}?after={after}")).expect(200).json();
+        seen += page["changes"].as_array().expect("a list").len();
+        after = page["next"].clone();
+    }
+    assert_eq!(i64::try_from(seen).expect("few"), changed);
+    println!(
+        "{all} submissions: begin answered after {answered:.2?} and done after {began:.2?}, the longest upload \
+         meanwhile {longest:.2?}; apply {took:.2?}"
+    );
+}
+
+async fn a_regrade_goes_on_after_the_server_died(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0", "--requests-per-minute", "100000"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    rows::fill(&fresh.database, assignment(&fresh).await, 10, 1200).await;
+    // As a server leaves it that dies after the first batch.
+    let mut transaction = fresh.database.begin().await.expect("a transaction");
+    let id = transaction
+        .one(
+            "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at, doing, total)
+             SELECT assignment.id, 'open', 'r', assignment.settings, (SELECT min(id) FROM account), {now}, 'begin', 1200
+             FROM assignment WHERE slug = 'm1' RETURNING id",
+            values![],
+        )
+        .await
+        .and_then(|row| row.int("id"))
+        .expect("a number");
+    transaction.commit().await.expect("commit");
+    server.kill();
+    server.resume();
+    let id = serde_json::json!(id);
+    assert_eq!(settled(&admin, &id)["left"], 1200);
+    // Nobody can decide on it twice, and a discarded one leaves nothing in the queue.
+    admin.post_json(&format!("{BASE}/{id}/discard"), "");
+    assert_eq!(settled(&admin, &id)["state"], "discarded");
+    admin.post_json(&format!("{BASE}/{id}/apply"), "").expect(409);
+    assert_eq!(number(&fresh, "SELECT count(*) AS n FROM job WHERE state = 'waiting'").await, 0);
+}

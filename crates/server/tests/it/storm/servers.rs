@@ -1,0 +1,182 @@
+//! Two servers with their workers on one database and one store, and workers over HTTP of which one lies about its
+//! health and one has no room: killed and frozen while students hand in, some of it poison.
+use crate::support::{
+    disk::SmallDisk,
+    engines::{Fresh, on_all_engines},
+    server::{Client, Server, program},
+};
+use std::{
+    fs,
+    os::unix::fs::PermissionsExt,
+    path::Path,
+    process::{Child, Command, Stdio},
+    time::{Duration, Instant},
+};
+
+use super::weather::Size;
+
+on_all_engines!(two_servers_lose_nothing);
+
+const PATH: &str = "/api/v1/courses/physics/assignments/m1/submissions";
+
+/// A worker over HTTP, killed at the end.
+struct Worker(Child);
+
+impl Worker {
+    fn start(server: &Server, token: &str, folder: &Path, grader: &Path) -> Self {
+        let file = server.folder.with_file_name("worker-token");
+        fs::write(&file, token).expect("a token");
+        let log = fs::File::options().create(true).append(true).open(server.folder.with_file_name("worker.log"));
+        let child = Command::new(env!("CARGO_BIN_EXE_fosssim-server"))
+            .args(["worker", "--server", &server.url, "--slots", "2", "--token-file"])
+            .arg(&file)
+            .arg("--data")
+            .arg(folder)
+            .arg("--grader")
+            .arg(grader)
+            .env_remove("FOSSSIM_DATABASE")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(log.expect("a log"))
+            .spawn()
+            .expect("a worker");
+        Self(child)
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+fn script(path: &Path, text: &str) {
+    fs::write(path, text).expect("a script");
+    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("permissions");
+}
+
+/// Xorshift: any order of events will do.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, below: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        usize::try_from(self.0 >> 33).expect("31 bits") % below
+    }
+}
+
+async fn two_servers_lose_nothing(fresh: Fresh) {
+    let size = Size::from_environment();
+    // A small storm is enough here: a server's start takes longer than a worker's.
+    let size = if std::env::var_os("FOSSSIM_STORM").is_some() { size } else { Size { submissions: 24, kills: 6 } };
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = ["--workers", "2", "--lease", "2", "--requests-per-minute", "1000000"];
+    let data = folder.path().join("data");
+    let mut first = Server::start_in(&fresh, &options, data.clone());
+    let admin = first.admin();
+    first.course(&admin, "physics");
+    let students: Vec<Client> =
+        (0..4).map(|number| first.member(&admin, "physics", &format!("s{number}"), "student")).collect();
+    let mut servers = [first, Server::start_in(&fresh, &options, data.clone())];
+    let token = admin.post_json("/api/v1/worker-tokens", r#"{"name": "lab"}"#).expect(201).json();
+    let token = token["token"].as_str().expect("a token");
+    let liar = folder.path().join("liar");
+    script(&liar, "#!/bin/sh\n[ \"$1\" = grade ] || exit 2\nexit 3\n");
+    let good = servers[1].grader();
+    let disk = SmallDisk::mount(4 << 20);
+    let mut machines = vec![
+        Worker::start(&servers[0], token, &folder.path().join("machine-1"), &liar),
+        Worker::start(&servers[1], token, &folder.path().join("machine-2"), &good),
+    ];
+    machines.extend(disk.as_ref().map(|disk| Worker::start(&servers[1], token, &disk.path().join("data"), &good)));
+    let seed = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).expect("a clock").as_nanos();
+    let mut dice = Dice(u64::try_from(seed).expect("a date") | 1);
+    let (start, mut kills, mut freezes) = (Instant::now(), 0, 0);
+    let mut expected = Vec::new();
+    while expected.len() < size.submissions || kills < size.kills {
+        let due = (kills + 1) * size.submissions / size.kills.max(1);
+        while expected.len() < due.min(size.submissions) {
+            let number = expected.len();
+            let student = &students[number % students.len()];
+            let poison = number % 24 == 5;
+            let text = if poison { program("POISON", 0) } else { program("WA", u32::try_from(number).expect("few")) };
+            let key = format!("upload {number}");
+            // A client that hears nothing asks again, one of the servers, until it is told.
+            let id = loop {
+                let client = Client { url: servers[dice.roll(2)].url.clone(), headers: student.headers.clone() };
+                match client.try_send("POST", PATH, &[("Idempotency-Key", &key)], &text) {
+                    Ok(answer) if matches!(answer.status, 200 | 201) => break answer.json()["id"].as_i64(),
+                    _ => std::thread::sleep(Duration::from_millis(50)),
+                }
+            };
+            expected.push((id.expect("a number"), poison));
+        }
+        std::thread::sleep(Duration::from_millis(u64::try_from(50 + dice.roll(300)).expect("short")));
+        let victim = dice.roll(2);
+        match dice.roll(8) {
+            0 if freezes * 8 <= kills => {
+                freezes += 1;
+                servers[victim].signal(libc::SIGSTOP);
+                std::thread::sleep(Duration::from_secs(4));
+                servers[victim].signal(libc::SIGCONT);
+            }
+            1 => {
+                kills += 1;
+                machines[1] =
+                    Worker::start(&servers[victim], token, &folder.path().join(format!("machine-{kills}")), &good);
+            }
+            _ => {
+                kills += 1;
+                servers[victim].kill();
+                servers[victim].resume();
+            }
+        }
+    }
+    let (mut wrong, mut buried, mut doubled) = (Vec::new(), 0, Vec::new());
+    for (number, (id, poison)) in expected.iter().enumerate() {
+        let student = &students[number % students.len()];
+        let client = Client { url: servers[0].url.clone(), headers: student.headers.clone() };
+        let submission = client.wait_for_grade("physics", *id);
+        let right = if *poison { "JE".to_owned() } else { number.to_string() };
+        let got = if *poison { &submission["grade"]["code"] } else { &submission["grade"]["points"] };
+        buried += usize::from(submission["state"] == "buried" && !poison);
+        if *got != *right {
+            wrong.push(format!("{number}: {submission}"));
+        }
+        let history = client.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json();
+        if history.as_array().map(Vec::len) != Some(1) {
+            doubled.push(format!("{number}: {history}"));
+        }
+    }
+    let mut all = 0;
+    for student in &students {
+        let client = Client { url: servers[0].url.clone(), headers: student.headers.clone() };
+        all += client.get(PATH).expect(200).json().as_array().expect("a list").len();
+    }
+    // One that comes and goes cleans up behind the dead.
+    drop(machines);
+    servers[1].stop();
+    servers[0].stop();
+    servers[0].resume();
+    let clean = Instant::now();
+    let left = |folder: &str| fs::read_dir(data.join(folder)).map_or(0, Iterator::count);
+    while left("workers") > 1 {
+        assert!(clean.elapsed() < Duration::from_secs(60), "signs of dead workers stay");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    servers[0].stop();
+    let leaked = left("workers") + left("work");
+    println!(
+        "| two servers | {} | {kills} | {freezes} | 0 | {} | {} | {buried} | {leaked} | {:.0} s |",
+        expected.len(),
+        doubled.len(),
+        wrong.len(),
+        start.elapsed().as_secs_f64()
+    );
+    assert_eq!(wrong, Vec::<String>::new(), "another grade than in calm weather");
+    assert_eq!(doubled, Vec::<String>::new(), "more than one grade");
+    assert_eq!((buried, leaked, all), (0, 0, expected.len()), "buried, left behind, uploads");
+}

@@ -1,0 +1,119 @@
+//! What the grader fails on: what students read of it, and how staff has it graded again.
+use crate::support::{
+    engines::{Fresh, on_both_engines, run},
+    server::{Client, Server, program},
+};
+use std::{
+    fs,
+    time::{Duration, Instant},
+};
+
+on_both_engines!(staff_has_it_graded_again, an_assignment_that_nothing_can_be_graded_of_waits_for_staff);
+
+fn wait_for_state(client: &Client, id: i64, wanted: impl Fn(&serde_json::Value) -> bool) -> serde_json::Value {
+    let start = Instant::now();
+    loop {
+        let submission = client.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
+        if wanted(&submission) {
+            return submission;
+        }
+        assert!(start.elapsed() < Duration::from_secs(120), "{submission}");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+async fn staff_has_it_graded_again(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1", "--lease", "2", "--tries", "2"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let (ada, bob) =
+        (server.member(&admin, "physics", "ada", "student"), server.member(&admin, "physics", "bob", "student"));
+    let right = ada.submit("physics", &program("AC", 100));
+    ada.wait_for_grade("physics", right);
+    let ids = [ada.submit("physics", &program("FAIL", 30)), bob.submit("physics", &program("FAIL", 40))];
+    for (client, id) in [(&ada, ids[0]), (&bob, ids[1])] {
+        let submission = wait_for_state(client, id, |submission| submission["state"] == "buried");
+        assert_eq!(submission["grade"]["code"], "JE");
+        let page = client.get(&format!("/c/physics/s/{id}")).expect(200).text();
+        let summary = submission["grade"]["summary"].as_str().expect("a sentence");
+        assert!(summary.contains("no fault of the submission"), "{summary}");
+        for text in [submission.to_string(), page] {
+            assert!(!text.contains("secret") && !text.contains("suite.toml"), "{text}");
+        }
+        let seen = admin.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
+        let fault = seen["fault"].as_str().expect("staff is told");
+        assert!(fault.contains("suite.toml:5:9: a secret of the machine") && !fault.contains('/'), "{fault}");
+    }
+    let metrics = server.visitor().get("/metrics").expect(200).text();
+    assert!(metrics.contains("fosssim_events_total{kind=\"graded\"} 1\n"), "{metrics}");
+    let queue = admin.get("/api/v1/queue").expect(200).json();
+    assert_eq!(queue["workers"][0]["faults"], 4, "{queue}");
+    fs::write(server.grader().with_extension("mended"), "").expect("a file");
+    let again = format!("/api/v1/courses/physics/submissions/{}/again", ids[0]);
+    assert_eq!(admin.post_json(&again, "").expect(202).json()["jobs"], 1);
+    let graded = |client: &Client, id| {
+        wait_for_state(client, id, |submission| submission["state"] == "done")["grade"]["points"].clone()
+    };
+    assert_eq!(graded(&ada, ids[0]), "30");
+    let all = "/api/v1/courses/physics/assignments/m1/judge-errors/again";
+    assert_eq!(admin.post_json(all, "").expect(202).json()["jobs"], 1, "only what the grader failed on");
+    assert_eq!(graded(&bob, ids[1]), "40");
+    assert_eq!(admin.post_json("/api/v1/courses/physics/judge-errors/again", "").expect(202).json()["jobs"], 0);
+    let history = ada.get(&format!("/api/v1/courses/physics/submissions/{}/history", ids[0])).expect(200).json();
+    let reasons: Vec<_> = history.as_array().expect("a list").iter().map(|change| change["reason"].clone()).collect();
+    assert_eq!(reasons, ["graded", "graded again"]);
+    let own = ada.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json();
+    assert_eq!(own.as_array().expect("a list").len(), 2, "a submission is one, however often it is graded");
+    assert_eq!(admin.get("/api/v1/queue").expect(200).json()["buried"], 0);
+}
+
+async fn an_assignment_that_nothing_can_be_graded_of_waits_for_staff(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "2", "--lease", "2"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let ids: Vec<i64> = (0..8).map(|points| ada.submit("physics", &program("FAIL", points))).collect();
+    let start = Instant::now();
+    while admin.get("/api/v1/queue").expect(200).json()["paused"] != 8 {
+        assert!(start.elapsed() < Duration::from_secs(120), "{}", admin.get("/api/v1/queue").text());
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let audit = admin.get("/api/v1/courses/physics/audit").expect(200).text();
+    assert!(audit.contains("assignment paused"), "{audit}");
+    let page = ada.get(&format!("/c/physics/s/{}", ids[0])).expect(200).text();
+    assert!(
+        page.contains("waits for the course&#39;s staff") || page.contains("waits for the course's staff"),
+        "{page}"
+    );
+    fs::write(server.grader().with_extension("mended"), "").expect("a file");
+    let all = "/api/v1/courses/physics/assignments/m1/judge-errors/again";
+    assert_eq!(admin.post_json(all, "").expect(202).json()["jobs"], 8);
+    for (points, id) in ids.into_iter().enumerate() {
+        let submission = ada.wait_for_grade("physics", id);
+        assert_eq!(submission["grade"]["points"], points.to_string(), "no try was burnt: {submission}");
+    }
+}
+
+#[test]
+fn a_suite_that_can_t_work_is_refused() {
+    run(async {
+        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let mut server = Server::start(&fresh, &["--workers", "0"]);
+        let admin = server.admin();
+        server.course(&admin, "physics");
+        let path = "/api/v1/courses/physics/assignments/m1/suite";
+        let suite = |text: &str| {
+            let mut archive = tar::Builder::new(Vec::new());
+            let mut header = tar::Header::new_ustar();
+            header.set_size(text.len() as u64);
+            header.set_mode(0o644);
+            archive.append_data(&mut header, "suite.toml", text.as_bytes()).expect("an entry");
+            archive.into_inner().expect("an archive")
+        };
+        let refused = admin.send("PUT", path, &[], &suite("title = 'broken'")).expect(422).json();
+        assert_eq!(refused["detail"], "the suite has a problem:; suite.toml:1:1: it is broken");
+        let assignment = admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json();
+        assert!(assignment["settings"]["suite_archive"].is_null(), "{assignment}");
+        admin.send("PUT", path, &[], &suite("title = 'whole'")).expect(200);
+    });
+}
