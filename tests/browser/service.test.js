@@ -89,7 +89,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByLabel("Name in addresses").fill("m1");
   await page.getByLabel("Title").fill("Milestone one");
   await page.getByRole("button", { name: "Make the assignment" }).click();
-  await page.getByLabel("An archive (zip, tar.gz)").setInputFiles(join(folder, "suite.tar.gz"));
+  await page.getByLabel("An archive (zip, 7z, tar.gz, tar.xz)").setInputFiles(join(folder, "suite.tar.gz"));
   await page.getByRole("button", { name: "Upload the suite" }).click();
   await page.getByLabel("Students see it").check();
   await accessible(page);

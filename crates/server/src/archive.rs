@@ -1,7 +1,10 @@
 //! Archives that strangers send: sources and suites. Nothing is taken over from one that its own program would not
 //! make: no way out of the folder, no links, no devices, no two files of one name, no more bytes than allowed when
 //! unpacked.
-use flate2::read::GzDecoder;
+mod kinds;
+
+pub use kinds::{KNOWN, described};
+
 use std::{
     collections::BTreeSet,
     fs::{self, File},
@@ -28,9 +31,9 @@ impl Limits {
 /// Why an archive is not unpacked.
 #[derive(Debug, Error)]
 pub enum ArchiveError {
-    /// Neither zip nor tar.
-    #[error("this is neither a zip nor a tar archive (.tar, .tar.gz)")]
-    Unknown,
+    /// No archive of a kind that is read.
+    #[error("looked for an archive ({KNOWN}), and found {0}")]
+    Unknown(String),
     /// It can't be read to its end.
     #[error("the archive is damaged: {0}")]
     Damaged(String),
@@ -90,10 +93,7 @@ struct Walk<'a> {
 }
 
 fn walk(archive: &Path, limits: Limits, target: &Target<'_>) -> Result<Vec<PathBuf>, ArchiveError> {
-    let mut file = File::open(archive).map_err(ArchiveError::Folder)?;
-    let mut start = [0; 4];
-    let read = read_start(&mut file, &mut start)?;
-    file.seek(SeekFrom::Start(0)).map_err(ArchiveError::Folder)?;
+    let file = File::open(archive).map_err(ArchiveError::Folder)?;
     let mut walk = Walk {
         limits,
         target,
@@ -103,32 +103,8 @@ fn walk(archive: &Path, limits: Limits, target: &Target<'_>) -> Result<Vec<PathB
         folders: BTreeSet::new(),
         files: Vec::new(),
     };
-    match &start[..read] {
-        [b'P', b'K', 3, 4] => walk.zip(file)?,
-        [0x1f, 0x8b, ..] => walk.tar(GzDecoder::new(BufReader::new(file)))?,
-        _ => {
-            let mut magic = [0; 5];
-            let known =
-                file.seek(SeekFrom::Start(257)).is_ok() && file.read_exact(&mut magic).is_ok() && &magic == b"ustar";
-            if !known {
-                return Err(ArchiveError::Unknown);
-            }
-            file.seek(SeekFrom::Start(0)).map_err(ArchiveError::Folder)?;
-            walk.tar(BufReader::new(file))?;
-        }
-    }
+    walk.archive(file)?;
     Ok(walk.files)
-}
-
-fn read_start(file: &mut File, start: &mut [u8; 4]) -> Result<usize, ArchiveError> {
-    let mut read = 0;
-    while read < start.len() {
-        match file.read(&mut start[read..]).map_err(ArchiveError::Folder)? {
-            0 => break,
-            n => read += n,
-        }
-    }
-    Ok(read)
 }
 
 fn damaged(error: impl std::fmt::Display) -> ArchiveError {
@@ -144,17 +120,22 @@ fn is_of_a_system(path: &Path) -> bool {
     })
 }
 
-/// How many entries a zip archive says that it has, by its end record (APPNOTE 4.3.16).
-fn announced(file: &mut File) -> io::Result<Option<usize>> {
-    /// The record, and the longest comment behind it.
-    const LONGEST: u64 = 22 + 0xffff;
+/// How many entries a zip archive says that it has, by its end record (APPNOTE 4.3.16), or the one of large archives
+/// (4.3.14) where that says so.
+fn announced(file: &mut File) -> io::Result<Option<u64>> {
+    /// Both records, the pointer between them, and the longest comment behind them.
+    const LONGEST: u64 = 56 + 20 + 22 + 0xffff;
     let size = file.seek(SeekFrom::End(0))?;
     file.seek(SeekFrom::Start(size.saturating_sub(LONGEST)))?;
     let mut end = Vec::new();
     file.take(LONGEST).read_to_end(&mut end)?;
     file.seek(SeekFrom::Start(0))?;
-    let record = end.windows(22).rfind(|record| record.starts_with(b"PK\x05\x06"));
-    Ok(record.map(|record| usize::from(u16::from_le_bytes([record[10], record[11]]))))
+    let last = |magic: &[u8; 4], size: usize| end.windows(size).rfind(|record| record.starts_with(magic));
+    let Some(record) = last(b"PK\x05\x06", 22) else { return Ok(None) };
+    let entries = u16::from_le_bytes([record[10], record[11]]);
+    let of_large = last(b"PK\x06\x06", 56).filter(|_| entries == u16::MAX);
+    let of_large = of_large.and_then(|record| Some(u64::from_le_bytes(record[32..40].try_into().ok()?)));
+    Ok(Some(of_large.unwrap_or(entries.into())))
 }
 
 /// A name for a message.
@@ -165,9 +146,13 @@ fn shown(name: &[u8]) -> String {
 impl Walk<'_> {
     fn zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let announced = announced(&mut file).map_err(ArchiveError::Folder)?;
+        // The library reads the list of all before it shows one.
+        if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
+            return Err(ArchiveError::Entries(self.limits.entries));
+        }
         let mut archive = zip::ZipArchive::new(BufReader::new(file)).map_err(damaged)?;
         // The library keeps one entry of each name, and nobody could tell which one was meant.
-        if announced.is_some_and(|announced| announced > archive.len()) {
+        if announced.is_some_and(|announced| announced > archive.len() as u64) {
             return Err(ArchiveError::Twice("a name".to_owned()));
         }
         for index in 0..archive.len() {

@@ -12,7 +12,7 @@ use std::{
 };
 
 /// Up- and downloads of all accounts at one time: each takes a connection, a file and some 100 KiB.
-const TRANSFERS: usize = 1000;
+const TRANSFERS: usize = 3000;
 
 /// A mebibyte.
 const MIB: u64 = 1 << 20;

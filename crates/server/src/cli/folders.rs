@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use std::{
     fs,
     os::unix::fs::{DirBuilderExt, PermissionsExt},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 
 /// The data folder's parts.
@@ -68,8 +68,13 @@ impl Folders {
         self.data.join("work").join(worker)
     }
 
+    /// The database of a data folder.
+    pub(super) fn database_in(data: &Path) -> PathBuf {
+        data.join("fosssim.db")
+    }
+
     /// The database that was asked for, or the one in the data folder.
     pub(super) fn database(&self, place: &Place) -> Address {
-        place.database.clone().unwrap_or_else(|| Address::Sqlite(self.data.join("fosssim.db")))
+        place.database.clone().unwrap_or_else(|| Address::Sqlite(Self::database_in(&self.data)))
     }
 }

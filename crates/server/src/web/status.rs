@@ -9,6 +9,9 @@ use std::{convert::Infallible, time::Duration};
 /// How often somebody looks although nobody rang: places in the queue move without a bell, too.
 const LOOK_EVERY: Duration = Duration::from_secs(2);
 
+/// How long somebody waits after the bell rang before looking: it rings for all, and hundreds may follow theirs.
+const PAUSE: Duration = Duration::from_millis(300);
+
 /// Events until the submission is graded: each is its whole state, so that nothing is lost by a broken connection.
 pub(super) async fn stream(member: Member, id: i64) -> Result<Response, Problem> {
     // Whoever may not see it learns so before any event.
@@ -35,7 +38,11 @@ pub(super) async fn stream(member: Member, id: i64) -> Result<Response, Problem>
                 Err(_) => return None,
             }
             tokio::select! {
-                _ = ear.wait(LOOK_EVERY) => {}
+                () = async {
+                    if ear.wait(LOOK_EVERY).await {
+                        tokio::time::sleep(PAUSE).await;
+                    }
+                } => {}
                 // The browser comes back, to the server's successor.
                 () = member.house().closing() => return None,
             }

@@ -220,6 +220,12 @@ pub(super) fn plain_name(name: &str) -> String {
     if is_file_name(plain) { plain.to_owned() } else { "submission".to_owned() }
 }
 
+/// What a program is, in words.
+const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!)";
+
+/// Files that are looked into at one time: an archive may need some 100 MiB to be unpacked, and all of a processor.
+static LOOKING: tokio::sync::Semaphore = tokio::sync::Semaphore::const_new(2);
+
 /// What kind of thing a file is, and whether it can be that.
 pub(super) async fn examine(file: &Path, said: Option<&str>) -> Result<Form, Problem> {
     let said = match said {
@@ -230,24 +236,26 @@ pub(super) async fn examine(file: &Path, said: Option<&str>) -> Result<Form, Pro
         Some(_) => return Err(Problem::invalid("form is program, sources or traces")),
     };
     let file = file.to_owned();
+    let _looking = LOOKING.acquire().await.map_err(|_| Problem::fault())?;
     tokio::task::spawn_blocking(move || examine_now(&file, said)).await.map_err(|_| Problem::fault())?
 }
 
 fn examine_now(file: &Path, said: Option<Form>) -> Result<Form, Problem> {
     let mut start = Vec::new();
-    std::fs::File::open(file)?.take(4).read_to_end(&mut start)?;
+    std::fs::File::open(file)?.take(512).read_to_end(&mut start)?;
     if start.is_empty() {
         return Err(Problem::unusable("the file is empty"));
     }
-    let is_program = start == b"\x7fELF" || start.starts_with(b"#!");
+    let is_program = start.starts_with(b"\x7fELF") || start.starts_with(b"#!");
+    let found = archive::described(&start);
     let form = said.unwrap_or(if is_program { Form::Program } else { Form::Sources });
     match form {
-        Form::Program if !is_program => {
-            Err(Problem::unusable("this is no program for Linux (ELF, or a script that begins with #!)"))
-        }
+        Form::Program if !is_program => Err(Problem::unusable(format!("looked for {PROGRAM}, and found {found}"))),
         Form::Program => Ok(form),
         _ => match archive::look_through(file, Limits::USUAL) {
-            Ok(files) if files.is_empty() => Err(Problem::unusable("the archive is empty")),
+            Ok(files) if files.is_empty() => Err(Problem::unusable(
+                "looked for files in the archive, and found none, or only those that a file manager adds by itself",
+            )),
             Ok(files) => {
                 let are_traces = files.iter().all(|file| file.extension().is_some_and(|extension| extension == "bin"));
                 match (said, are_traces) {
@@ -258,9 +266,10 @@ fn examine_now(file: &Path, said: Option<Form>) -> Result<Form, Problem> {
                     _ => Ok(form),
                 }
             }
-            Err(archive::ArchiveError::Unknown) if said.is_none() => Err(Problem::unusable(
-                "this is neither a program for Linux nor an archive of sources or traces (zip, tar, tar.gz)",
-            )),
+            Err(archive::ArchiveError::Unknown(found)) if said.is_none() => Err(Problem::unusable(format!(
+                "looked for {PROGRAM}, or an archive of sources or traces ({}), and found {found}",
+                archive::KNOWN
+            ))),
             Err(error) => Err(Problem::unusable(error.to_string())),
         },
     }

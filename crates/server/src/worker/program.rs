@@ -204,7 +204,11 @@ impl Grader for Program {
             Form::Program => {
                 place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?
             }
-            Form::Sources => unpack(submission, folder.join("submission")).await?,
+            Form::Sources => {
+                let sources = unpack(submission, folder.join("submission")).await?;
+                forget_builds(&sources, DEPTH);
+                sources
+            }
             // Their folder stays: it may be the group of all scenes.
             Form::Traces => unpack_all(submission, folder.join("submission")).await?,
         };
@@ -300,6 +304,29 @@ fn only_folder(folder: PathBuf) -> PathBuf {
     match (entries.next(), entries.next()) {
         (Some(only), None) if only.path().is_dir() => only.path(),
         _ => folder,
+    }
+}
+
+/// How deep below the sources builds are looked for.
+const DEPTH: usize = 8;
+
+/// Removes what CMake remembers of a build on another machine: it refuses to build here because of it.
+fn forget_builds(folder: &Path, depth: usize) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let (path, name) = (entry.path(), entry.file_name());
+        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        let forgotten = match (is_folder, name.to_str()) {
+            (false, Some("CMakeCache.txt")) => fs::remove_file(&path),
+            (true, Some("CMakeFiles")) => fs::remove_dir_all(&path),
+            (true, _) if depth > 0 => {
+                forget_builds(&path, depth - 1);
+                Ok(())
+            }
+            _ => Ok(()),
+        };
+        if let Err(error) = forgotten {
+            tracing::debug!(%error, "what CMake remembers of another build stays");
+        }
     }
 }
 

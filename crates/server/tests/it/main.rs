@@ -1,9 +1,9 @@
 //! The service's tests, in one binary. What touches the database runs on both engines.
 
 mod bell;
+mod bench;
 mod campaigns;
 mod deploy;
-mod load;
 mod migrations;
 mod plans;
 mod pooler;

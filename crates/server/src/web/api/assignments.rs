@@ -120,7 +120,7 @@ pub(super) async fn extend_no_more(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite.
+/// Uploads an archive (zip, 7z, tar, tar.gz, tar.xz, tar.bz2) with a `suite.toml` at its top as the assignment's suite.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
     params(("course" = String, Path), ("assignment" = String, Path)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),

@@ -131,9 +131,7 @@ impl Server {
         options: &[String],
     ) -> Result<(Child, BufReader<ChildStdout>, String), String> {
         let log = fs::File::options().create(true).append(true).open(folder.with_file_name("log")).expect("a log");
-        // Measured is another build of it than tested.
-        let program = std::env::var_os("FOSSSIM_SERVER").unwrap_or(env!("CARGO_BIN_EXE_fosssim-server").into());
-        let mut child = Command::new(program)
+        let mut child = Command::new(env!("CARGO_BIN_EXE_fosssim-server"))
             .args(["serve", "--listen", listen, "--grader"])
             .arg(grader)
             .arg("--data")

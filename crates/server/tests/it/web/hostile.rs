@@ -236,7 +236,7 @@ fn archives_can_not_leave_their_folder() {
             ("file and folder", tar(&[("x", Kind::Regular, b"1"), ("x/y", Kind::Regular, b"2")]), "twice"),
             ("folder and file", tar(&[("x/y", Kind::Regular, b"1"), ("x", Kind::Regular, b"2")]), "twice"),
             ("cut off", zip(&[("x", &[7; 5000], 0o644)])[..60].to_vec(), "damaged"),
-            ("empty", tar(&[]), "neither a program"),
+            ("empty", tar(&[]), "looked for a program"),
         ];
         // Two entries of one name, as no library writes them.
         let mut doubled = zip(&[("one", b"#!grade AC 1", 0o755), ("two", b"#!grade AC 2", 0o755)]);
@@ -284,6 +284,37 @@ fn archives_of_file_managers_are_graded() {
             let sent = ada.send("POST", SUBMISSIONS, &[], &archive).expect(201).json();
             let graded = ada.wait_for_grade("physics", sent["id"].as_i64().expect("a number"));
             assert_eq!(graded["grade"]["points"], "77", "{graded}");
+        }
+    });
+}
+
+/// What 7-Zip, xz and bzip2 pack, with a build of another machine inside; and what is none of these, by what it is.
+#[test]
+fn archives_of_all_kinds_are_graded() {
+    run(async {
+        let (_fresh, _server, _, ada) = start(&["--workers", "1"]).await;
+        for archive in [
+            include_bytes!("../../../../../fuzz/seeds/archive/sources.7z").as_slice(),
+            include_bytes!("../../../../../fuzz/seeds/archive/sources.tar.xz"),
+            include_bytes!("../../../../../fuzz/seeds/archive/sources.tar.bz2"),
+        ] {
+            let sent = ada.send("POST", SUBMISSIONS, &[], archive).expect(201).json();
+            assert_eq!(sent["form"], "sources");
+            let graded = ada.wait_for_grade("physics", sent["id"].as_i64().expect("a number"));
+            assert_eq!(graded["grade"]["points"], "77", "{graded}");
+        }
+        let link = include_bytes!("../../../../../fuzz/seeds/archive/link.7z");
+        let refused = ada.send("POST", SUBMISSIONS, &[], link).expect(422).text();
+        assert!(refused.contains("neither a file nor a folder"), "{refused}");
+        for (bytes, found) in [
+            (b"MZ\x90\x00\x03".as_slice(), "found a program for Windows"),
+            (b"\xcf\xfa\xed\xfe\x0c\x00", "found a program for macOS"),
+            (b"Rar!\x1a\x07\x00", "found a RAR archive"),
+            (b"int main() { return 0; }\n", "found text"),
+            (b"\x01\x02\x03\x04\x05", "found a file that begins with the bytes 01 02 03 04"),
+        ] {
+            let refused = ada.send("POST", SUBMISSIONS, &[], bytes).expect(422).text();
+            assert!(refused.contains(found) && refused.contains("looked for a program for Linux"), "{refused}");
         }
     });
 }

@@ -1,0 +1,44 @@
+//! `fosssim-server bench`, on a short ladder: what it measures works, and says so.
+use crate::support::engines::{Fresh, run};
+use fosssim_server::db::Address;
+use std::process::Command;
+
+fn bench(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_fosssim-server")).arg("bench").args(arguments).output();
+    let output = output.expect("the bench");
+    let (said, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{said}\n{log}");
+    said.into_owned()
+}
+
+fn climbs(database: &[&str]) {
+    let said = bench(&[&["--students", "2,5", "--seconds", "1"], database].concat());
+    for students in ["2", "5"] {
+        let row = said.lines().find(|line| line.starts_with(&format!("| {students} |"))).expect("a row");
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        assert_eq!(cells[8], "0", "errors: {said}");
+        assert!(cells[2..8].iter().all(|cell| cell.contains(" / ")), "every step was done: {said}");
+    }
+}
+
+#[test]
+fn the_ladder_is_climbed_on_sqlite() {
+    climbs(&[]);
+}
+
+#[test]
+fn the_ladder_is_climbed_on_postgres() {
+    run(async {
+        let Some(fresh) = Fresh::postgres().await else { return };
+        let Address::Postgres(url) = &fresh.address else { panic!("no address of PostgreSQL") };
+        climbs(&["--database", url]);
+    });
+}
+
+#[test]
+fn others_are_answered_beside_attacks_and_many_submissions() {
+    for (what, more) in [("slow-readers", &[][..]), ("half-open", &[]), ("million", &["--count", "2000"])] {
+        let said = bench(&[&[what, "--seconds", "1"], more].concat());
+        assert!(said.contains("memory") && said.contains("errors {}"), "{what}: {said}");
+    }
+}
