@@ -217,7 +217,7 @@ async fn write_result(
         let change = GradeChange { submission, result, by: None, campaign: None, reason };
         set_grade(transaction, &change).await?;
         if let (Some(course), Some(assignment), false) = (about.course, about.assignment, outcome.wrong.is_empty()) {
-            suspect::look(transaction, course, assignment).await?;
+            suspect::look(transaction, course, assignment, result).await?;
         }
     }
     // Judge errors are told of by those who bury.

@@ -11,12 +11,24 @@ const FEWEST: i64 = 3;
 /// More than one of so many of those who are otherwise right have to agree.
 const SHARE: i64 = 3;
 
-/// Looks at what the students of a course answer in an assignment, and notes what was not suspected before. Each
-/// student counts once, with the latest submission that has a grade.
+/// Looks at what the students of a course answer in an assignment, after one of them has a new result, and notes what
+/// was not suspected before. Each student counts once, with the latest submission that has a grade.
 ///
 /// # Errors
 /// What the database says.
-pub async fn look(transaction: &mut Transaction, course: i64, assignment: i64) -> Result<(), DbError> {
+pub async fn look(transaction: &mut Transaction, course: i64, assignment: i64, result: i64) -> Result<(), DbError> {
+    // The whole assignment is gone through only where enough results, whosever they are, have an answer of this one.
+    let shared = transaction
+        .row(
+            "SELECT own.scene FROM wrong_scene AS own
+             JOIN wrong_scene AS other ON other.scene = own.scene AND other.answer = own.answer
+             WHERE own.result = ? GROUP BY own.scene HAVING count(*) >= ? LIMIT 1",
+            values![result, FEWEST],
+        )
+        .await?;
+    if shared.is_none() {
+        return Ok(());
+    }
     let found = transaction
         .rows(
             "WITH latest AS (

@@ -1,5 +1,5 @@
 //! Jobs for many submissions at once, made by the database.
-use super::{submit, view::Assignment};
+use super::view::Assignment;
 use crate::{
     db::{DbError, Transaction, Value},
     problem::Problem,
@@ -20,7 +20,7 @@ pub(super) use payload;
 /// What stands between the columns in a [`payload`]: the same for all submissions to an assignment.
 pub(super) fn pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     let any = crate::store::Artefact { digest: crate::store::Digest::of(b""), size: 0 };
-    let task = submit::task(assignment, Input { form: Form::Program, name: String::new(), artefact: any });
+    let task = assignment.settings.task(Input { form: Form::Program, name: String::new(), artefact: any });
     let mut task = serde_json::to_value(task).map_err(|_| Problem::fault())?;
     if let Some(fields) = task.as_object_mut() {
         fields.remove("submission");

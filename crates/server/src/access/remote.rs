@@ -57,7 +57,7 @@ impl Remote {
     fn desk(&self) -> LocalDesk {
         let parts = &self.house.0;
         LocalDesk::new(
-            parts.database.clone(),
+            parts.database.first(),
             parts.store.clone(),
             parts.bell.clone(),
             parts.policy,
@@ -68,7 +68,7 @@ impl Remote {
 
     /// Whether a lease was given to this token: another's counts for nothing.
     async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.house.0.database.first().read().await?;
         let row = transaction
             .row("SELECT token FROM job WHERE id = ? AND attempt = ?", values![lease.job, lease.attempt])
             .await?;
@@ -180,7 +180,7 @@ impl Remote {
         for wrong in &mut outcome.wrong {
             wrong.scene = plain(&wrong.scene, 200);
         }
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.house.0.database.first().read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {
             // What a report may be called, and what it holds, is not the worker's to say.
@@ -207,7 +207,7 @@ impl Remote {
 
     /// The task of a job that the worker holds right now.
     async fn held(&self, lease: &Lease) -> Result<Task, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.house.0.database.first().read().await?;
         let row = transaction
             .row(
                 "SELECT payload FROM job
@@ -239,7 +239,7 @@ impl Remote {
     pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artefact, Problem> {
         self.held(lease).await?;
         let artefact = self.house.0.store.put_file(file).await?;
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.house.0.database.first().begin().await?;
         let size = i64::try_from(artefact.size).unwrap_or(i64::MAX);
         transaction
             .execute(

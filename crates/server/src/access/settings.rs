@@ -4,7 +4,7 @@ use crate::{
     calendar,
     problem::Problem,
     store::Digest,
-    task::{Form, Suite},
+    task::{Form, Input, Suite, Task},
 };
 use serde::{Deserialize, Deserializer, Serialize, de::Error};
 use std::ops::RangeInclusive;
@@ -179,7 +179,19 @@ impl Settings {
         self.has_form(form.name())
     }
 
-    pub(super) fn suite(&self) -> Suite {
+    /// What a worker is to do about an input.
+    pub(super) fn task(&self, submission: Input) -> Task {
+        Task {
+            submission,
+            suite: self.suite(),
+            rules: self.rules.clone(),
+            hints: self.hints.clone(),
+            program: self.program.clone(),
+            seconds: self.seconds,
+        }
+    }
+
+    fn suite(&self) -> Suite {
         match self.suite_archive.as_ref().and_then(|digest| digest.parse().ok()) {
             Some(digest) => Suite::Archive(digest),
             None => Suite::Named(self.suite.clone()),

@@ -9,7 +9,7 @@ use crate::{
     problem::Problem,
     queue::{self, Bell, Lane, NewJob, Turn},
     store::{Artefact, digest_of_file},
-    task::{Form, Input, Task},
+    task::{Form, Input},
     values,
 };
 use std::path::Path;
@@ -183,7 +183,7 @@ impl Member {
         artefact: &Artefact,
     ) -> Result<i64, Problem> {
         let input = Input { form: upload.form, name: upload.name.to_owned(), artefact: artefact.clone() };
-        let task = task(assignment, input);
+        let task = assignment.settings.task(input);
         let number = transaction
             .one(
                 "SELECT coalesce(max(number), 0) + 1 AS number FROM submission WHERE assignment = ? AND account = ?",
@@ -235,18 +235,5 @@ impl Member {
         };
         view::note(transaction, &deed).await?;
         Ok(submission)
-    }
-}
-
-/// What a worker is to do about an input.
-pub(super) fn task(assignment: &Assignment, submission: Input) -> Task {
-    let settings = &assignment.settings;
-    Task {
-        submission,
-        suite: settings.suite(),
-        rules: settings.rules.clone(),
-        hints: settings.hints.clone(),
-        program: settings.program.clone(),
-        seconds: settings.seconds,
     }
 }

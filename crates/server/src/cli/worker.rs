@@ -161,7 +161,7 @@ impl Local {
         let slots = self::slots(slots);
         tracing::info!(worker = name, slots, grader = %self.grader.display(), "working");
         let desk =
-            LocalDesk::new(self.database.clone(), self.store.clone(), self.bell.clone(), self.policy, name.clone());
+            LocalDesk::new(self.database.first(), self.store.clone(), self.bell.clone(), self.policy, name.clone());
         let folder = self.folders.work(&name);
         let options = Options { slots, folder: folder.clone() };
         let watching = async {

@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// Every change, oldest first. The number of a change is its place in this list, from 1.
-const MIGRATIONS: [(&str, &str); 13] = [
+const MIGRATIONS: [(&str, &str); 14] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
     ("answers", include_str!("migrations/0003_answers.sql")),
@@ -20,6 +20,7 @@ const MIGRATIONS: [(&str, &str); 13] = [
     ("removal", include_str!("migrations/0011_removal.sql")),
     ("marks", include_str!("migrations/0012_marks.sql")),
     ("health", include_str!("migrations/0013_health.sql")),
+    ("shared answers", include_str!("migrations/0014_shared_answers.sql")),
 ];
 
 /// The version that this program works with.

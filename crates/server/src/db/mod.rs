@@ -18,6 +18,7 @@ pub use fault::DbError;
 pub use migrate::{LATEST, MigrateError, changes_after, migrate, version};
 pub(crate) use pooler::is_pooled;
 pub use transaction::Transaction;
+use transaction::Turn;
 pub use value::{Row, Value};
 
 use sqlx::{
@@ -32,12 +33,16 @@ use std::{
     },
     time::Duration,
 };
+use tokio::sync::Semaphore;
 
 /// How long a statement waits for a connection, or for SQLite's one writer, before it gives up.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Connections to PostgreSQL that one process holds at most.
 const CONNECTIONS: u32 = 10;
+
+/// How many of them are only for those who go first.
+const FOR_THE_FIRST: u32 = 3;
 
 /// How PostgreSQL begins a transaction. A process that freezes in the middle of one must not keep its locks, nor may a
 /// statement wait for ever. The settings end with the transaction, as a pooler wants it.
@@ -65,6 +70,9 @@ pub(crate) fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
 pub struct Database {
     engine: Engine,
     waits: Arc<Waits>,
+    /// Of those who do not go first only so many use, or wait for, the connections.
+    turns: Arc<Semaphore>,
+    goes_first: bool,
 }
 
 /// Who waits for a connection, and how many did so in vain.
@@ -115,6 +123,11 @@ impl Database {
     /// # Errors
     /// When it can't be reached within half a minute.
     pub async fn open(address: &Address) -> Result<Self, DbError> {
+        let turns = match address {
+            // The writer's queue is short then: whoever goes first waits for one other at most.
+            Address::Sqlite(_) => 1,
+            Address::Postgres(_) => CONNECTIONS - FOR_THE_FIRST,
+        };
         let engine = match address {
             Address::Sqlite(file) => {
                 // FULL: a commit that was confirmed survives a power cut.
@@ -148,7 +161,24 @@ impl Database {
                 Engine::Postgres { pool, options: Box::new(options) }
             }
         };
-        Ok(Self { engine, waits: Arc::default() })
+        let turns = Arc::new(Semaphore::new(turns as usize));
+        Ok(Self { engine, waits: Arc::default(), turns, goes_first: false })
+    }
+
+    /// The same database, for those whom requests must not keep waiting: workers, whose leases run out. However many
+    /// hand in at one time, what is graded is kept and what waits is claimed.
+    #[must_use]
+    pub fn first(&self) -> Self {
+        Self { goes_first: true, ..self.clone() }
+    }
+
+    /// Waits for a turn, if one is needed.
+    async fn turn(&self) -> Result<Turn, sqlx::Error> {
+        if self.goes_first {
+            return Ok(None);
+        }
+        let turn = tokio::time::timeout(PATIENCE, self.turns.clone().acquire_owned()).await;
+        Ok(turn.map_err(|_| sqlx::Error::PoolTimedOut)?.ok())
     }
 
     /// Which database it is.
@@ -169,9 +199,13 @@ impl Database {
         match &self.engine {
             // A transaction that begins as a reader could not become the writer when another has written meanwhile.
             Engine::Sqlite { writer, .. } => {
-                Ok(Transaction::sqlite(self.waited(writer.begin_with("BEGIN IMMEDIATE")).await?))
+                let (inner, turn) = self.waited(|| writer.begin_with("BEGIN IMMEDIATE"), true).await?;
+                Ok(Transaction::sqlite(inner, turn))
             }
-            Engine::Postgres { pool, .. } => Ok(Transaction::postgres(self.waited(pool.begin_with(BEGIN)).await?)),
+            Engine::Postgres { pool, .. } => {
+                let (inner, turn) = self.waited(|| pool.begin_with(BEGIN), true).await?;
+                Ok(Transaction::postgres(inner, turn))
+            }
         }
     }
 
@@ -181,18 +215,30 @@ impl Database {
     /// When the database can't be reached.
     pub async fn read(&self) -> Result<Transaction, DbError> {
         match &self.engine {
-            Engine::Sqlite { readers, .. } => Ok(Transaction::sqlite(self.waited(readers.begin()).await?)),
+            Engine::Sqlite { readers, .. } => {
+                let (inner, turn) = self.waited(|| readers.begin(), false).await?;
+                Ok(Transaction::sqlite(inner, turn))
+            }
             Engine::Postgres { pool, .. } => {
                 let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ, READ ONLY";
-                Ok(Transaction::postgres(self.waited(pool.begin_with(begin)).await?))
+                let (inner, turn) = self.waited(|| pool.begin_with(begin), true).await?;
+                Ok(Transaction::postgres(inner, turn))
             }
         }
     }
 
-    /// Waits for a transaction to begin, and counts that.
-    async fn waited<T>(&self, begin: impl Future<Output = Result<T, sqlx::Error>>) -> Result<T, sqlx::Error> {
+    /// Waits for a turn, where they are counted, and for a transaction to begin, and counts that.
+    async fn waited<T, F: Future<Output = Result<T, sqlx::Error>>>(
+        &self,
+        begin: impl FnOnce() -> F,
+        in_turn: bool,
+    ) -> Result<(T, Turn), sqlx::Error> {
         let waiting = Waiting::begin(&self.waits.waiting);
-        let begun = begin.await;
+        let begun = async {
+            let turn = if in_turn { self.turn().await? } else { None };
+            Ok((begin().await?, turn))
+        }
+        .await;
         drop(waiting);
         if matches!(begun, Err(sqlx::Error::PoolTimedOut)) {
             self.waits.timeouts.fetch_add(1, Ordering::Relaxed);

@@ -1,10 +1,15 @@
 //! A transaction, the only way to run statements.
 use super::{DbError, Dialect, Row, Value, statement, value};
 use sqlx::{AssertSqlSafe, Postgres, Sqlite};
+use tokio::sync::OwnedSemaphorePermit;
 
-/// A transaction. Dropped without [`commit`](Self::commit), nothing of it stands.
+/// A transaction. Dropped without [`commit`](Self::commit), nothing of it stands. Whoever does not go first holds a turn
+/// as long as it lasts ([`Database::first`](super::Database::first)).
 #[derive(Debug)]
-pub struct Transaction(Inner);
+pub struct Transaction(Inner, #[expect(dead_code, reason = "held, and given back with the transaction")] Turn);
+
+/// A turn, where one was needed.
+pub(super) type Turn = Option<OwnedSemaphorePermit>;
 
 #[derive(Debug)]
 enum Inner {
@@ -27,12 +32,12 @@ macro_rules! query {
 }
 
 impl Transaction {
-    pub(super) fn sqlite(inner: sqlx::Transaction<'static, Sqlite>) -> Self {
-        Self(Inner::Sqlite(inner))
+    pub(super) fn sqlite(inner: sqlx::Transaction<'static, Sqlite>, turn: Turn) -> Self {
+        Self(Inner::Sqlite(inner), turn)
     }
 
-    pub(super) fn postgres(inner: sqlx::Transaction<'static, Postgres>) -> Self {
-        Self(Inner::Postgres(inner))
+    pub(super) fn postgres(inner: sqlx::Transaction<'static, Postgres>, turn: Turn) -> Self {
+        Self(Inner::Postgres(inner), turn)
     }
 
     /// Which database it is.
