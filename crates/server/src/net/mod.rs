@@ -2,7 +2,7 @@
 //! middle when the server ends.
 //!
 //! A connection that has sent no whole request waits, and whoever comes takes the place of one that waits when all
-//! places are taken ([`seats`]). So requests that never end keep nobody out, from whatever address they come.
+//! places are taken (`seats`). So requests that never end keep nobody out, from whatever address they come.
 mod address;
 mod limit;
 mod paced;

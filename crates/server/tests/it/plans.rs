@@ -39,7 +39,7 @@ async fn whole_reads(address: &Address) -> BTreeMap<String, i64> {
     let rows = transaction
         .rows(
             "SELECT CAST(relname AS TEXT) AS name, coalesce(seq_scan, 0) AS n FROM pg_stat_user_tables
-             WHERE relname IN ('job', 'submission', 'result', 'event', 'grade', 'grade_change')",
+             WHERE relname IN ('job', 'submission', 'result', 'event', 'grade')",
             values![],
         )
         .await
