@@ -11,6 +11,7 @@ mod queue;
 mod retention;
 mod storm;
 mod support;
+mod turns;
 mod uploads;
 mod web;
 mod worker;

@@ -1,0 +1,52 @@
+//! Workers do not wait behind everybody who hands in.
+use crate::support::engines::{Fresh, on_both_engines};
+use fosssim_server::db::Dialect;
+use std::sync::{Arc, Mutex};
+
+on_both_engines!(workers_go_before_requests);
+
+/// Waits until so many wait for a transaction.
+async fn waiting(fresh: &Fresh, wanted: i64) {
+    while fresh.database.waits().0 < wanted {
+        tokio::task::yield_now().await;
+    }
+}
+
+async fn workers_go_before_requests(fresh: Fresh) {
+    let others = match fresh.database.dialect() {
+        Dialect::Sqlite => 1,
+        Dialect::Postgres => 7,
+    };
+    let mut held = Vec::new();
+    for _ in 0..others {
+        held.push(fresh.database.begin().await.expect("a transaction"));
+    }
+    // Twenty requests wait, and then a worker comes.
+    let order = Arc::new(Mutex::new(Vec::new()));
+    let task = |who: &'static str, database: fosssim_server::db::Database| {
+        let order = order.clone();
+        tokio::spawn(async move {
+            let transaction = database.begin().await.expect("a transaction");
+            order.lock().expect("no panic").push(who);
+            transaction.commit().await.expect("commit");
+        })
+    };
+    let mut tasks: Vec<_> = (0..20).map(|_| task("request", fresh.database.clone())).collect();
+    waiting(&fresh, 20).await;
+    let worker = task("worker", fresh.database.first());
+    if fresh.database.dialect() == Dialect::Postgres {
+        // Some connections are only for workers.
+        worker.await.expect("no panic");
+        assert_eq!(*order.lock().expect("no panic"), ["worker"]);
+    } else {
+        waiting(&fresh, 21).await;
+        tasks.push(worker);
+    }
+    held.clear();
+    for task in tasks {
+        task.await.expect("no panic");
+    }
+    let order = order.lock().expect("no panic");
+    let place = order.iter().position(|who| *who == "worker").expect("the worker had its turn");
+    assert!(place <= 1 && order.len() == 21, "{order:?}");
+}
