@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn paths_are_cut_and_names_are_not() {
         for (said, told) in [
-            ("/var/lib/f/work/w.1/job-a/work/suite/suite.toml:5:9: no", "suite.toml:5:9: no"),
+            ("/var/lib/f/w.1/job-a/input/suite/suite.toml:5:9: no", "suite.toml:5:9: no"),
             ("cannot read `/etc/passwd`, (/tmp/a b)", "cannot read `passwd`, (a b)"),
             ("no embedded scene matches asset:No/such", "no embedded scene matches asset:No/such"),
             ("file:///srv/x/y failed in Group/scene-1", "file:y failed in Group/scene-1"),
