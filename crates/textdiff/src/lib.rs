@@ -3,22 +3,14 @@
 //! It stands in a crate of its own so that the algorithms are compiled once, and not with every change of what calls
 //! them.
 
-use diffy::DiffOptions;
+use similar::TextDiff;
 
 /// A unified diff from `old` to `new`, line by line with one line of context, under the names of the two; empty when
 /// they are the same.
 #[must_use]
 pub fn unified(old: (&str, &str), new: (&str, &str)) -> String {
     let ((old_name, old), (new_name, new)) = (old, new);
-    if old == new {
-        return String::new();
-    }
-    DiffOptions::new()
-        .set_context_len(1)
-        .set_original_filename(old_name.to_owned())
-        .set_modified_filename(new_name.to_owned())
-        .create_patch(old, new)
-        .to_string()
+    TextDiff::from_lines(old, new).unified_diff().context_radius(1).header(old_name, new_name).to_string()
 }
 
 #[cfg(test)]
