@@ -40,16 +40,20 @@ pub async fn run(database: Database, bell: Bell, stop: CancellationToken) {
 }
 
 /// Works on one regrade while somebody waits for the answer, and not for longer than that: a small one is done then.
-pub(super) async fn hurry(database: &Database, campaign: i64, at_most: Duration) -> Result<(), Problem> {
+/// What was wished is written by now: a fault here is the background's, which tries again, and no refusal.
+pub(super) async fn hurry(database: &Database, campaign: i64, at_most: Duration) {
     let start = Instant::now();
     while start.elapsed() < at_most {
-        match step(database, Some(campaign)).await? {
-            Step::Done => {}
-            Step::Busy => tokio::time::sleep(Duration::from_millis(10)).await,
-            Step::Nothing => break,
+        match step(database, Some(campaign)).await {
+            Ok(Step::Done) => {}
+            Ok(Step::Busy) => tokio::time::sleep(Duration::from_millis(10)).await,
+            Ok(Step::Nothing) => break,
+            Err(problem) => {
+                tracing::warn!(detail = problem.detail, campaign, "a regrade goes on in the background");
+                break;
+            }
         }
     }
-    Ok(())
 }
 
 /// What became of a wish to do a batch.

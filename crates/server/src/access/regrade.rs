@@ -129,16 +129,15 @@ impl Staff {
         let text = format!("regrade {campaign} of {count} submissions: {reason}");
         view::note(&mut transaction, &self.deed("regrade", Some(assignment.id), &text)).await?;
         transaction.commit().await?;
-        self.hurry(campaign).await?;
+        self.hurry(campaign).await;
         self.show_regrade(slug, campaign, None).await
     }
 
     /// Does what there is to do for a regrade, as far as it is done soon.
-    async fn hurry(&self, id: i64) -> Result<(), Problem> {
+    async fn hurry(&self, id: i64) {
         let parts = &self.member().house.0;
-        campaign::hurry(&parts.database, id, HURRY).await?;
+        campaign::hurry(&parts.database, id, HURRY).await;
         parts.bell.strike();
-        Ok(())
     }
 
     /// The regrades of an assignment, latest first, without their changes.
@@ -198,7 +197,7 @@ impl Staff {
                 .execute("UPDATE campaign SET doing = 'begin', total = done + ? WHERE id = ?", values![missing, id])
                 .await?;
             transaction.commit().await?;
-            self.hurry(id).await?;
+            self.hurry(id).await;
             return Err(Problem::conflict(
                 format!("{missing} submissions came in meanwhile, and are graded now"),
                 "look at them, and apply then",
@@ -220,7 +219,7 @@ impl Staff {
             )
             .await?;
         transaction.commit().await?;
-        self.hurry(id).await?;
+        self.hurry(id).await;
         self.show_regrade(slug, id, None).await
     }
 
@@ -242,7 +241,7 @@ impl Staff {
         let text = format!("regrade {id} discarded");
         view::note(&mut transaction, &self.deed("regrade", Some(assignment.id), &text)).await?;
         transaction.commit().await?;
-        self.hurry(id).await?;
+        self.hurry(id).await;
         self.show_regrade(slug, id, None).await
     }
 

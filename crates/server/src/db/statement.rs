@@ -48,9 +48,9 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{strict}", ""),
             // Rows of the queue change five times each: room beside them, and dead ones swept early.
             ("{queue}", "WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.02)"),
-            ("{skip locked}", "FOR UPDATE SKIP LOCKED"),
             // NO KEY: rows that refer to this one may be written meanwhile. Otherwise whoever holds one of these, and
             // refers to this one next, and whoever holds this one, and changes those next, wait for each other.
+            ("{skip locked}", "FOR NO KEY UPDATE SKIP LOCKED"),
             ("{for update}", "FOR NO KEY UPDATE"),
             ("{each}", "json_array_elements_text(CAST(? AS json)) AS wanted (value)"),
             ("{strpos}", "strpos"),
@@ -89,7 +89,7 @@ mod tests {
         assert_eq!(
             text(statement, Dialect::Postgres),
             "SELECT id FROM job WHERE a = $1 AND b < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT) \
-             AND c = $2 FOR UPDATE SKIP LOCKED"
+             AND c = $2 FOR NO KEY UPDATE SKIP LOCKED"
         );
         assert_eq!(
             text(statement, Dialect::Sqlite),

@@ -4,10 +4,14 @@ use crate::support::{
     rows,
     server::{Client, Server, program},
 };
-use fosssim_server::values;
+use fosssim_server::{db::Dialect, values};
 use std::time::{Duration, Instant};
 
-on_both_engines!(a_class_is_graded_again_in_the_background, a_regrade_goes_on_after_the_server_died);
+on_both_engines!(
+    a_class_is_graded_again_in_the_background,
+    a_regrade_goes_on_after_the_server_died,
+    a_result_and_the_end_of_its_regrade_do_not_wait_for_each_other,
+);
 
 const BASE: &str = "/api/v1/courses/physics/assignments/m1/regrades";
 
@@ -159,4 +163,36 @@ async fn a_regrade_goes_on_after_the_server_died(fresh: Fresh) {
     assert_eq!(settled(&admin, &id)["state"], "discarded");
     admin.post_json(&format!("{BASE}/{id}/apply"), "").expect(409);
     assert_eq!(number(&fresh, "SELECT count(*) AS n FROM job WHERE state = 'waiting'").await, 0);
+}
+
+async fn a_result_and_the_end_of_its_regrade_do_not_wait_for_each_other(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    server.member(&admin, "physics", "ada", "student").submit("physics", &program("AC", 1));
+    let id = admin.post_json(BASE, r#"{"reason": "to see"}"#).expect(201).json()["id"].clone();
+    // A worker holds the job of the regrade and is about to write its result, ...
+    let mut worker = fresh.database.begin().await.expect("a transaction");
+    worker.one("SELECT id FROM job WHERE campaign IS NOT NULL {for update}", values![]).await.expect("a job");
+    // ... when the regrade is given up, which cancels its jobs.
+    let discarding = std::thread::spawn(move || admin.post_json(&format!("{BASE}/{id}/discard"), ""));
+    if fresh.database.dialect() == Dialect::Postgres {
+        let waiting = "SELECT count(*) AS n FROM pg_stat_activity
+                       WHERE datname = current_database() AND wait_event_type = 'Lock'";
+        while number(&fresh, waiting).await == 0 {
+            tokio::task::yield_now().await;
+        }
+    }
+    let written = worker
+        .execute(
+            "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points,
+                summary, version, task, seconds, created_at)
+             SELECT id, submission, campaign, 1, 'w', 'v', 'AC', '100', '100', 's', '2', payload, '1', {now}
+             FROM job WHERE campaign IS NOT NULL",
+            values![],
+        )
+        .await;
+    assert_eq!(written.expect("nobody waits for whoever waits for him"), 1);
+    worker.commit().await.expect("commit");
+    assert_eq!(discarding.join().expect("no panic").expect(200).json()["state"], "discarded");
 }
