@@ -15,8 +15,6 @@ pub use fosssim_mistakes::student;
 
 pub use fosssim_judge as judge;
 
-pub use fosssim_mistakes::sight;
-
 pub use fosssim_original as original;
 
 pub use fosssim_sandbox as sandbox;

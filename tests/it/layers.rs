@@ -31,7 +31,7 @@ const CRATES: [(&str, &[&str]); 16] = [
 /// Rooms that share a crate, lowest first.
 const ROOMS: [(&str, &[&str]); 2] = [
     ("model", &["assignments", "scene", "sim", "trace"]),
-    ("mistakes", &["plain", "assignments", "student", "sight", "diagnose"]),
+    ("mistakes", &["plain", "assignments", "student", "diagnose"]),
 ];
 
 /// The checkout.

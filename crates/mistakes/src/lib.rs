@@ -4,7 +4,6 @@ pub mod plain;
 
 pub mod assignments;
 
-pub mod sight;
 pub mod student;
 
 pub mod diagnose;

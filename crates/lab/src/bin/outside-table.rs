@@ -1,23 +1,20 @@
-//! What is told of programs whose mistake the catalogue does not have (`student::mutants`): a line on each, and the
+//! What is told of programs whose mistake the catalogue does not have (`mutants`): a line on each, and the
 //! figures that `docs/fair.md` names. Ends with status 1 when something misleads.
 //!
 //! usage: `outside-table [PART-OF-A-NAME]`
 use std::process::ExitCode;
 
-use fosssim_oracle::{
-    diagnose::{
-        Explanation,
-        outside::{Rated, Rating, rated},
-    },
-    report::words::explanation::{details, what},
-    student::mutants::mutants,
+use fosssim_lab::{
+    mutants::mutants,
+    outside::{Rated, Rating, rated},
 };
+use fosssim_oracle::report::words::explanation::{details, what};
 
 fn main() -> ExitCode {
     let part = std::env::args().nth(1).unwrap_or_default();
     let wanted: Vec<usize> =
         mutants().enumerate().filter(|(_, mutant)| mutant.id.contains(&part)).map(|(number, _)| number).collect();
-    let all: Vec<Rated> = rated(|number| wanted.contains(&number), words);
+    let all: Vec<Rated> = rated(|number| wanted.contains(&number));
     for one in &all {
         println!("{:<32} {:<10} ({})", one.id, format!("{:?}", one.rating), one.what);
         for told in &one.told {
@@ -34,9 +31,4 @@ fn main() -> ExitCode {
         count(Rating::Misleading)
     );
     ExitCode::from(u8::from(count(Rating::Misleading) > 0))
-}
-
-/// What an explanation says.
-fn words(told: &Explanation) -> String {
-    format!("{} {}", what(told), details(told).join(" "))
 }

@@ -9,6 +9,7 @@
 //! on round-off, and those that correct variants fail, are not kept. What is found is printed, or written into the
 //! folder; names and descriptions are for people to give.
 use anyhow::Context;
+use fosssim_lab::sight::{Watched, WrongProgram, witnesses, wrong_programs};
 use fosssim_oracle::{
     judge::{
         Outcome, Overall,
@@ -17,7 +18,6 @@ use fosssim_oracle::{
     },
     num::vector::Vec2,
     scene::{self, Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, Scene},
-    sight::{Watched, WrongProgram, witnesses, wrong_programs},
     student::{self, CATALOGUE, Row, RowKind, Student},
     suite::{
         coverage::{Coverage, Pairing},

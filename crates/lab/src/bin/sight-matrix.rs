@@ -1,18 +1,16 @@
 //! How many scenes of a suite, and how many probe scenes, refuse each wrong program: those of the catalogue, of
-//! `student::mutants`, and of `student::operators`. `scripts/sight-matrix [SUITE [PART-OF-A-NAME [ENOUGH]]]` builds and
+//! `mutants`, and of `operators`. `scripts/sight-matrix [SUITE [PART-OF-A-NAME [ENOUGH]]]` builds and
 //! calls it.
 //!
 //! It prints the programs that fewer than three scenes of the suite refuse, or no probe scene, with those that do, and
 //! the figures that `docs/fair.md` names. It ends with status 1 when there is such a program.
 use std::process::ExitCode;
 
-use fosssim_oracle::{
-    assignments::Assignment,
-    diagnose::probe_scenes,
+use fosssim_lab::{
+    operators::{EQUIVALENT, mutations},
     sight::{Watched, WrongProgram, witnesses, wrong_programs},
-    student::operators::{EQUIVALENT, mutations},
-    suite::plan,
 };
+use fosssim_oracle::{assignments::Assignment, diagnose::probe_scenes, suite::plan};
 use rayon::prelude::*;
 
 /// So many scenes of the suite have to refuse each wrong program.

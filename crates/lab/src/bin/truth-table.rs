@@ -5,11 +5,12 @@
 //! usage: `truth-table [EVERY]`: of the pairs of mistakes one of so many (50 unless told).
 use std::{collections::BTreeMap, process::ExitCode};
 
+use fosssim_lab::{mutants::mutants, witness::checked};
 use fosssim_oracle::{
     assignments::Assignment,
-    diagnose::{probe_scenes, witness::checked},
+    diagnose::probe_scenes,
     report::words::explanation::what,
-    student::{Area, CATALOGUE, Row, RowKind, Student, mutants::mutants},
+    student::{Area, CATALOGUE, Row, RowKind, Student},
 };
 use rayon::prelude::*;
 
@@ -41,7 +42,7 @@ fn programs(every: usize) -> Vec<(String, Student)> {
     let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area < Area::Trace;
     let rows: Vec<&Row> = CATALOGUE.iter().filter(is_asked).collect();
     let one = rows.iter().map(|row| (row.id.to_owned(), Student::new(Some(row.mistake))));
-    let others = mutants().map(|mutant| (mutant.id.to_owned(), Student::default().with_mutant(mutant)));
+    let others = mutants().map(|mutant| (mutant.id.to_owned(), Student::default().with_change(&mutant.change)));
     let pairs = rows.iter().enumerate().flat_map(|(number, one)| rows[number + 1..].iter().map(move |two| (one, two)));
     let two = pairs.step_by(every).map(|(one, two)| {
         (format!("{} and {}", one.id, two.id), Student::new(Some(one.mistake)).and(Some(two.mistake)))

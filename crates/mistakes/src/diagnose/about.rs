@@ -33,7 +33,8 @@ pub enum About {
 
 impl About {
     /// The kinds of pairs whose polynomials it is about, each once.
-    pub(super) fn kinds(&self) -> Vec<PairKind> {
+    #[must_use]
+    pub fn kinds(&self) -> Vec<PairKind> {
         let Self::Polynomials { subjects, .. } = self else { return Vec::new() };
         PairKind::ALL.into_iter().filter(|kind| subjects.iter().any(|subject| subject.kind() == *kind)).collect()
     }

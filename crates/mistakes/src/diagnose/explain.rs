@@ -2,7 +2,7 @@
 use super::{
     Detail, Explanation,
     about::About,
-    known::{Known, Sample, is_empty_stage, known_or_open},
+    known::{self, Known, Sample, is_empty_stage, known_or_open},
     not_finite, polynomial, samples,
     source::Source,
     stages,
@@ -32,6 +32,13 @@ const MOST_PAIRS: usize = 400_000;
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, &|| Source::whole(trace))
+}
+
+/// The explanation of the trace's stages, whether or not a known mistake explains it: for measuring what it says.
+#[must_use]
+pub fn explain_stages(scene: &Scene, trace: &[u8]) -> Option<Explanation> {
+    let scan = known::kept_steps(scene, Source::whole(trace));
+    stages::explain(scene, scan.wrong.iter().chain(&scan.right))
 }
 
 /// As [`explain`], whatever the trace's records are read from, more than once.

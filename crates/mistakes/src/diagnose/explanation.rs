@@ -219,7 +219,8 @@ impl Explanation {
     }
 
     /// The stage of a step that it says is wrong.
-    pub(super) fn stage(&self) -> Option<StepStage> {
+    #[must_use]
+    pub fn stage(&self) -> Option<StepStage> {
         match &self.about {
             About::Stage(fault) => Some(fault.stage()),
             _ => None,

@@ -16,20 +16,18 @@ mod guess;
 mod heads;
 mod known;
 mod not_finite;
-pub mod outside;
 pub mod polynomial;
 mod samples;
 mod settled;
 mod source;
 mod stages;
-pub mod witness;
 
 pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use about::{About, OfPolynomials};
 pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Stand, Weight};
 pub use examine::{Examined, Keep, examine, explain_kept};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
-pub use explain::explain;
+pub use explain::{explain, explain_stages};
 pub use explanation::Explanation;
 pub use fault::{
     Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongGeometric,

@@ -1,8 +1,7 @@
 //! Who wrote a program: the mistakes that are made in it.
 use super::{
     catalogue::{Area, Mistake},
-    mutants::{Change, Mutant},
-    operators::Mutation,
+    hooks::{Change, Mutation},
 };
 
 /// The program's author: makes one mistake, none, or several of different parts of the assignment.
@@ -10,7 +9,7 @@ use super::{
 pub struct Student {
     mistakes: [Option<Mistake>; Student::MOST],
     right_approach: bool,
-    mutant: Option<&'static Mutant>,
+    change: Option<&'static Change>,
     pub(super) mutation: Option<Mutation>,
 }
 
@@ -57,8 +56,8 @@ impl Student {
 
     /// The same student, who makes a mistake that the catalogue does not have, too.
     #[must_use]
-    pub fn with_mutant(self, mutant: &'static Mutant) -> Self {
-        Self { mutant: Some(mutant), ..self }
+    pub fn with_change(self, change: &'static Change) -> Self {
+        Self { change: Some(change), ..self }
     }
 
     /// The same student, in whose program an operator has changed a place, too.
@@ -69,7 +68,7 @@ impl Student {
 
     /// What the student changes that the catalogue does not have.
     pub(super) fn change(self) -> Option<&'static Change> {
-        self.mutant.map(|mutant| &mutant.change)
+        self.change
     }
 
     /// Whether the particle-edge approach is mathematically right, not the supplied one.

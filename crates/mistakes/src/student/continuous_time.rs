@@ -2,8 +2,8 @@
 use super::{
     catalogue::Mistake,
     detection,
+    hooks::Place,
     objects::State,
-    operators::Place,
     response::respond,
     step_failure::StepFailure,
     world::{StepLog, World},

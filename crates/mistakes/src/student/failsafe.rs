@@ -6,10 +6,9 @@ use fosssim_num::{
 
 use super::{
     catalogue::{Area, Mistake},
-    mutants::{Change, Turn},
+    hooks::{Change, Place, Turn},
     objects::State,
     objects::Zone,
-    operators::Place,
     rounding::single,
     world::World,
 };

@@ -1,11 +1,11 @@
 //! Collision type `hybrid`: impulses first, and rigid impact zones where they do not suffice (collisions.md 5).
 use super::{
     catalogue::{Area, Mistake},
-    detection, failsafe, impulses,
-    mutants::Change,
+    detection, failsafe,
+    hooks::{Change, Place},
+    impulses,
     objects::State,
     objects::Zone,
-    operators::Place,
     step_failure::StepFailure,
     world::{StepLog, World},
     zones,

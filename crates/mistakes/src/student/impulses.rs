@@ -4,9 +4,8 @@ use fosssim_num::vector::{at, length, put};
 use super::{
     catalogue::{Area, Mistake},
     detection,
-    mutants::Change,
+    hooks::{Change, Place},
     objects::{Contact, State},
-    operators::Place,
     response::respond,
     step_failure::StepFailure,
     world::{StepLog, World},

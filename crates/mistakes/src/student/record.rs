@@ -3,8 +3,8 @@
 use super::{
     author::Student,
     catalogue::{Area, Mistake},
+    hooks::Place,
     objects::{Contact, Object, State},
-    operators::Place,
     rounding::single,
     step::step,
     step_failure::StepFailure,

@@ -5,9 +5,8 @@ use fosssim_num::vector::{Vec2, at, over, unit};
 use super::{
     author::Student,
     catalogue::{Area, Mistake},
-    mutants::{Change, Share},
+    hooks::{Change, Place, Share},
     objects::{Contact, Object, State},
-    operators::Place,
     rounding::single,
     world::{World, add, subtract},
 };

@@ -1,9 +1,10 @@
 //! One step with its records.
 use super::{
     catalogue::{Area, Mistake},
-    continuous_time, hybrid, integrators,
+    continuous_time,
+    hooks::Place,
+    hybrid, integrators,
     objects::State,
-    operators::Place,
     simple,
     step_failure::StepFailure,
     world::{StepLog, World},

@@ -10,9 +10,8 @@ use std::sync::Arc;
 use super::{
     author::Student,
     catalogue::Mistake,
-    mutants::Change,
+    hooks::{Change, Place},
     objects::{Contact, Object, Pair, State},
-    operators::Place,
 };
 
 /// Everything that stays as it is during a run. Programs of many students share a scene, and none holds a list of its

@@ -4,9 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{
     author::Student,
     catalogue::{Area, Mistake},
-    mutants::Change,
+    hooks::{Change, Place},
     objects::{Contact, Object, Zone},
-    operators::Place,
     world::World,
 };
 

@@ -10,7 +10,7 @@ use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
     encounter::{Body, alpha},
-    operators::Place,
+    hooks::Place,
 };
 
 /// The parts of the assignment whose mistakes are made in the polynomials.

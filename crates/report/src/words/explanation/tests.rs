@@ -1,4 +1,4 @@
-//! Everything that explanations can say, and what they say of mistakes that the catalogue does not have.
+//! Everything that explanations can say.
 use super::*;
 use fosssim_mistakes::{
     assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
@@ -6,13 +6,11 @@ use fosssim_mistakes::{
         Amount, Changed, CoefficientGuess, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials,
         PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, Stand, Weight, WrongDecisions,
         WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
-        WrongZones, explain,
-        outside::{Rated, Rating, rated},
-        probe_scenes,
+        WrongZones,
     },
-    student::{self, CATALOGUE, Student, mutants::mutants},
+    student::CATALOGUE,
 };
-use fosssim_model::{assignments::Assignment, sim::PairKind};
+use fosssim_model::sim::PairKind;
 
 const EDGE: Option<PairKind> = Some(PairKind::ParticleEdge);
 const TWO: Ratios = Ratios::All(2.0);
@@ -291,78 +289,4 @@ fn a_known_mistake_is_told_by_its_row() {
     assert_eq!(lines[0], row.term);
     assert!(lines[1].starts_with("Here d21 is dx2 - dx1"), "{lines:?}");
     assert_eq!(lines[2], "Look at the coefficients that the particle-edge detection computes.");
-}
-
-/// What an explanation says.
-fn words(one: &Explanation) -> String {
-    format!("{} {}", what(one), details(one).join(" "))
-}
-
-/// Mistakes that the catalogue does not have, one of four: nothing misleads, and in eight of ten something is said that
-/// helps. `crates/lab` has the table of all.
-#[test]
-fn of_unknown_mistakes_the_place_is_told_and_none_is_taken_for_another() {
-    let rated: Vec<Rated> = rated(|number| number % 4 == 1, words);
-    let misleading: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Misleading).collect();
-    assert!(misleading.is_empty(), "{misleading:#?}");
-    let open: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Unknown).collect();
-    assert!(5 * open.len() <= rated.len() && rated.len() >= 15, "{open:#?}");
-}
-
-/// What is said of a mutant's trace of one probe scene.
-fn said_on(id: &str, probe: &str) -> Explanation {
-    let mutant = mutants().find(|mutant| mutant.id == id).expect("a mutant");
-    let (_, scene) = probe_scenes(Assignment::T2M2).into_iter().find(|(name, _)| name == probe).expect("a probe scene");
-    let trace = student::trace(&scene, Student::default().with_mutant(mutant)).expect("it comes to an end");
-    explain(&scene, &trace).into_iter().next().expect("an explanation")
-}
-
-#[test]
-fn the_first_wrong_stage_is_told_with_what_its_results_have_in_common() {
-    let cases = [
-        (
-            "order-kinds-apart",
-            "zones-of-all-kinds",
-            "Detection: The polynomials are right, but the pairs",
-            "per particle",
-        ),
-        ("root-time-late", "edges-struck", "Detection: The contacts are right, but not their times", "1.1 times"),
-        (
-            "vector-doubled",
-            "edges-struck",
-            "Particle-edge contact vector: It has the right direction",
-            "2 times as long",
-        ),
-        ("response-stronger", "edges-struck", "Collision response: ", "1.5 times what it should"),
-        (
-            "response-friction",
-            "edges-struck",
-            "Collision response: Velocities change also across",
-            "across the contact",
-        ),
-        (
-            "loop-at-most-two",
-            "rounds-enough",
-            "Impulse loop or detection: The loop makes fewer rounds",
-            "2 detection passes where",
-        ),
-        ("rigid-half-turn", "zones-turn-little-and-far", "Rigid failsafe: Zones do not turn as far", "they turn 0."),
-        ("rigid-shrinks", "zones-turn-little-and-far", "Rigid failsafe: ", ""),
-        (
-            "rigid-velocity-halved",
-            "zones-turn-little-and-far",
-            "Rigid failsafe: Velocities in a zone",
-            "0.5 times the motion",
-        ),
-    ];
-    let mut others = Vec::new();
-    for (id, probe, what, detail) in cases {
-        let said = said_on(id, probe);
-        let lines = details(&said);
-        let has_detail = detail.is_empty() || lines.iter().any(|line| line.contains(detail));
-        if !super::what(&said).contains(what) || !has_detail {
-            others.push(format!("{id} on {probe}: {} {lines:?}", super::what(&said)));
-        }
-    }
-    assert!(others.is_empty(), "{others:#?}");
 }

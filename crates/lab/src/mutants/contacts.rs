@@ -1,11 +1,13 @@
 //! Wrong use of roots, intervals, contact vectors, and orders.
+use super::{Mutant, row};
 use fosssim_num::{
     polynomial::Polynomial,
     vector::{Vec2, length, unit},
 };
-
-use super::{Change, Mutant, row};
-use crate::student::{catalogue::Area, encounter::Encounter, objects::Object};
+use fosssim_oracle::student::{
+    Area, Object,
+    hooks::{Change, Encounter, alpha},
+};
 
 pub(super) const MUTANTS: &[Mutant] = &[
     row(
@@ -69,7 +71,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "only the middle half of an edge is struck",
         &["missed", "not counted"],
         Change::Counts(|encounter, time| {
-            let inside = |bodies| (0.25..=0.75).contains(&crate::student::encounter::alpha(bodies, time));
+            let inside = |bodies| (0.25..=0.75).contains(&alpha(bodies, time));
             time <= 1.0 && !matches!(encounter, Encounter::Edge(bodies, _) if !inside(bodies))
         }),
     ),
@@ -112,7 +114,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         &["direction"],
         Change::Vector(|encounter, time, n| match encounter {
             Encounter::Edge(bodies, _) => {
-                let end = if crate::student::encounter::alpha(bodies, time) < 0.5 { &bodies[1] } else { &bodies[2] };
+                let end = if alpha(bodies, time) < 0.5 { &bodies[1] } else { &bodies[2] };
                 end.at(time) - bodies[0].at(time)
             }
             _ => n,

@@ -1,14 +1,16 @@
 //! Which scenes see that a program is wrong: the measure of suites and probe scenes.
-use crate::student::{
-    self, CATALOGUE, RowKind, Student,
+use crate::{
     mutants::mutants,
     operators::{equivalent, mutations},
 };
-use fosssim_judge::{
-    fair::FairVerdict,
-    replay::{Options, judge},
+use fosssim_oracle::{
+    judge::{
+        fair::FairVerdict,
+        replay::{Options, judge},
+    },
+    scene::Scene,
+    student::{self, CATALOGUE, RowKind, Student},
 };
-use fosssim_model::scene::Scene;
 
 /// A scene with the trace of a right program.
 #[derive(Debug)]
@@ -63,8 +65,10 @@ pub struct WrongProgram {
 pub fn wrong_programs() -> Vec<WrongProgram> {
     let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong);
     let rows = rows.map(|row| WrongProgram { name: row.id.to_owned(), student: Student::new(Some(row.mistake)) });
-    let mutants = mutants()
-        .map(|mutant| WrongProgram { name: mutant.id.to_owned(), student: Student::default().with_mutant(mutant) });
+    let mutants = mutants().map(|mutant| WrongProgram {
+        name: mutant.id.to_owned(),
+        student: Student::default().with_change(&mutant.change),
+    });
     let changed = mutations().into_iter().filter(|mutation| equivalent(*mutation).is_none());
     let changed = changed.map(|mutation| WrongProgram {
         name: mutation.to_string(),
@@ -78,3 +82,6 @@ pub fn wrong_programs() -> Vec<WrongProgram> {
 pub fn witnesses(scenes: &[Watched], student: Student, enough: usize) -> Vec<&str> {
     scenes.iter().filter(|scene| scene.refuses(student)).map(|scene| scene.name.as_str()).take(enough).collect()
 }
+
+#[cfg(test)]
+mod tests;

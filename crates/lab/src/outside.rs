@@ -1,12 +1,14 @@
 //! What is told of programs whose mistake the catalogue does not have: the measure of explanations where they can't
 //! know.
-use super::{About, Explanation, Keep, examine, probe_scenes, refuted, several};
-use crate::student::{
-    self, Area, Student,
-    mutants::{Mutant, mutants},
+use crate::mutants::{Mutant, mutants};
+use fosssim_oracle::{
+    assignments::Assignment,
+    diagnose::{About, Explanation, Keep, examine, probe_scenes, refuted, several},
+    judge::{fair::FairVerdict, replay::Options},
+    report::words::explanation::{details, what},
+    scene::Scene,
+    student::{self, Area, Student},
 };
-use fosssim_judge::{fair::FairVerdict, replay::Options};
-use fosssim_model::{assignments::Assignment, scene::Scene};
 use rayon::prelude::*;
 
 /// How what is told of a mistake stands to it, from best to worst.
@@ -53,29 +55,29 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
     several(traces, &refuted)
 }
 
-/// Asks about the mutants with these numbers. What an explanation says is told by `words`: a mutant names words by
-/// which it is recognised. Several are asked about at a time; the answers come in the mutants' order.
-pub fn rated(wanted: impl Fn(usize) -> bool, words: impl Fn(&Explanation) -> String + Sync) -> Vec<Rated> {
+/// Asks about the mutants with these numbers, several at a time. The answers come in the mutants' order.
+pub fn rated(wanted: impl Fn(usize) -> bool) -> Vec<Rated> {
     let wanted: Vec<&Mutant> =
         mutants().enumerate().filter(|(number, _)| wanted(*number)).map(|(_, mutant)| mutant).collect();
     let rate = |mutant: &'static Mutant| {
-        let told = told_of(Student::default().with_mutant(mutant));
-        Rated { id: mutant.id, what: mutant.what, rating: overall(mutant, &told, &words), told }
+        let told = told_of(Student::default().with_change(&mutant.change));
+        Rated { id: mutant.id, what: mutant.what, rating: overall(mutant, &told), told }
     };
     wanted.into_par_iter().map(rate).collect()
 }
 
 /// The best of what is told, unless something misleads.
-fn overall(mutant: &Mutant, told: &[Explanation], words: &(dyn Fn(&Explanation) -> String + Sync)) -> Rating {
+fn overall(mutant: &Mutant, told: &[Explanation]) -> Rating {
     // That NaN is there is true of any mistake that makes it.
-    let ratings = || told.iter().filter(|one| !one.is_not_finite()).map(|one| rating(mutant, one, &words(one)));
+    let ratings = || told.iter().filter(|one| !one.is_not_finite()).map(|one| rating(mutant, one));
     match ratings().max() {
         Some(Rating::Misleading) => Rating::Misleading,
         _ => ratings().min().unwrap_or(Rating::Unknown),
     }
 }
 
-pub(super) fn rating(mutant: &Mutant, told: &Explanation, words: &str) -> Rating {
+/// How one explanation stands to the mistake.
+fn rating(mutant: &Mutant, told: &Explanation) -> Rating {
     let row = student::find(&told.key);
     let (is_there, kinds) = match (row, &told.about) {
         (Some(row), _) => (row.area == mutant.area, row.kind_of_pair().into_iter().collect()),
@@ -87,6 +89,7 @@ pub(super) fn rating(mutant: &Mutant, told: &Explanation, words: &str) -> Rating
     if !is_there || is_of_other_kind {
         return Rating::Misleading;
     }
+    let words = format!("{} {}", what(told), details(told).join(" "));
     let is_told = mutant.told_by.iter().any(|word| told.key.contains(word) || words.contains(word));
     if row.is_none() && is_told { Rating::Right } else { Rating::Partly }
 }
@@ -94,3 +97,6 @@ pub(super) fn rating(mutant: &Mutant, told: &Explanation, words: &str) -> Rating
 const fn is_of_polynomials(mutant: &Mutant) -> bool {
     matches!(mutant.area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane)
 }
+
+#[cfg(test)]
+mod tests;

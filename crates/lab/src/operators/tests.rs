@@ -1,6 +1,8 @@
 use super::*;
-use crate::student::{self, Student};
-use fosssim_model::scene::read;
+use fosssim_oracle::{
+    scene::read,
+    student::{self, Student},
+};
 use std::collections::BTreeSet;
 
 #[test]

@@ -1,5 +1,5 @@
 //! Mutations that no scene can refuse, because the program does the same, and why.
-use super::{
+use fosssim_oracle::student::hooks::{
     Mutation,
     Operator::{self, Negated, Repeated, Reversed, Stale},
     Place::{

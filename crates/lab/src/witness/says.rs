@@ -1,14 +1,14 @@
 //! What a sentence about a stage says of a step, as a question to its records.
 use super::step::{Step, same, same_list};
-use crate::diagnose::{
-    Changed, LoopEnd, Quantity, StageFault, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
-    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
-};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Pair, PairKind, Stage, State},
 };
 use fosssim_num::vector::{Vec2, at, length, unit};
+use fosssim_oracle::diagnose::{
+    Changed, LoopEnd, Quantity, StageFault, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
+    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+};
 
 /// A zone of the first round: its particles, and whether a half-plane is in it.
 type Zone<'a> = (&'a [usize], bool);

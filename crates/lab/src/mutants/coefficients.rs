@@ -1,10 +1,9 @@
 //! Wrong polynomials.
+use super::{Mutant, row};
 use fosssim_num::vector::Vec2;
-
-use super::{Change, Mutant, row};
-use crate::student::{
-    catalogue::Area,
-    encounter::{Body, Encounter},
+use fosssim_oracle::student::{
+    Area,
+    hooks::{Body, Change, Encounter},
 };
 
 const PP: &str = "particle-particle";

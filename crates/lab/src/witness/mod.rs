@@ -3,16 +3,11 @@
 mod says;
 mod step;
 
-use super::{About, Explanation, LoopEnd, StageFault, WrongGeometric, known, source::Source, stages};
-use crate::student::{self, Student};
-use fosssim_model::scene::Scene;
-
-/// What is said of the stages of a trace, whether or not a known mistake explains it.
-#[must_use]
-pub fn said(scene: &Scene, trace: &[u8]) -> Option<Explanation> {
-    let scan = known::kept_steps(scene, Source::whole(trace));
-    stages::explain(scene, scan.wrong.iter().chain(&scan.right))
-}
+use fosssim_oracle::{
+    diagnose::{About, Explanation, LoopEnd, StageFault, WrongGeometric, explain_stages},
+    scene::Scene,
+    student::{self, Student},
+};
 
 /// Whether what is said of stages is true of the trace; true of what says nothing of them.
 #[must_use]
@@ -34,7 +29,7 @@ pub const MOST: usize = 20_000;
 #[must_use]
 pub fn checked(scene: &Scene, student: Student) -> Option<(String, Option<Explanation>)> {
     let trace = student::trace_within(scene, student, MOST).unwrap_or_else(|(bytes, _)| bytes);
-    let told = said(scene, &trace)?;
+    let told = explain_stages(scene, &trace)?;
     let About::Stage(fault) = &told.about else { return None };
     let sort = sort(fault);
     Some((sort, (!is_true(scene, &trace, &told)).then_some(told)))

@@ -1,7 +1,10 @@
 //! Wrong responses, loops, zones and failsafes.
-use super::{Change, Mutant, Share, row};
-use crate::student::{catalogue::Area, objects::Object};
+use super::{Mutant, row};
 use fosssim_num::vector::Vec2;
+use fosssim_oracle::student::{
+    Area, Object,
+    hooks::{Change, Share},
+};
 
 const PP: &str = "particle-particle";
 const PE: &str = "particle-edge";

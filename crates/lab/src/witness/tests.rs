@@ -1,14 +1,17 @@
 //! All that is said of the stages of sample programs on the probe scenes is true, and every sort of sentence is said.
-use super::{super::probe_scenes, MOST, checked, said};
-use crate::{
-    diagnose::{About, StageFault, StepStage, WrongZoneRounds},
-    student::{self, Area, CATALOGUE, Mistake, Row, RowKind, Student, mutants::mutants},
+use super::{MOST, checked};
+use crate::mutants::mutants;
+use fosssim_oracle::{
+    assignments::Assignment,
+    diagnose::{About, StageFault, StepStage, WrongZoneRounds, explain_stages, probe_scenes},
+    judge::{
+        FindingDetail,
+        replay::{Options, judge},
+    },
+    scene::Collision,
+    sim::Stage,
+    student::{self, Area, CATALOGUE, Mistake, Row, RowKind, Student},
 };
-use fosssim_judge::{
-    FindingDetail,
-    replay::{Options, judge},
-};
-use fosssim_model::{assignments::Assignment, scene::Collision, sim::Stage};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -85,10 +88,10 @@ fn programs() -> Vec<(String, Student)> {
         let other = rows[(number * 37 + 11) % rows.len()];
         (format!("{} and {}", row.id, other.id), Student::new(Some(row.mistake)).and(Some(other.mistake)))
     });
-    let others = mutants().map(|mutant| (mutant.id.to_owned(), Student::default().with_mutant(mutant)));
+    let others = mutants().map(|mutant| (mutant.id.to_owned(), Student::default().with_change(&mutant.change)));
     let find = |id: &str| mutants().find(|mutant| mutant.id == id).expect("a mutant");
     let missed_and_superfluous =
-        Student::new(Some(Mistake::DecisionHalfStep)).with_mutant(find("root-approach-not-searched"));
+        Student::new(Some(Mistake::DecisionHalfStep)).with_change(&find("root-approach-not-searched").change);
     let both = ("half of the step, whatever approaches".to_owned(), missed_and_superfluous);
     one.chain(two).chain(others).chain([both]).collect()
 }
@@ -130,7 +133,7 @@ fn what_is_said_of_stages_does_not_lie_behind_the_first_divergence() {
         .par_iter()
         .filter_map(|((id, student), (name, scene))| {
             let trace = student::trace_within(scene, *student, MOST).unwrap_or_else(|(bytes, _)| bytes);
-            let told = said(scene, &trace)?;
+            let told = explain_stages(scene, &trace)?;
             let options = Options { threads: 1, fair: true, ..Options::default() };
             let first = judge(scene, &trace[..], &options, &mut ()).fair?.findings.first_divergence?;
             let behind_failsafe = match first.detail {

@@ -1,0 +1,57 @@
+//! Mistakes that the catalogue does not have, for measuring what explanations say of what they can't know.
+//!
+//! Explanations never try these: a row here must not become a row of the catalogue, or the measure is gone. Each
+//! changes one thing at one of the [`Change`]s.
+mod coefficients;
+mod contacts;
+mod motions;
+
+use fosssim_oracle::student::{Area, hooks::Change};
+
+/// A mistake outside of the catalogue.
+#[derive(Debug)]
+pub struct Mutant {
+    /// Its name.
+    pub id: &'static str,
+    /// Where it is made.
+    pub area: Area,
+    /// The kind of pair that it is made for, as explanations call it; empty where it is made for all.
+    pub kind: &'static str,
+    /// What is wrong.
+    pub what: &'static str,
+    /// What an explanation has to say at least in order to be right: one of these words stands in its sentence, its
+    /// key, or its exact form.
+    pub told_by: &'static [&'static str],
+    /// The change that makes it.
+    pub change: Change,
+}
+
+const fn row(
+    id: &'static str,
+    area: Area,
+    kind: &'static str,
+    what: &'static str,
+    told_by: &'static [&'static str],
+    change: Change,
+) -> Mutant {
+    Mutant { id, area, kind, what, told_by, change }
+}
+
+/// All mutants.
+pub fn mutants() -> impl Iterator<Item = &'static Mutant> {
+    coefficients::MUTANTS.iter().chain(contacts::MUTANTS).chain(motions::MUTANTS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_oracle::student::find;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn there_are_many_and_none_is_of_the_catalogue() {
+        let ids: BTreeSet<&str> = mutants().map(|mutant| mutant.id).collect();
+        assert!(ids.len() >= 40 && ids.len() == mutants().count(), "{}", ids.len());
+        assert!(ids.iter().all(|id| find(id).is_none()));
+    }
+}
