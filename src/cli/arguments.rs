@@ -15,7 +15,7 @@ use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
 #[derive(Debug, Parser)]
 #[command(name = "fosssim-oracle", version, max_term_width = 100, after_help = EXIT_CODES)]
 pub(super) struct Arguments {
-    /// When to use colours; auto is for a terminal, unless NO_COLOR objects or CLICOLOR_FORCE insists.
+    /// When to use colours; auto: on a terminal without NO_COLOR, and always with CLICOLOR_FORCE.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = Colour::Auto, display_order = 900)]
     pub(super) color: Colour,
     #[command(subcommand)]
@@ -46,20 +46,20 @@ pub(super) enum Command {
     Simulate(Later<Simulate>),
     /// Grades a trace by the original's rules and by fair ones: what is wrong, and where.
     Check(Later<Check>),
-    /// Says what is likely wrong with the program that left a trace, or with a program at hand.
+    /// Names the likely mistake of a program, from its trace or by running it.
     Explain(Later<Explain>),
-    /// Computes what detection makes of one pair: polynomials, zeros, intervals, decision, time of impact, normal.
+    /// Computes one pair: polynomials, zeros, intervals, decision, time of impact, normal.
     Detect(Box<Later<Detect>>),
     /// Draws a scene's motion: a picture per step, an animated PNG, a GIF, or a movie.
     Render(Box<Later<Render>>),
-    /// Looks into traces.
+    /// Shows what a trace holds, one of its steps, or how two traces differ.
     #[command(subcommand)]
     Trace(Later<Trace>),
     /// Records the traces of all scenes of a folder, or checks that they are still the same.
     Record(Later<Record>),
     /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
     Grade(Later<Grade>),
-    /// Puts together what `grade --shard` left: the results are those of a grading in one go.
+    /// Joins the parts that `grade --shard` graded into one grading.
     Merge(Later<Merge>),
     /// Writes and explains suites: what is graded, with what limits and points.
     #[command(subcommand)]
@@ -67,13 +67,13 @@ pub(super) enum Command {
     /// Lists the scenes that come with the program, prints one, or writes them into a folder.
     #[command(subcommand)]
     Scene(Later<Scene>),
-    /// Shows the whole thing: grades a right and a wrong sample program in the sandbox.
+    /// Grades a right and a wrong sample program, to show how everything works.
     Demo(Later<Demo>),
     /// Says which layers of the sandbox hold on this machine, and what to install.
     Doctor(Later<Doctor>),
-    /// Runs the suite of hostile programs on this machine, and prints which promises hold.
+    /// Runs hostile programs in the sandbox of this machine, and prints which of its promises hold.
     Selftest(Later<Selftest>),
-    /// Runs a course's grading server: the program fosssim-server, which stands beside this one
+    /// Runs a course's grading server, the program fosssim-server beside this one.
     Serve(Later<Serve>),
     /// Behaves as the original program: same flags, same output, same files, same exit codes.
     ///
@@ -129,7 +129,7 @@ Example:
 pub(super) struct Simulate {
     /// The scene, a file or asset:Group/name.
     pub(super) scene: PathBuf,
-    /// Where to write the trace; - for standard output. Without it nothing is kept.
+    /// Where to write the trace; - for standard output. Without this option no trace is written.
     #[arg(short, long, value_name = "TRACE")]
     pub(super) output: Option<PathBuf>,
     /// Search all roots, also where a certificate excludes an impact, and count disagreements.
@@ -157,8 +157,8 @@ pub(super) struct Check {
     /// The trace, a file, - for standard input, or asset:Group/name.
     #[arg(required_unless_present = "own")]
     pub(super) trace: Option<PathBuf>,
-    /// Instead of a trace, judge the reference's own ones by the original's rules, at growing scale: says which scenes
-    /// these rules can't grade fairly. Without scenes, those of the suite t2m2.
+    /// Judge the reference's own traces by the original's rules, at growing scale. This finds the scenes that these
+    /// rules can't grade fairly. By default the scenes of the suite t2m2.
     #[arg(long = "self", value_name = "SCENE", num_args = 0.., conflicts_with_all = ["scene", "audit", "rules", "no_explain"])]
     pub(super) own: Option<Vec<PathBuf>>,
     /// The rule books.
@@ -173,8 +173,7 @@ pub(super) struct Check {
     /// Show all wrong steps, not only the first one, with expected and actual values.
     #[arg(long, conflicts_with_all = ["step", "own"])]
     pub(super) all: bool,
-    /// Show the tables, too: residuals and what of each tolerance is used, all kinds of findings with their first
-    /// examples.
+    /// Show tables, too: residuals, the used share of each tolerance, all kinds of findings with their first examples.
     #[arg(long, conflicts_with = "own")]
     pub(super) tables: bool,
 
@@ -219,7 +218,8 @@ Example:
   fosssim-oracle explain --program ./FOSSSim
   fosssim-oracle explain --program ./FOSSSim scenes/test00.xml
 
-With a program at hand it runs, in the sandbox, on small scenes that make every term of every formula visible. The exit code is 0 when the fair rules accept everything, else 1.")]
+With --program, the program runs in the sandbox on small scenes that make every term of every formula visible. \
+The exit code is 0 when the fair rules accept everything, else 1.")]
 pub(super) struct Explain {
     /// The scene and the trace; with --program, scenes to run besides the built-in ones.
     #[arg(value_name = "SCENE TRACE")]
@@ -227,7 +227,7 @@ pub(super) struct Explain {
     /// The program to run.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) program: Option<PathBuf>,
-    /// How much is told.
+    /// How much the explanation tells.
     #[arg(long, value_enum, default_value_t = Hints::Full)]
     pub(super) hints: Hints,
     /// How the report is written.

@@ -38,13 +38,12 @@ Example:
 
 A folder holds one submission per entry: a program, or a folder with a program of the name that --program gives. A \
 folder that holds such a program itself is one submission, and with --single it is one in any case. When the suite has \
-a [build] table, folders are built first. A program is alone when it runs: files beside it are not there.
+a [build] table, folders are built first. A program runs without the files beside it.
 
-With --output (for several submissions always; fosssim-grades by default) results are kept as they come: an \
-interrupted grading goes on where it stopped, and nothing is run twice unless the program, the scene or the rules \
+With --output, the folder keeps results as they come. (Several submissions always have one, fosssim-grades by default.) \
+An interrupted grading goes on where it stopped. A scene is run again only if the program, the scene or the rules \
 changed. The folder gets index.html (a class) or report.html to look at, grades.csv, grades.jsonl, scenes.csv, \
-class.txt and a log per run; of a part of the suite \
-(--scene, --failed) only the logs, because its points are no grade.")]
+class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part are no grade.")]
 pub(super) struct Grade {
     /// Programs, or folders of submissions.
     #[arg(required = true)]
@@ -59,11 +58,11 @@ pub(super) struct Grade {
     pub(super) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(|_| true))]
     pub(super) format: Vec<String>,
-    /// Whom HTML pages are for: students' hold no group that the suite hides from them, nor what tells of it. Into the
-    /// output folder both kinds are written, those to hand out below students/.
+    /// The reader of HTML pages. Pages for students leave out groups that the suite hides, and everything that tells
+    /// of them. The output folder gets both kinds; pages to hand out are in students/.
     #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Audience::Staff)]
     pub(super) reader: Audience,
-    /// Runs at one time. One per core by default.
+    /// Number of runs at one time. One per core by default.
     #[arg(short, long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
     pub(super) jobs: Option<NonZeroUsize>,
     /// Only scenes of these names, such as 'GeometricTests/*' or 'ball-*'; may be given several times.
@@ -72,7 +71,7 @@ pub(super) struct Grade {
     /// Only scenes that were not accepted when the same submissions were graded last.
     #[arg(long)]
     pub(super) failed: bool,
-    /// How much reports tell; by default what the suite says. More than `what` may give a formula away.
+    /// How much reports tell; by default the suite's choice. `full` may give a formula away.
     #[arg(long, value_enum, value_name = "LEVEL")]
     pub(super) hints: Option<Level>,
     /// Keep the traces of scenes that are not accepted, in the output folder.
@@ -81,7 +80,7 @@ pub(super) struct Grade {
     /// Show a line per submission only.
     #[arg(short, long, conflicts_with = "verbose")]
     pub(super) quiet: bool,
-    /// Show every scene, accepted ones too; of several submissions as well, of which only a table is shown otherwise.
+    /// Show every scene of every submission, accepted scenes included.
     #[arg(short, long)]
     pub(super) verbose: bool,
     /// The program's name in the folder of a submission.
@@ -96,23 +95,23 @@ pub(super) struct Grade {
     /// Stop at a submission's first scene that is not accepted: its other scenes are not run, so that it has no points.
     #[arg(long)]
     pub(super) fail_fast: bool,
-    /// Judge against the recorded traces instead of the reference simulator: nothing is taken over from the submission,
-    /// so that everything after its first divergence differs.
+    /// Compare with the recorded traces instead of simulating from the submission's states. Everything after the first
+    /// divergence then differs.
     #[arg(long)]
     pub(super) recorded: bool,
     /// Grade again whenever the program changes, until interrupted.
     #[arg(long)]
     pub(super) watch: bool,
-    /// Grade the I-th of N parts of the submissions only, as one machine of several; `merge` puts the parts together.
-    /// Its results go to the folder shard-I-of-N in the output folder.
+    /// Grade only the I-th of N parts of the submissions, as one machine of several; `merge` joins the parts. Results
+    /// go to the folder shard-I-of-N in the output folder.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
     pub(super) shard: Option<Shard>,
-    /// Judge traces that are there already: every path is a folder with Group/name.bin, or name.bin, for each scene.
-    /// Nothing is run.
+    /// Judge traces that exist already, and run no program. Every path is a folder with Group/name.bin, or name.bin,
+    /// for each scene.
     #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single"])]
     pub(super) traces: bool,
-    /// Run programs although required layers of the sandbox are missing here; those that hold stay up. Every report
-    /// says what is missing.
+    /// Run programs even if required layers of the sandbox are missing. The other layers stay up, and every report
+    /// names the missing ones.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
 }
@@ -120,12 +119,12 @@ pub(super) struct Grade {
 /// A grading has no more shards.
 pub(super) const MOST_SHARDS: usize = 10_000;
 
-/// A part of the submissions: one of so many.
+/// A part of the submissions: the `number`-th of `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shard {
-    /// Which one, from 1.
+    /// The number of this part, from 1.
     pub(super) number: usize,
-    /// Of how many.
+    /// The number of parts.
     pub(super) of: usize,
 }
 
@@ -171,12 +170,12 @@ pub(super) struct Merge {
     /// Folders of shards, or folders that hold them.
     #[arg(required = true)]
     pub(super) folders: Vec<PathBuf>,
-    /// The folder for the results; by default the one that holds the shards, when it is the only one that is named.
+    /// The folder for the results. By default the folder that holds the shards, if you name only one.
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
     pub(super) format: Vec<String>,
-    /// Whom HTML pages are for: students' go to students/, beside those for staff.
+    /// The reader of HTML pages. Pages for students go to students/, beside those for staff.
     #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Audience::Staff)]
     pub(super) reader: Audience,
     /// Show a line per submission only.
@@ -233,7 +232,7 @@ pub(super) struct SuiteInit {
     pub(super) output: Option<PathBuf>,
 }
 
-/// Finds the faults of a suite, says what it would grade, and which decisions of its scenes hang on round-off.
+/// Checks a suite: its faults, its scenes and points, and the decisions that depend on round-off.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -241,12 +240,12 @@ Example:
 pub(super) struct SuiteCheck {
     /// The suite: a file, or one that comes with the program.
     pub(super) suite: String,
-    /// List which pairs of properties no step of its scenes has, too.
+    /// Also list the pairs of properties that no step of its scenes has.
     #[arg(long)]
     pub(super) missing: bool,
 }
 
-/// Lists the suites that come with the program; the first one is meant where none is named.
+/// Lists the suites that come with the program; the first one is the default.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -273,13 +272,13 @@ pub(super) struct Demo {
     /// The sample program; by default fosssim-sample beside this program.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) sample: Option<PathBuf>,
-    /// The mistake of the wrong one, or several with commas between them; fosssim-sample --list lists them.
+    /// The mistake of the wrong sample, or several, separated by commas; fosssim-sample --list lists them.
     #[arg(long, value_name = "ID")]
     pub(super) mistake: Option<String>,
-    /// Where to write the HTML report on the wrong one.
+    /// Where to write the HTML report on the wrong sample.
     #[arg(short, long, value_name = "FILE", default_value = "fosssim-demo.html")]
     pub(super) output: PathBuf,
-    /// Run nothing; write the wrong one as a program that always makes its mistake, to grade it or to hand it in.
+    /// Run nothing; write the wrong sample as a program of its own, to grade it or to hand it in.
     #[arg(long, value_name = "FILE")]
     pub(super) program: Option<PathBuf>,
 }

@@ -96,12 +96,10 @@ pub(super) struct Detect {
     /// The radii of the two objects; of a particle and a half-plane, the particle's.
     #[arg(long, value_name = "R,R", allow_hyphen_values = true)]
     pub(super) radii: Option<String>,
-    #[command(flatten)]
-    pub(super) points: Points,
     /// Look at a pair of this scene instead.
     #[arg(long, value_name = "SCENE", requires = "step", requires = "pair", conflicts_with_all = ["word", "radii", "Points"])]
     pub(super) scene: Option<PathBuf>,
-    /// The trace whose states are taken; without it the reference's run.
+    /// The trace that gives the states; by default the reference's run.
     #[arg(long, value_name = "TRACE", requires = "scene")]
     pub(super) trace: Option<PathBuf>,
     /// The step, from 1.
@@ -119,6 +117,9 @@ pub(super) struct Detect {
     /// Where to write it, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    // Last, because its heading stands above all arguments that follow.
+    #[command(flatten)]
+    pub(super) points: Points,
 }
 
 /// A pair in the notation of the assignment.

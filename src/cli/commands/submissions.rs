@@ -153,8 +153,7 @@ impl<'a> Search<'a> {
         }
         if found.len() == before {
             bail!(
-                "{} holds no submission: neither programs nor folders, and no {} of its own; with --single the folder \
-                 is one all the same",
+                "{} holds no submission: no program, no folder, and no {}; with --single the folder itself is one",
                 folder.display(),
                 self.arguments.program
             );

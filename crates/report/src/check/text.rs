@@ -271,7 +271,9 @@ pub(super) fn notes(check: &Check<'_>) -> Vec<String> {
             damage.frame, damage.step, damage.offset, damage.message
         ));
         if outcome.damaged_steps > 0 && outcome.parity.findings.counts.total() > 0 {
-            notes.push("what is left of a damaged record is counted, but nobody is to blame for it".to_owned());
+            notes.push(
+                "the original counts the rest of a damaged record; the fair rules charge nothing for it".to_owned(),
+            );
         }
     }
     if outcome.trailing_bytes {
