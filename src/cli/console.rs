@@ -180,7 +180,7 @@ impl Bar {
         }
     }
 
-    /// So many steps are done.
+    /// The number of steps that are done.
     pub(super) fn at(&mut self, step: u32) {
         if let Some(bar) = &self.shown {
             bar.set_position(u64::from(step));

@@ -39,7 +39,7 @@ fn takes(pattern: &Pattern, name: &str) -> bool {
     library::takes(pattern, name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
 }
 
-/// So many names are given as examples.
+/// The number of names that are given as examples.
 const EXAMPLES: usize = 3;
 
 /// The names that are nearest to what was typed.

@@ -12,7 +12,7 @@ use fosssim_model::{
 };
 use std::io::Read;
 
-/// So many steps are looked at closely, fewer of a large scene: their expected states are no more than these numbers.
+/// The greatest number of steps with details, and of numbers in their expected states; large scenes have fewer steps.
 const CLOSE_UPS: usize = 12;
 const NUMBERS: usize = 40_000;
 

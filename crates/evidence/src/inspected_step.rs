@@ -7,14 +7,14 @@ use fosssim_model::{
     trace::{LoggedImpulse, PolynomialLog},
 };
 
-/// So many passes of a step are kept, and of a large scene so many that their positions are no more than these numbers.
+/// The greatest number of passes kept of a step, and of numbers in their positions; large scenes have fewer passes.
 const PASSES: usize = 24;
 const POSITIONS: usize = 12_000;
-/// So many pairs of a pass are kept as differing, as missing, as repeated.
+/// The greatest number of pairs kept of a pass: differing ones, missing ones, repeated ones.
 const PAIRS: usize = 256;
-/// So many calls of a step are kept for the case that the trace has logged another number of polynomials.
+/// The number of calls kept of a step, in case the trace has logged another number of polynomials.
 const CALLS: usize = 1 << 14;
-/// So many calls are shown that no finding is about, but that are wrong or missing.
+/// The greatest number of calls shown that are wrong or missing without a finding about them.
 const SHOWN: usize = 2;
 
 /// A detection pass of the reference.

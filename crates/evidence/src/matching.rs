@@ -6,7 +6,7 @@
 //! together, other scripts may be as short.
 use fosssim_model::trace::PolynomialLog;
 
-/// So many pairs of polynomials are compared at most.
+/// The greatest number of pairs of polynomials that are compared.
 const CELLS: usize = 4 << 20;
 
 /// Costs of a polynomial that is left out or put in, and of one that is wrong.

@@ -5,8 +5,8 @@ use fosssim_model::{
 };
 use std::io::Read;
 
-/// So many numbers of one motion are kept, in 16 MB. The largest course scene has 70,444 (11 particles, 1,601 records);
-/// lowered, long scenes show a part of their motion only; raised, memory and pages grow.
+/// The greatest number of numbers kept of a motion (16 MB). The largest course scene has 70,444 (11 particles, 1,601
+/// records); lowered, long scenes show a part of their motion only; raised, memory and pages grow.
 pub const BUDGET: usize = 1 << 21;
 
 /// The records that are kept: those of the steps `first` to `last` (0 is the initial record).

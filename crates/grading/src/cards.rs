@@ -9,7 +9,7 @@ use std::io;
 /// Deflating harder gains little: most of a card is packed already.
 const LEVEL: i32 = 3;
 
-/// So many bytes of a card are read at most; a larger file is not one of our cards.
+/// The greatest size of a card, in bytes; a larger file is not one of our cards.
 const LARGEST: u64 = 64 << 20;
 
 /// A judged trace that is at hand.

@@ -243,7 +243,7 @@ pub struct SceneGrade {
     /// alone ([`SceneResult::explanations`], of which [`Grade::settle`] makes it). This is what reports tell.
     #[serde(with = "mirror::explanations")]
     pub settled: Vec<Explanation>,
-    /// So many of [`settled`](Self::settled), the first ones, are what all scenes together say.
+    /// The number of explanations, the first of [`settled`](Self::settled), that all scenes together give.
     pub agreed: usize,
 }
 

@@ -47,9 +47,9 @@ pub struct Located {
     pub contents: Vec<Content>,
     /// In so many scenes it fails; all of them contain it.
     pub failed: usize,
-    /// So many scenes contain it.
+    /// The number of scenes that contain it.
     pub with: usize,
-    /// So many scenes that were run do not contain it; it fails in none of these.
+    /// The number of scenes that were run and do not contain it; the program fails in none of these.
     pub without: usize,
     /// The first scene in which it fails.
     pub first: String,

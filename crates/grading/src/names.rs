@@ -4,7 +4,7 @@ use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
 use unicode_normalization::UnicodeNormalization;
 use unicode_properties::{GeneralCategory, UnicodeGeneralCategory};
 
-/// So many marks may stand on one letter; further ones only cover what stands around.
+/// The greatest number of marks on one letter; further ones only cover the text around.
 const MARKS: usize = 4;
 
 /// A file's name as text, in the usual form of letters with marks (NFC). What nobody could see, or what would be taken
@@ -72,7 +72,8 @@ fn is_hidden(c: char) -> bool {
         matches!(category, Control | Format | LineSeparator | ParagraphSeparator | PrivateUse | Surrogate | Unassigned);
     is_nothing
         || (category == SpaceSeparator && c != ' ')
-        // Letters, marks and symbols that are as good as invisible: fillers, selectors of variants, the empty Braille cell.
+        // Letters, marks and symbols that are as good as invisible: fillers, selectors of variants, the empty Braille
+        // cell.
         || matches!(
             c,
             '\u{34f}'

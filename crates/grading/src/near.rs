@@ -1,6 +1,6 @@
 //! Which known words are near to one that was typed.
 
-/// So many letters of a word are compared.
+/// The number of letters of a word that are compared.
 const LONGEST: usize = 60;
 
 /// The word that was probably meant: few slips away, or the same but for case and punctuation.

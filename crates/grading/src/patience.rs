@@ -12,7 +12,7 @@ use std::time::Duration;
 /// How long a submission is borne with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patience {
-    /// So many scenes in a row may run into a limit: of time, of memory or of output; 0 for any number.
+    /// The number of scenes in a row that may run into a limit of time, memory or output; 0 for any number.
     pub time_outs: u32,
     /// Wall time of all runs of a submission together, and of judging them.
     pub total: Duration,

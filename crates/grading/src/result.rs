@@ -73,9 +73,9 @@ impl SceneResult {
         }
     }
 
-    /// Leaves the verdict, and nothing else that the program could have chosen: a program that was run on a hidden scene
-    /// could tell of it by an exit code, a signal, the first wrong step, a picture, its time or its memory. What is the
-    /// same in every scene stays, and so do names of likely mistakes, of which a report tells few.
+    /// Leaves the verdict, and nothing else that the program could have chosen: a program that was run on a hidden
+    /// scene could tell of it by an exit code, a signal, the first wrong step, a picture, its time or its memory. What
+    /// is the same in every scene stays, and so do names of likely mistakes, of which a report tells few.
     pub fn withhold(&mut self) {
         let harmless = match &self.reason {
             Reason::Right | Reason::Wrong(Wrong::Nothing) | Reason::NoTrace => true,
@@ -132,7 +132,7 @@ pub enum Wrong {
     FirstRecord(#[serde(with = "mirror::kind")] FindingKind),
     /// In steps.
     Steps {
-        /// So many of them.
+        /// Their number.
         wrong: u64,
         /// The first one.
         first: u32,
@@ -198,7 +198,7 @@ pub enum Limit {
 /// Why a scene is not run any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotRunReason {
-    /// So many scenes in a row ran into a limit, of time, of memory or of output; with the worst verdict of these.
+    /// This number of scenes in a row ran into a limit of time, memory or output; with the worst verdict of these.
     Limits {
         /// How many.
         scenes: u32,

@@ -101,7 +101,7 @@ fn follows(group: &GroupGrade) -> bool {
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
-/// So many accepted scenes are asked whether they speak against a likely mistake.
+/// The number of accepted scenes that are checked for evidence against a likely mistake.
 const WITNESSES: usize = 12;
 
 impl Grading<'_> {

@@ -6,9 +6,9 @@ use super::{
 use fosssim_sandbox::collect::{FolderEntry, OpenFolder};
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
-/// So many entries are named.
+/// The greatest number of entries that are named.
 const NAMED: usize = 6;
-/// So many are looked at, so deep, to find the program where it is not looked for.
+/// The greatest number and depth of entries searched for a program in another place.
 const LOOKED_AT: u32 = 2000;
 const DEEPEST: u32 = 3;
 

@@ -29,8 +29,8 @@ pub(super) struct Identical {
     theirs: Vec<u8>,
     /// What the original finds about that.
     pending: Pending,
-    /// So many steps in a row have differed. None is not tried after the first of them, and then about twice as many
-    /// with each.
+    /// The number of steps in a row that differed. After the first of them no step is skipped, and then about twice as
+    /// many with each.
     misses: u32,
     /// How many steps are still not tried.
     skipped: u32,

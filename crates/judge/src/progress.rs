@@ -73,6 +73,6 @@ pub enum Remark {
         /// The reference's.
         expected: Impulse,
     },
-    /// So many findings of one kind about polynomials, one after the other.
+    /// A number of findings of one kind about polynomials, one after the other.
     Polynomials(FindingKind, u32),
 }

@@ -7,7 +7,7 @@ use fosssim_model::{
 };
 use fosssim_num::vector::Vec2;
 
-/// So many balls that a pass logs more than the reader's window holds.
+/// Enough balls that a pass logs more than the reader's window holds.
 fn crowd() -> Scene {
     let ball = |number: usize| {
         format!(r#"<particle m="1" px="{number}" py="0" vx="0" vy="0.{number:03}" fixed="0" radius="0.1"/>"#)

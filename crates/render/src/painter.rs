@@ -20,7 +20,7 @@ const INSIDE: f64 = 0.25;
 /// Discs of more pixels than this are drawn as the half-plane that they are where they can be seen.
 const HUGE: f64 = 100_000.0;
 
-/// So many points of a particle's path are drawn; older ones grow sparse.
+/// The greatest number of points drawn of a particle's path; older ones grow sparse.
 const LONGEST_PATH: usize = 2000;
 
 /// What a picture shows besides the bodies.

@@ -7,7 +7,7 @@ use fosssim_num::polynomial::evaluate;
 /// Columns of dots that a plot of a terminal this wide may have, half of which are characters.
 const WIDEST: usize = 72;
 
-/// So many columns of dots a step has where there is room.
+/// The number of columns of dots for a step, where there is room.
 const BROADEST: usize = 4;
 
 /// Rows of characters.

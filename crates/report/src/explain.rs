@@ -10,7 +10,7 @@ use super::{
 use fosssim_mistakes::diagnose::{About, Example, Explanation};
 use serde::Serialize;
 
-/// So many other mistakes that can't be told apart are listed.
+/// The greatest number of other mistakes listed that can't be told apart.
 const LISTED: usize = 3;
 
 /// The lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.

@@ -18,7 +18,7 @@ use std::fmt::Write;
 /// A scene and those of the reference's decisions that round-off may flip, or why it has no run.
 pub type Undecided = (String, Result<Vec<Borderline>, StepError>);
 
-/// So many decisions of a scene are listed.
+/// The greatest number of decisions listed of a scene.
 const LISTED: usize = 3;
 
 /// What the scenes of a suite contain, and whether what is missing is listed.

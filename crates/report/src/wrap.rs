@@ -21,7 +21,7 @@ pub fn wrapped(text: &str, width: usize) -> String {
     result
 }
 
-/// So many columns a text takes; colour codes take none.
+/// The columns that a text takes; colour codes take none.
 #[must_use]
 pub fn columns(text: &str) -> usize {
     let mut inside_code = false;

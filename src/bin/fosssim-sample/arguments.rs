@@ -16,7 +16,7 @@ static PINNED: pin::Place = pin::empty();
 /// A copy or link of the program with this prefix makes the mistake that follows it.
 const NAME_PREFIX: &str = "fosssim-sample.";
 
-/// So many mistakes can be made at once.
+/// The greatest number of mistakes at once.
 const MOST: usize = Student::MOST;
 
 /// A sample submission: simulates a scene as a student's program would, with documented mistakes if asked for.

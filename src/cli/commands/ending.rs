@@ -8,7 +8,7 @@ use crate::{
     suite::Grade,
 };
 
-/// So many scenes and mistakes of a class are shown; class.txt has all.
+/// The greatest number of scenes and mistakes shown of a class; class.txt has all.
 const HARDEST: usize = 5;
 
 /// How a grading ends that nobody stopped.

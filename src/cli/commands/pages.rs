@@ -26,8 +26,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// So many numbers of one motion are kept of a graded scene, because several are graded at a time. The largest course
-/// scene has 70,444.
+/// The greatest number of numbers kept of a graded scene's motion: several scenes are graded at a time. The largest
+/// course scene has 70,444.
 const BUDGET: usize = 1 << 19;
 
 /// The cards of a grading, and where the pages go.

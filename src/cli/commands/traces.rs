@@ -32,7 +32,7 @@ use std::{
     time::Duration,
 };
 
-/// So many accepted scenes are asked whether they speak against a likely mistake.
+/// The number of accepted scenes that are checked for evidence against a likely mistake.
 const WITNESSES: usize = 12;
 
 pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Result<u8> {
@@ -191,8 +191,8 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
 }
 
 /// The trace of a scene, under its whole name or the name behind its group; nothing when there is none, and then in
-/// words what lies there that is no file, or is reached by a link: that may be another's. More than `most` bytes are not
-/// read: what is cut there is a bad trace.
+/// words what lies there that is no file, or is reached by a link: that may be another's. More than `most` bytes are
+/// not read: what is cut there is a bad trace.
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);

@@ -99,7 +99,7 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
     false
 }
 
-/// So many bytes show what a file is.
+/// The number of bytes that show the kind of a file.
 const LOOKED_AT: u64 = 512;
 
 /// What a file looks like that begins with these bytes, where that is no trace: a trace begins with the bits of a

@@ -10,7 +10,7 @@ use std::{
 #[derive(Debug, Default)]
 pub struct MemoryResults {
     kept: Mutex<BTreeMap<Key, SceneResult>>,
-    /// So many keys have room; without it there is no end.
+    /// The greatest number of keys; without it there is no limit.
     room: Option<usize>,
 }
 

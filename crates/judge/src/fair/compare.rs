@@ -400,7 +400,7 @@ fn judge(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Resul
 /// interpolates from values within the step has their round-off many times over in the higher coefficients, where they
 /// cancel.
 fn share_within_step(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Option<f64> {
-    /// So many times, evenly spread: a polynomial of degree five is hardly larger between them.
+    /// The number of sample times, evenly spread: a polynomial of degree five is hardly larger between them.
     const TIMES: u8 = 16;
     let norm = norm(right);
     if !(scale > 0.0) {

@@ -58,7 +58,7 @@ fn distance(one: &[Frame], other: &[Frame]) -> f64 {
     most / size
 }
 
-/// Whatever the factors are: where they change what happens, the trace is refused. So many scenes they change. Factors
+/// Where factors change a decision, the trace is refused. Returns the number of scenes that they change. Factors
 /// are powers of two, so nothing is rounded, and no decision is borderline because of them.
 fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
     let mut changed = 0;

@@ -10,7 +10,7 @@ use crate::{
 };
 use fosssim_model::sim::{ByKind, PairKind};
 
-/// So many examples of borderline decisions are kept.
+/// The greatest number of examples of borderline decisions that are kept.
 const EXAMPLES: usize = 8;
 
 /// So few decisions, though they may be most of a trace's, can be all that a small scene has.

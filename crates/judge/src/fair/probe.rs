@@ -16,7 +16,7 @@ use fosssim_num::{
     vector::Vec2,
 };
 
-/// So many perturbed repetitions.
+/// The number of perturbed repetitions.
 const RUNS: u64 = 8;
 
 /// Repeats a step whose decisions are known. Where the reference's own polynomials can't be solved from here (the

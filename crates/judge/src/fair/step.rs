@@ -17,7 +17,7 @@ use fosssim_model::{
 };
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 
-/// So many borderline decisions of a hybrid step are tried the other way, all combinations of them.
+/// The number of borderline decisions of a hybrid step that are tried the other way, in all combinations.
 const MOST_FLIPS: usize = 4;
 
 /// Judges a step. `identical` says that states, impulses and polynomials of both records are the reference's bit for

@@ -26,7 +26,7 @@ fn stages() -> Vec<Stage> {
     stages
 }
 
-/// So many of each scene.
+/// The number of forgeries of each scene.
 fn faults(of_each: u64, attempt: fn(&Stage, &mut Random) -> Option<String>) -> Vec<String> {
     let mut faults = Vec::new();
     for (number, stage) in stages().iter().enumerate() {

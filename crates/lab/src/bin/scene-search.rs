@@ -190,7 +190,7 @@ impl Wanted {
 /// A wrong program is worth so many pairs of properties.
 const PROGRAM: f64 = 6.0;
 
-/// So many scenes of a round are shown to the wrong programs: those with the most pairs of properties, and as many
+/// The number of scenes of a round on which wrong programs run: those with the most pairs of properties, and as many
 /// others.
 const SHOWN: usize = 500;
 
@@ -347,7 +347,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// So many scenes have to refuse each wrong program.
+/// The number of scenes that have to refuse each wrong program.
 const WITNESSES: usize = 3;
 
 /// The best of many random scenes, made small, with what it has of what is wanted.

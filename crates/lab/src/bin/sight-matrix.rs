@@ -13,7 +13,7 @@ use fosssim_lab::{
 use fosssim_oracle::{assignments::Assignment, diagnose::probe_scenes, suite::plan};
 use rayon::prelude::*;
 
-/// So many scenes of the suite have to refuse each wrong program.
+/// The number of scenes of the suite that have to refuse each wrong program.
 const WANTED: usize = 3;
 
 fn main() -> anyhow::Result<ExitCode> {

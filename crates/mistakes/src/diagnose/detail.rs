@@ -181,7 +181,7 @@ pub enum StageDetail {
     },
     /// Of how many zones it is so.
     OfZones {
-        /// So many.
+        /// The number.
         count: usize,
         /// Of so many that could be looked at.
         of: usize,

@@ -11,8 +11,8 @@ use std::io::Read;
 /// What is kept of a trace while it is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Keep {
-    /// So many bytes of its beginning at most, the reference's own steps not counted; with 0 nothing is kept, and
-    /// nothing explained.
+    /// The greatest number of bytes kept of its beginning, the reference's own steps not counted; with 0 nothing is
+    /// kept, and nothing explained.
     pub most: usize,
     /// Whether what follows is read, too, where judging stops before the trace's end. Whoever writes a trace may write
     /// no more.

@@ -17,7 +17,7 @@ use crate::{
 use fosssim_model::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// So many mistakes of a program are told.
+/// The greatest number of mistakes that are told of a program.
 const MOST: usize = 3;
 
 /// The likeliest mistake of a program that left several traces: the one that explains most of them, whether it was told

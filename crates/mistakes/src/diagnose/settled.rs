@@ -6,7 +6,7 @@ use super::{About, Explanation};
 pub struct Settled {
     /// The explanations, the likeliest first.
     pub explanations: Vec<Explanation>,
-    /// So many of them, the first ones, are what all traces together say; the others this trace says alone.
+    /// The number of explanations, the first ones, that all traces together give; this trace alone gives the others.
     pub agreed: usize,
 }
 

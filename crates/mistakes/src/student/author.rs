@@ -14,7 +14,7 @@ pub struct Student {
 }
 
 impl Student {
-    /// So many mistakes one student makes at most.
+    /// The greatest number of mistakes of one student.
     pub const MOST: usize = 8;
 
     /// A student who makes this mistake.

@@ -31,7 +31,7 @@ impl PairKind {
         }
     }
 
-    /// So many polynomials a detection call logs at most.
+    /// The greatest number of polynomials that a detection call logs.
     pub const MOST_POLYNOMIALS: usize = 4;
 
     /// All kinds, in the order in which a pass looks at a particle's pairs, and of the trace's numbers.

@@ -84,7 +84,7 @@ impl<'t> Reading<'t, '_> {
                 Ok(Event::Eof) => break,
                 Ok(Event::Start(_)) => self.start(span, true),
                 Ok(Event::Empty(_)) => self.start(span, false),
-                // So many say it all, and looking for what was meant is not free.
+                // This number of problems is enough, and the search for the intended name costs time.
                 Ok(Event::End(_)) if self.wrong_ends > MOST_PROBLEMS => break,
                 Ok(Event::End(_)) => self.end(span),
                 Ok(Event::Text(_)) if self.text[span.clone()].trim_ascii().is_empty() => self.stray = was_stray,

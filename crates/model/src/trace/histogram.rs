@@ -1,7 +1,7 @@
 //! How often each number of entries per step occurs.
 use std::{collections::BTreeMap, fmt};
 
-/// So many different values are printed.
+/// The greatest number of different values that are printed.
 const SHOWN: usize = 12;
 
 /// A histogram of numbers per step.

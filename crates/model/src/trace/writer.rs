@@ -17,7 +17,7 @@ const PIECE: usize = 256 * 1024;
 /// A list of fewer bytes is copied, since a part of its own would cost the system more than a copy.
 const LONG: usize = 1024;
 
-/// So many long lists are gathered at most.
+/// The greatest number of long lists that are gathered.
 const LISTS: usize = 128;
 
 /// What has been written.

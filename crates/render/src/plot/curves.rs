@@ -40,7 +40,7 @@ const MIDDLE: f64 = 134.0;
 const BOTTOM: f64 = 234.0;
 const ROW: f64 = 22.0;
 const SAMPLES: u32 = 128;
-/// So many samples are between the ends of a piece of a curve.
+/// The number of samples between the ends of a piece of a curve.
 const PIECE: usize = 8;
 
 impl PolynomialPlot<'_> {

@@ -11,7 +11,7 @@ use fosssim_judge::{
 };
 use serde::Serialize;
 
-/// So many wrong steps are kept by number, and so many with what is wrong in them.
+/// The greatest number of wrong steps kept by number, and of those kept with their findings.
 pub const LISTED: usize = 1000;
 
 /// Which steps a report shows one by one.

@@ -15,7 +15,7 @@ use super::{
 use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, share};
 use fosssim_mistakes::diagnose::Explanation;
 
-/// So many explanations are shown without `--tables`.
+/// The greatest number of explanations that are shown without `--tables`.
 const EXPLANATIONS: usize = 2;
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {

@@ -13,7 +13,7 @@ use fosssim_num::tolerances::PARITY_MAXIMUM;
 use fosssim_render::plot::{Embedding, PASSES_AXIS, PassPlot, RESIDUALS_AXIS, ResidualPlot, Series};
 use std::fmt::Write;
 
-/// So many calls are shown.
+/// The greatest number of calls that are shown.
 const CALLS: usize = 6;
 
 impl Case<'_> {

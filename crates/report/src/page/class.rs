@@ -13,10 +13,10 @@ const SCRIPT: &str = include_str!("class.js");
 /// Bars of the histogram.
 const BARS: usize = 10;
 
-/// So many characters of a likely mistake or of a summary stand in a table.
+/// The greatest number of characters of a likely mistake or a summary in a table.
 const SHORT: usize = 160;
 
-/// So many names of a cluster are listed.
+/// The greatest number of names listed of a cluster.
 const NAMES: usize = 400;
 
 /// The grades of a class.

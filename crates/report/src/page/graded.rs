@@ -17,7 +17,7 @@ use fosssim_mistakes::diagnose::Explanation;
 use sha2::{Digest, Sha256};
 use std::{borrow::Cow, fmt::Write};
 
-/// So many characters of what a program printed are shown of a scene.
+/// The greatest number of characters shown of a program's output in a scene.
 const OUTPUT: usize = 2_000;
 
 /// Whom a page is for.

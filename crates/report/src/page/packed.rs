@@ -7,7 +7,7 @@
 use base64::Engine;
 use fosssim_evidence::{Evidence, Track};
 
-/// So many bytes the motions of one case may take on a page while they are exact. The largest course scene (11
+/// The greatest size of exact motions of one case on a page, in bytes. The largest course scene (11
 /// particles, 1,601 records) takes 384 KB with both of them.
 pub const EXACT: usize = 540_000;
 

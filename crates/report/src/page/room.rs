@@ -4,7 +4,7 @@ use super::{Card, script};
 /// A page is to stay below so many bytes: it is mailed, and opened on old machines.
 pub const BUDGET: usize = 2_950_000;
 
-/// So many bytes of a page go to what programs printed, of all scenes together.
+/// The bytes of a page for the output of programs, of all scenes together.
 pub(super) const OUTPUTS: usize = 200_000;
 
 /// So much of it may go to pictures and tables before the first motion has room.

@@ -4,7 +4,7 @@ use fosssim_grading::{
     located::{Content, Failing, Located},
 };
 
-/// So many other contents are named that the scenes can't tell from the first one.
+/// The greatest number of other contents named that the scenes can't tell from the first one.
 const NAMED: usize = 2;
 
 /// What they have in common, with its counts, and where the first of them ends.

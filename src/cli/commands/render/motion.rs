@@ -17,7 +17,7 @@ use std::{
 };
 use tempfile::SpooledTempFile;
 
-/// So many bytes of a motion are kept in memory.
+/// The greatest number of bytes of a motion that are kept in memory.
 const KEPT: usize = 32 << 20;
 
 /// Which steps are drawn: `first`, `first + every` and so on up to `last`.

@@ -19,7 +19,7 @@ use fosssim_num::{
 };
 use look::Look;
 
-/// So many calls, and the rest of a particle's, are looked at together. Smaller values fill fewer lanes, larger ones
+/// The batch size: this number of calls, and the rest of a particle's. Smaller values fill fewer lanes, larger ones
 /// take more memory.
 const TOGETHER: usize = 4096;
 

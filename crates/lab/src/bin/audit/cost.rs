@@ -22,7 +22,7 @@ use std::{
     time::Duration,
 };
 
-/// So many scenes are shown, the slowest first.
+/// The number of scenes that are shown, the slowest first.
 const SHOWN: usize = 25;
 
 /// Sizes of states, as powers of ten.

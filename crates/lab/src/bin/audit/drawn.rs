@@ -24,7 +24,7 @@ use std::{
 /// reference's.
 const VARIANTS: [&str; 4] = ["quintic-right", "normalised-per-pair", "rearranged-pe", "rearranged-pp"];
 
-/// So many that differ are shown, around the first place.
+/// The number of differing lines that are shown, around the first place.
 const SHOWN: usize = 20;
 
 /// Compares so many traces.

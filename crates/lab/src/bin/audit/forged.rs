@@ -15,7 +15,7 @@ use std::{
     },
 };
 
-/// So many faults are shown.
+/// The greatest number of faults that are shown.
 const SHOWN: usize = 40;
 
 /// Tries so many of each kind on each scene, those of a corpus's folder, if there is one, among them.

@@ -40,10 +40,10 @@ use fosssim_model::sim::PairKind;
 use std::collections::{BTreeMap, BTreeSet};
 use study::{Candidate, Study};
 
-/// So many guesses about a polynomial are kept besides the one that is told.
+/// The greatest number of guesses about a polynomial that are kept besides the one that is told.
 const MOST_CLAIMS: usize = 32;
 
-/// So many other keys are told per explanation.
+/// The greatest number of other keys that an explanation tells.
 const MOST_OTHERS: usize = 5;
 
 /// Up to this error, relative to the size of its terms, a polynomial is right but for round-off.

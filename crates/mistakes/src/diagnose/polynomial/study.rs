@@ -13,7 +13,7 @@ use fosssim_num::{bounded::Bounded, tolerances::LEADING_COEFFICIENT};
 
 fosssim_model::drops_leading!();
 
-/// So many samples are looked at; more add nothing but time.
+/// The greatest number of samples; more of them add nothing but time.
 const MOST_CASES: usize = 1200;
 
 /// A guess is tried on so many wrong samples before it is tried on all.

@@ -24,7 +24,7 @@ const SNAPPING: f64 = 1e-3;
 /// Weights beyond this are no slip.
 const LARGEST_WEIGHT: f64 = 64.0;
 
-/// So many other explanations of a coefficient are told.
+/// The greatest number of other explanations of a coefficient that are told.
 const MOST_ALTERNATIVES: usize = 3;
 
 /// The cost of a coefficient that nothing explains.

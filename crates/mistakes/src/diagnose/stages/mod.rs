@@ -21,7 +21,7 @@ use super::{
 use events::{Facts, Reference};
 use fosssim_model::scene::{Collision, Scene};
 
-/// So many steps are looked at.
+/// The greatest number of steps that are compared.
 const MOST_STEPS: usize = 120;
 
 /// And so many polynomials; about a microsecond each.

@@ -386,7 +386,7 @@ struct Way<'a, O, R> {
     observer: &'a mut O,
     react: R,
     hits: usize,
-    /// So many calls are passed over next.
+    /// The number of calls that are skipped next.
     over: usize,
 }
 

@@ -7,7 +7,7 @@ use crate::{
 use fosssim_grading::{Grade, SceneGrade, Verdict};
 use std::collections::BTreeMap;
 
-/// So many scenes are named.
+/// The greatest number of scenes that are named.
 const NAMED: usize = 5;
 
 /// The lines about what changed since `before`; scenes that were not run, now or then, say nothing.

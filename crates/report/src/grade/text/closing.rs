@@ -10,7 +10,7 @@ use crate::{
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::fmt::Write;
 
-/// So many groups are listed; of a suite with more of them those that are not accepted come first.
+/// The greatest number of groups that are listed; with more of them, those that are not accepted come first.
 const GROUPS: usize = 8;
 
 /// The closing lines. `alone` says that nothing stands above them.

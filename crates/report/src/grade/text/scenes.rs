@@ -12,7 +12,7 @@ use crate::{
 use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
-/// So many scenes that end the same way are named.
+/// The greatest number of scenes named that end the same way.
 const NAMED: usize = 3;
 
 /// The groups that have something to show.

@@ -44,7 +44,7 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     rows(&chosen, grades, style)
 }
 
-/// So many columns a name may take; of a longer one its two ends are shown.
+/// The greatest width of a name, in columns; of a longer one its two ends are shown.
 const NAME: usize = 40;
 
 /// A name that widens no table.

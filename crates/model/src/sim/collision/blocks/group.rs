@@ -30,7 +30,7 @@ pub(super) const TWO_KNOWN: usize = 3;
 /// Where the line begins.
 pub(super) const LINE: usize = 4;
 
-/// So many numbers behind a row may be read, too, whatever they are: as many as a polynomial has coefficients, and two
+/// Numbers behind a row that may be read, too, whatever their values: as many as a polynomial has coefficients, and two
 /// more.
 pub(super) const BEHIND: usize = 8;
 

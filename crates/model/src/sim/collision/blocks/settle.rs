@@ -112,7 +112,7 @@ impl<'a> Output<'a> {
 /// Writes a polynomial whose coefficients stand in front: always as many as it could have, of which less may count.
 #[inline(always)]
 fn write_one<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
-    // So many small ones in a row, of which the coefficients are all at most.
+    // Small ones in a row, at most all coefficients.
     let dropped = (!small | 1 << LENGTH).trailing_zeros() as usize;
     let Some(kept) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
     let Some((size, places)) = room.get_mut(*used..).and_then(<[u8]>::split_first_chunk_mut::<4>) else { return };
