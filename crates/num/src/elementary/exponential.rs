@@ -1,0 +1,66 @@
+//! `e^x = 2^(k/128) e^r` with `|r| <= ln 2 / 256` (Tang, ACM TOMS 15, 1989; with a table of 128 powers).
+use super::{fused, tables::POWERS};
+
+/// 128 / ln 2.
+const PARTS: f64 = f64::from_bits(0x4067_1547_652b_82fe);
+/// -ln 2 / 128 in two pieces; a product of the first with a small whole number is exact.
+const MINUS_PART: [f64; 2] = [f64::from_bits(0xbf76_2e42_fefa_0000), f64::from_bits(0xbd0c_f79a_bc9e_3b3a)];
+/// Adding this to a number rounds it to a whole one, which stands in the lowest bits of the sum.
+const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
+/// The coefficients of `e^r - 1 - r` from `r^2` on.
+const SERIES: [f64; 4] = [
+    f64::from_bits(0x3fdf_ffff_ffff_fdbd),
+    f64::from_bits(0x3fc5_5555_5555_543c),
+    f64::from_bits(0x3fa5_5555_cf17_2b91),
+    f64::from_bits(0x3f81_1111_67a4_d017),
+];
+/// The exponents, as they stand in a number's bits, of 2^-54, 512 and 1024.
+const TINY: u64 = 0x3c9;
+const LARGE: u64 = 0x408;
+const TOO_LARGE: u64 = 0x409;
+
+/// `e^x`; infinite above 709.78, zero below -745.13.
+#[must_use]
+pub fn exp(x: f64) -> f64 {
+    let exponent = x.to_bits() >> 52 & 0x7ff;
+    if exponent < TINY || exponent == 0x7ff {
+        return if x == f64::NEG_INFINITY { 0.0 } else { 1.0 + x };
+    }
+    if exponent >= TOO_LARGE {
+        return if x < 0.0 { 0.0 } else { f64::INFINITY };
+    }
+    let shifted = fused(x, PARTS, ROUNDS);
+    let k = shifted.to_bits();
+    let parts = shifted - ROUNDS;
+    let r = fused(parts, MINUS_PART[1], fused(parts, MINUS_PART[0], x));
+    let row = 2 * (k & 127) as usize;
+    let tail = f64::from_bits(POWERS[row]);
+    let power = POWERS[row + 1].wrapping_add(k << 45);
+    let square = r * r;
+    let low = fused(fused(r, SERIES[1], SERIES[0]), square, r + tail);
+    let more = fused(square * square, fused(r, SERIES[3], SERIES[2]), low);
+    if exponent < LARGE {
+        let power = f64::from_bits(power);
+        return fused(power, more, power);
+    }
+    if k & 0x8000_0000 == 0 {
+        // The power may be too large for a number: it is made smaller by 2^1009 for a while.
+        let power = f64::from_bits(power.wrapping_sub(1009 << 52));
+        return fused(power, more, power) * f64::from_bits((1023 + 1009) << 52);
+    }
+    small(f64::from_bits(power.wrapping_add(1022 << 52)), more) * f64::MIN_POSITIVE
+}
+
+/// `power (1 + more)`, rounded as a subnormal number is, whose last bits a product with 2^-1022 would round once more.
+fn small(power: f64, more: f64) -> f64 {
+    let change = power * more;
+    let value = power + change;
+    if value >= 1.0 {
+        return value;
+    }
+    let lost = power - value + change;
+    let sum = 1.0 + value;
+    let rest = 1.0 - sum + value + lost;
+    let rounded = (sum + rest) - 1.0;
+    if rounded == 0.0 { 0.0 } else { rounded }
+}

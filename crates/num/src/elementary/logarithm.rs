@@ -1,0 +1,85 @@
+//! `ln x = k ln 2 + ln c + ln(z/c)` for `x = 2^k z` with a `c` close to `z` from a table (Tang, ACM TOMS 16, 1990).
+use super::{fused, tables::LOGARITHMS};
+
+/// ln 2 in two pieces; a product of the first with an exponent is exact.
+const LN_2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fefa_3800), f64::from_bits(0x3d2e_f357_93c7_6730)];
+/// The coefficients of `ln(1 + r) - r` from `r^2` on, for `|r| < 1/256`.
+const SERIES: [f64; 5] = [
+    f64::from_bits(0xbfe0_0000_0000_0001),
+    f64::from_bits(0x3fd5_5555_5551_305b),
+    f64::from_bits(0xbfcf_ffff_ffeb_4590),
+    f64::from_bits(0x3fc9_99b3_24f1_0111),
+    f64::from_bits(0xbfc5_5575_e506_c89f),
+];
+/// The same for arguments from `1 - 2^-4` to `1 + 0x1.09p-4`.
+const SERIES_AT_ONE: [f64; 11] = [
+    f64::from_bits(0xbfe0_0000_0000_0000),
+    f64::from_bits(0x3fd5_5555_5555_5577),
+    f64::from_bits(0xbfcf_ffff_ffff_fdcb),
+    f64::from_bits(0x3fc9_9999_9995_dd0c),
+    f64::from_bits(0xbfc5_5555_5567_45a7),
+    f64::from_bits(0x3fc2_4924_a344_de30),
+    f64::from_bits(0xbfbf_ffff_a442_3d65),
+    f64::from_bits(0x3fbc_7184_282a_d6ca),
+    f64::from_bits(0xbfb9_99eb_43b0_68ff),
+    f64::from_bits(0x3fb7_8182_f7af_d085),
+    f64::from_bits(0xbfb5_5213_75d1_45cd),
+];
+/// The bits of 0.6875, where the table begins.
+const FIRST: u64 = 0x3fe6_0000_0000_0000;
+/// The bits of `1 - 2^-4`, and how many numbers from there on are close to one.
+const AT_ONE: u64 = 0x3fee_0000_0000_0000;
+const NUMBERS_AT_ONE: u64 = 0x0003_0900_0000_0000;
+/// 2^27: half of a number's bits.
+const HALF: f64 = 134_217_728.0;
+
+/// The natural logarithm; `-inf` at zero, NaN below.
+#[must_use]
+pub fn ln(x: f64) -> f64 {
+    let mut bits = x.to_bits();
+    if bits.wrapping_sub(AT_ONE) < NUMBERS_AT_ONE {
+        return at_one(x);
+    }
+    if x == 0.0 {
+        return f64::NEG_INFINITY;
+    }
+    if !(x > 0.0) || x == f64::INFINITY {
+        return if x == f64::INFINITY { x } else { f64::NAN };
+    }
+    if x < f64::MIN_POSITIVE {
+        bits = (x * f64::from_bits((1023 + 52) << 52)).to_bits().wrapping_sub(52 << 52);
+    }
+    let place = bits.wrapping_sub(FIRST);
+    let row = 2 * (place >> 45 & 127) as usize;
+    let exponent = f64::from((place.cast_signed() >> 52) as i32);
+    let z = f64::from_bits(bits.wrapping_sub(place & 0xfff << 52));
+    let [reciprocal, logarithm] = [LOGARITHMS[row], LOGARITHMS[row + 1]].map(f64::from_bits);
+    let r = fused(z, reciprocal, -1.0);
+    let high = fused(exponent, LN_2[0], logarithm);
+    let sum = high + r;
+    let square = r * r;
+    let low = fused(square, SERIES[0], fused(exponent, LN_2[1], high - sum + r));
+    let inner = fused(fused(r, SERIES[4], SERIES[3]), square, fused(r, SERIES[2], SERIES[1]));
+    fused(r * square, inner, low) + sum
+}
+
+/// The logarithm of a number close to one: the first two terms with twice the precision.
+fn at_one(x: f64) -> f64 {
+    if x == 1.0 {
+        return 0.0;
+    }
+    let b = &SERIES_AT_ONE;
+    let r = x - 1.0;
+    let square = r * r;
+    let cube = r * square;
+    let first = fused(square, b[3], fused(r, b[2], b[1]));
+    let second = fused(square, b[6], fused(r, b[5], b[4]));
+    let third = fused(cube, b[10], fused(square, b[9], fused(r, b[8], b[7])));
+    let inner = fused(fused(third, cube, second), cube, first);
+    let high = fused(-HALF, r, fused(r, HALF, r));
+    let low = r - high;
+    let sum = fused(high * high, b[0], r);
+    let rest = fused(high * high, b[0], r - sum);
+    let rest = fused(b[0] * low, high + r, rest);
+    sum + fused(inner, cube, rest)
+}

@@ -1,0 +1,112 @@
+//! An angle less quarters of a turn: by π/2 in pieces (Cody and Waite), or, of very large angles, by the digits of 2/π
+//! (Payne and Hanek, SIGNUM 18, 1983).
+use super::{fused, tables::TWO_OVER_PI, trigonometry::QUARTER};
+
+/// An angle near zero and the quarters of a turn that were taken from it, of which the last two bits count.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reduced {
+    pub(super) quarters: u32,
+    pub(super) angle: f64,
+    /// What the angle is more than its nearest number.
+    pub(super) rest: f64,
+}
+
+/// 2/π.
+const TO_QUARTERS: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
+/// Adding this to a number rounds it to a whole one, which stands in the lowest bits of the sum.
+const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
+/// The same for multiples of four.
+const ROUNDS_TO_TURNS: f64 = f64::from_bits(0x4358_0000_0000_0000);
+/// π/2 in four pieces; products of the first three with the quarters of a near angle are exact.
+const PIECES: [f64; 4] = [
+    f64::from_bits(0x3ff9_21fb_5800_0000),
+    f64::from_bits(0xbe4d_de97_3c00_0000),
+    f64::from_bits(0xbc8c_b3b3_9800_0000),
+    f64::from_bits(0xbacd_747f_23e3_2ed7),
+];
+/// π/2 in two pieces of half of a number's bits.
+const HALVES: [f64; 2] = [PIECES[0], f64::from_bits(0xbe4d_de97_4000_0000)];
+/// A number times this, less the rest, is its upper half: 2^27 + 1.
+const SPLITS: f64 = 134_217_729.0;
+
+/// A power of two.
+const fn power(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
+}
+
+/// Of an angle below 1.05e8.
+pub(super) fn near(x: f64) -> Reduced {
+    let shifted = fused(x, TO_QUARTERS, ROUNDS);
+    let quarters = shifted - ROUNDS;
+    let first = fused(-quarters, PIECES[1], fused(-quarters, PIECES[0], x));
+    let second = fused(-quarters, PIECES[2], first);
+    let angle = fused(-quarters, PIECES[3], second);
+    let rest = fused(-quarters, PIECES[2], first - second) + fused(-quarters, PIECES[3], second - angle);
+    Reduced { quarters: shifted.to_bits() as u32 & 3, angle, rest }
+}
+
+/// Of any finite angle from there on.
+pub(super) fn far(x: f64) -> Reduced {
+    let x = x * power(-600);
+    let scaled = x * SPLITS;
+    let high = scaled - (scaled - x);
+    let [first, second] = [high, x - high].map(quarters_of);
+    let mut whole = first.whole + second.whole;
+    let mut part = first.part + second.part;
+    let mut rest = if first.part.abs() > second.part.abs() {
+        (first.part - part) + second.part
+    } else {
+        (second.part - part) + first.part
+    };
+    if part > 0.5 {
+        part -= 1.0;
+        whole += 1.0;
+    } else if part < -0.5 {
+        part += 1.0;
+        whole -= 1.0;
+    }
+    let sum = part + (rest + first.rest + second.rest);
+    rest = ((part - sum) + rest) + (first.rest + second.rest);
+    let scaled = sum * SPLITS;
+    let high = scaled - (scaled - sum);
+    let low = sum - high;
+    let product = sum * QUARTER[0];
+    let more = (((high * HALVES[0] - product) + high * HALVES[1]) + low * HALVES[0])
+        + (low * HALVES[1] + sum * QUARTER[1] + rest * QUARTER[0]);
+    let angle = product + more;
+    Reduced { quarters: (whole as i32 & 3).cast_unsigned(), angle, rest: (product - angle) + more }
+}
+
+/// Quarters of a turn: whole ones (less whole turns), a part of one, and what that is more than its nearest number.
+struct Quarters {
+    whole: f64,
+    part: f64,
+    rest: f64,
+}
+
+/// The quarters of half of an angle's digits, times 2^-600.
+fn quarters_of(half: f64) -> Quarters {
+    // Digits whose product is a multiple of a turn are left out.
+    let exponent = (half.to_bits() >> 52 & 0x7ff) as i32;
+    let from = ((exponent - 450) / 24).max(0);
+    let mut scale = power(576 - 24 * from);
+    let mut digits = [0.0; 6];
+    for (product, digit) in digits.iter_mut().zip(&TWO_OVER_PI[from as usize..]) {
+        *product = half * f64::from(*digit) * scale;
+        scale *= power(-24);
+    }
+    let mut whole = 0.0;
+    for digit in &mut digits[..3] {
+        let rounded = (*digit + ROUNDS) - ROUNDS;
+        whole += rounded;
+        *digit -= rounded;
+    }
+    let sum = digits.iter().rev().fold(0.0, |sum, digit| sum + digit);
+    let lost = digits[1..].iter().fold(digits[0] - sum, |lost, digit| lost + digit);
+    let rounded = (sum + ROUNDS) - ROUNDS;
+    whole += rounded;
+    let left = sum - rounded;
+    let part = left + lost;
+    whole -= (whole + ROUNDS_TO_TURNS) - ROUNDS_TO_TURNS;
+    Quarters { whole, part, rest: (left - part) + lost }
+}

@@ -1,0 +1,116 @@
+//! Sine and cosine by a table of angles in steps of 1/128 and short series in between, as IBM's library does it (Gal and
+//! Bachelis, ACM TOMS 17, 1991). An angle beyond the table's is first brought near zero.
+use super::{
+    fused,
+    reduction::{Reduced, far, near},
+    tables::ANGLES,
+};
+
+/// The high words of the angles where the next way begins.
+const SINE_IS_ANGLE: u32 = 0x3e50_0000;
+const COSINE_IS_ONE: u32 = 0x3e40_0000;
+const TABLE_ENDS: u32 = 0x3feb_6000;
+const QUARTER_ENDS: u32 = 0x4003_68fd;
+const NEAR_ENDS: u32 = 0x4199_21fb;
+/// π/2 in two pieces.
+pub(super) const QUARTER: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64::from_bits(0x3c91_a626_3314_5c07)];
+/// Adding this to an angle rounds it to 1/128; the number of the step stands in the lowest bits of the sum.
+const ROUNDS: f64 = f64::from_bits(0x42c8_0000_0000_0000);
+/// Below this angle Taylor's series does without the table.
+const TAYLOR_ENDS: f64 = f64::from_bits(0x3fc0_20c4_9ba5_e354);
+/// Taylor's series of the sine from `x^3` on.
+const TAYLOR: [f64; 5] = [
+    f64::from_bits(0xbfc5_5555_5555_5555),
+    f64::from_bits(0x3f81_1111_1111_0ece),
+    f64::from_bits(0xbf2a_01a0_19db_08b8),
+    f64::from_bits(0x3ec7_1de2_7b9a_7ed9),
+    f64::from_bits(0xbe5a_ddff_c2fc_df59),
+];
+/// The sine's terms in `x^3` and `x^5` between two angles of the table, and those of one less the cosine.
+const SINE: [f64; 2] = [f64::from_bits(0xbfc5_5555_5555_5515), f64::from_bits(0x3f81_1110_e829_872f)];
+const COSINE: [f64; 3] = [0.5, f64::from_bits(0xbfa5_5555_5555_5535), f64::from_bits(0x3f56_c16b_edd9_e239)];
+
+/// The sine of an angle in radians; NaN of an infinite one.
+#[must_use]
+pub fn sin(angle: f64) -> f64 {
+    match high_word(angle) {
+        word if word < SINE_IS_ANGLE => angle,
+        word if word < TABLE_ENDS => sine(angle, 0.0),
+        word if word < QUARTER_ENDS => cosine(QUARTER[0] - angle.abs(), QUARTER[1]).copysign(angle),
+        word => reduced(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 0)),
+    }
+}
+
+/// The cosine of an angle in radians; NaN of an infinite one.
+#[must_use]
+pub fn cos(angle: f64) -> f64 {
+    match high_word(angle) {
+        word if word < COSINE_IS_ONE => 1.0,
+        word if word < TABLE_ENDS => cosine(angle, 0.0),
+        word if word < QUARTER_ENDS => {
+            let rest = QUARTER[0] - angle.abs();
+            let sum = rest + QUARTER[1];
+            sine(sum, (rest - sum) + QUARTER[1])
+        }
+        word => reduced(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 1)),
+    }
+}
+
+/// The upper half of the bits of an angle's modulus: in the order of the angles.
+fn high_word(angle: f64) -> u32 {
+    (angle.abs().to_bits() >> 32) as u32
+}
+
+fn reduced(angle: f64, word: u32) -> Option<Reduced> {
+    match word {
+        _ if !angle.is_finite() => None,
+        word if word < NEAR_ENDS => Some(near(angle)),
+        _ => Some(far(angle)),
+    }
+}
+
+/// The sine of so many quarters of a turn more.
+fn at_quarter(Reduced { quarters, angle, rest }: Reduced, more: u32) -> f64 {
+    let quarter = quarters + more;
+    let value = if quarter & 1 == 0 { sine(angle, rest) } else { cosine(angle, rest) };
+    if quarter & 2 == 0 { value } else { -value }
+}
+
+/// The next angle of the table, which the sum's lowest bits name, with the difference to it.
+fn looked_up(modulus: f64) -> ([f64; 4], f64) {
+    let sum = ROUNDS + modulus;
+    let row = 4 * (sum.to_bits() as u32) as usize;
+    (std::array::from_fn(|i| f64::from_bits(ANGLES[row + i])), modulus - (sum - ROUNDS))
+}
+
+/// The sine of `x + dx` for `|x|` up to 0.86 and a `dx` that is small beside it.
+fn sine(x: f64, dx: f64) -> f64 {
+    if x.abs() < TAYLOR_ENDS {
+        let square = x * x;
+        let series = TAYLOR.iter().rev().copied().reduce(|sum, next| fused(sum, square, next)).unwrap_or(0.0);
+        return x + fused(square, fused(series, x, -(0.5 * dx)), dx);
+    }
+    let ([sine, sine_rest, cosine, cosine_rest], difference) = looked_up(x.abs());
+    let dx = if x <= 0.0 { -dx } else { dx };
+    let square = difference * difference;
+    let s = difference + fused(difference * square, fused(SINE[1], square, SINE[0]), dx);
+    let c = fused(difference, dx, square * one_less_cosine(square));
+    let rest = fused(-c, sine, fused(s, cosine_rest, sine_rest));
+    (sine + fused(s, cosine, rest)).copysign(x)
+}
+
+/// The cosine of `x + dx` for the same.
+fn cosine(x: f64, dx: f64) -> f64 {
+    let ([sine, sine_rest, cosine, cosine_rest], difference) = looked_up(x.abs());
+    let difference = difference + if x < 0.0 { -dx } else { dx };
+    let square = difference * difference;
+    let s = fused(difference * square, fused(SINE[1], square, SINE[0]), difference);
+    let c = square * one_less_cosine(square);
+    let rest = fused(-c, cosine, fused(-s, sine_rest, cosine_rest));
+    cosine + fused(-s, sine, rest)
+}
+
+/// `(1 - cos x) / x^2` for a small `x` of this square.
+fn one_less_cosine(square: f64) -> f64 {
+    fused(square, fused(COSINE[2], square, COSINE[1]), COSINE[0])
+}
