@@ -1,7 +1,8 @@
 //! What is cleared up when the user ends the program, and who sees to it that it ends.
 //!
-//! The first signal lets a grading come to its end: programs are ended, and what is known is written. Whoever waits for
-//! something that never comes is not waited for: where nothing moves for some seconds the program ends all the same.
+//! The first signal lets a grading come to its end: programs are ended, and what is known is written. A user who waits
+//! for something that never comes is not waited for: where nothing moves for some seconds the program ends all the
+//! same.
 use super::{exit, screen};
 use crate::suite::Cancellation;
 use std::{

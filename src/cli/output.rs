@@ -110,7 +110,7 @@ impl Output {
         self.finish()
     }
 
-    /// As [`Output::finish_with`]; whoever looks on is told where it went, if that is a file.
+    /// As [`Output::finish_with`]; a message tells the user the file's name.
     ///
     /// # Errors
     /// When it can't be written.
@@ -247,7 +247,7 @@ fn finished(file: Replacement) -> io::Result<()> {
 }
 
 /// A folder that many files of our own names are written into, each by rename. What has such a name already is
-/// replaced, and links are not followed: whoever prepares a folder can't make us write elsewhere.
+/// replaced, and links are not followed: a user who prepares a folder can't make us write elsewhere.
 #[derive(Debug)]
 pub(super) struct Folder(files::Folder);
 

@@ -1,5 +1,5 @@
-//! Files are opened in one way, by `crates/files`: without waiting, beneath their folder, with a limit. Whoever opens one
-//! otherwise is listed here with the reason, and how often.
+//! Files are opened in one way, by `crates/files`: without waiting, beneath their folder, with a limit. Code that opens
+//! one otherwise is listed here with the reason, and how often.
 use crate::layers::{root, rust_files};
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ const WORDS: [&str; 10] = [
     "tempfile_in(",
 ];
 
-/// The rooms that are held to it. The sandbox has its own ways, and tests of its own.
+/// The rooms that follow this rule. The sandbox has its own ways, and tests of its own.
 const ROOMS: [&str; 9] = [
     "src",
     "crates/evidence/src",

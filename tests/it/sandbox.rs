@@ -179,7 +179,7 @@ fn a_slow_reader_is_not_charged_to_the_program() {
     let outcome = running.wait().unwrap();
     assert_eq!(outcome.ended, Ended::Exited(0));
     assert!(outcome.wall < limits.wall, "{:?}", outcome.wall);
-    // Whoever is slow by itself still meets its limit, and nobody waits for ever.
+    // A program that is slow by itself still meets its limit, and nobody waits for ever.
     let program = bench.script("#!/bin/sh\necho x > trace.bin\nexec sleep 1000\n");
     let limits = Limits { wall: Duration::from_millis(100), ..limits };
     let job = job.limits(limits.clone());

@@ -191,7 +191,7 @@ fn gather_from(
             .filter(|focus| focus.step == step)
             .filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?)))
             .collect();
-        // Of `continuous-time` the mid record holds what the end record does: the step's own end is what it is held to.
+        // The mid record of `continuous-time` equals the end record, so it is compared with the end of the step.
         let mid_state = matches!(scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
         let is_close = close.contains(&step);
         let mut count = Count::new(mid_state);
@@ -200,8 +200,7 @@ fn gather_from(
             let done = work.step(&mut own, &mut (&mut watch, &mut count)).is_ok();
             let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
             watch.step.actual_contacts.clone_from(impulses);
-            // Who watches comes first, and has the step go on with the trace's mid record: what it should hold is kept
-            // there.
+            // The inspector comes first: it keeps the expected mid record, and makes the step go on with the trace's.
             if let (Some(expected), Some(mid)) = (&watch.step.expected_mid, mid_state) {
                 count.apart = apart(expected, mid);
             }

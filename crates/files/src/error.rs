@@ -6,7 +6,7 @@ use std::{
     os::unix::fs::FileTypeExt,
 };
 
-/// Why a file was not taken. Except for [`FileError::System`] these are the doing of whoever filled the folder.
+/// Why a file was not taken. Except for [`FileError::System`] the person who filled the folder caused these.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// Nothing lies there.

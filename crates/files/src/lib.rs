@@ -1,9 +1,10 @@
 //! The one way to files.
 //!
-//! - **Nothing waits.** A named pipe blocks whoever opens it until somebody opens its other end. Here a pipe without a
+//! - **Nothing waits.** A program that opens a named pipe waits until another opens its other end. Here a pipe without
+//!   a
 //!   reader is an error at once, one without a writer after a few seconds, and where a file is expected, at once.
 //! - **Nothing is read without a limit.** A device, a file that grows or one full of holes ends at the limit.
-//! - **No link is followed beneath a [`Folder`]**, neither to read nor to write: whoever fills a folder, or fills it
+//! - **No link is followed beneath a [`Folder`]**, neither to read nor to write: a user who fills a folder, or fills it
 //!   meanwhile, leads nobody elsewhere.
 //! - **What is written appears whole** ([`Replacement`]), in place of whatever has the name.
 #![forbid(unsafe_code)]
@@ -27,7 +28,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// What tells one file from every other.
+/// The identity of a file: its device and its inode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Identity(u64, u64);
 

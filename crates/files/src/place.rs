@@ -8,7 +8,7 @@ use std::{
 };
 
 /// A file or a folder below a folder that somebody named. The folder may be reached over links; below it no link is
-/// followed, whoever put it there.
+/// followed, no matter who made it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
     folder: PathBuf,

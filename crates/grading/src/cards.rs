@@ -74,7 +74,7 @@ pub fn read(folder: &Place, name: &str) -> Option<String> {
     let (packed, _) = is_name.then(|| file(folder, name).file(LARGEST).ok()).flatten()?;
     let mut text = String::new();
     io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, LARGEST), &mut text).ok()?;
-    // Whoever changed it meanwhile changes nobody's report.
+    // A file that was changed meanwhile changes no report.
     (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
 }
 

@@ -1,5 +1,5 @@
-//! What becomes of a scene on which the grader itself failed: a judge error, and its trace put aside for whoever mends
-//! it.
+//! What becomes of a scene on which the grader itself failed: a judge error, and its trace put aside for the developer
+//! who mends it.
 use super::{
     guard::Fault,
     result::{Activity, Failure, KeptTrace, Reason, SceneResult},

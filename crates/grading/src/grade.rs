@@ -164,8 +164,8 @@ impl Grade {
         self.scenes().filter(|scene| mistake.is_named_in(&scene.explanations)).count()
     }
 
-    /// Settles by all scenes together what is said of each ([`SceneGrade::settled`]). Whoever leaves groups out of a
-    /// grade asks again, so that nothing of them is told.
+    /// Settles by all scenes together what is said of each ([`SceneGrade::settled`]). A caller that leaves groups out
+    /// of a grade asks again, so that nothing of them is told.
     pub fn settle(&mut self) {
         let likely: Vec<Explanation> = match self.likely_mistake() {
             Some(_) => self.likely_mistakes().into_iter().map(|(one, _)| one).collect(),

@@ -1,8 +1,8 @@
 //! Grades one submission: the unit of which everything that grades consists.
 //!
-//! A single submission, a class and an autograder all go through a `Grading`, scene by scene: whoever has several jobs
-//! shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what is found is not
-//! run again. A panic in the work on one scene is a judge error of that scene.
+//! A single submission, a class and an autograder all go through a `Grading`, scene by scene: a caller with several
+//! jobs shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what is found
+//! is not run again. A panic in the work on one scene is a judge error of that scene.
 use super::{
     cancellation::Cancellation,
     cards::Cards,
@@ -353,7 +353,7 @@ impl<'a> Grading<'a> {
         self.grader.plan.build.is_some() && program.is_none() && path.is_dir()
     }
 
-    /// The staged submission; whoever comes first stages it, the others wait.
+    /// The staged submission; the first job stages it, the others wait.
     fn staged(&self) -> Arc<Result<Staged, String>> {
         lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage().map_err(|error| error.to_string()))).clone()
     }

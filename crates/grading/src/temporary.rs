@@ -135,7 +135,7 @@ fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0)
 }
 
-/// Removes the temporary folders of graders that were killed. Whoever lives holds its lock, wherever it is.
+/// Removes the temporary folders of graders that were killed. A living grader holds its lock, wherever it is.
 pub fn sweep() {
     sweep_in(&std::env::temp_dir());
 }

@@ -1,4 +1,4 @@
-//! What a submission's folder holds, for whoever looks for a program in it and finds none.
+//! What a submission's folder holds, for messages about a submission without a program.
 use super::{
     names,
     result::{FolderContents, Unusable},

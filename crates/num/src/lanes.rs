@@ -2,7 +2,7 @@
 //! time of one.
 //!
 //! Each lane rounds like a single number (IEEE 754, no fused operations), so no bit depends on how numbers are put
-//! together. Only the sign of a NaN may differ, which is the compiler's choice: whoever needs its bits keeps NaN out.
+//! together. Only the sign of a NaN may differ, which is the compiler's choice: code that needs its bits keeps NaN out.
 //! How many lanes there are depends on the machine ([`Instructions`]); on one without wide instructions it is one.
 use super::vector::Vec2;
 use pulp::Arch;

@@ -3,7 +3,7 @@
 /// Whether a report is decorated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
-    /// Plain text, for files, pipes and whoever asks for no colour.
+    /// Plain text, for files, pipes and users who want no colour.
     #[default]
     Plain,
     /// Colour codes, for terminals.

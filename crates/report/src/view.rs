@@ -201,7 +201,7 @@ impl From<&Rescaled> for RescaledView {
     }
 }
 
-/// The bound that a kind's distance is held to.
+/// The tolerance of a kind's distance.
 #[must_use]
 pub const fn tolerance(kind: FindingKind) -> Option<f64> {
     use fosssim_num::tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL};

@@ -203,7 +203,7 @@ fn systems(
     own: &[PathBuf],
 ) -> Result<PathBuf, StartProblem> {
     let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
-    // A relative path would be looked up in the program's folder, and one in /proc means whoever looks.
+    // A relative path would be looked up in the program's folder, and one in /proc depends on the process that looks.
     let resolved = path.canonicalize().map_err(|_| refused())?;
     let beneath = |folder: &str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
     // What every user may execute. A file that its owner keeps to himself would be refused only when it is too late.

@@ -25,11 +25,11 @@ const USUAL_MESSAGE: u64 = 4 << 10;
 /// No message is longer than this; a longer one means that the streams are out of step.
 const LONGEST_MESSAGE: u64 = 64 << 20;
 
-/// Comes with the ways of commands and of answers and with the working folder as it lies on the disk, to a supervisor
-/// that serves several runs.
+/// Starts a run in a supervisor that serves several. Comes with three descriptors: the channel of commands, the channel
+/// of answers, and the working folder on the disk.
 pub(super) const RUN: u8 = b'r';
-/// Comes with the working folder, to the grader, where that lies in memory, and with the reading end of the trace pipe
-/// if there is one.
+/// Tells the grader of a working folder in memory. Comes with the folder, and with the reading end of the trace pipe if
+/// there is one.
 pub(super) const FOLDER: u8 = b'f';
 
 /// Bytes of a path or an argument.

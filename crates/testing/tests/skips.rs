@@ -2,7 +2,7 @@
 //! usual harness keeps what tests print to itself.
 
 fn main() {
-    // Whoever lists tests, such as cargo nextest, finds none here.
+    // A program that lists tests, such as cargo nextest, finds none here.
     if std::env::args().any(|word| word == "--list") {
         return;
     }

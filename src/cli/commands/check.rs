@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let is_short_file = lasting && trace.length.is_some_and(|length| length <= Keep::EXPLAINED.most as u64);
     let is_kept = if explain { !is_short_file } else { draws && !lasting };
     let most = if is_kept { Keep::EXPLAINED.most } else { 0 };
-    // Whoever writes a trace that comes once may write no more.
+    // The program that writes a pipe may write no more.
     let keep = Keep { most, reads_on: lasting };
     let mut rulings = StepRulings::new(&mut heard);
     let examined = examine(&scene.scene, &mut trace.reader, keep, &options, &mut rulings);

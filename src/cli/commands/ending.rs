@@ -31,7 +31,7 @@ pub(super) fn file_of_scene(name: &str) -> String {
 pub(super) fn file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
     let plain: String = name.chars().map(safe).take(100).collect();
-    // Nor what is an option to whoever types a pattern, or a device or no name where results are handed on to Windows.
+    // Nor a name that a shell pattern makes an option, nor a device's or an invalid name on Windows.
     let plain = plain.trim_start_matches(['.', '-']).trim().trim_end_matches('.');
     if !plain.is_empty() && plain == name && !is_device(plain) {
         return plain.to_owned();

@@ -333,7 +333,7 @@ impl Session<'_> {
     }
 }
 
-/// What tells that a submission has changed: the newest change below it, and its size.
+/// Signs of a change of a submission: the newest time of a change below it, and its size.
 fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
         Some(program) => submission.path.join(program),

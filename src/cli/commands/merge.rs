@@ -200,7 +200,7 @@ fn copy_file(file: File, target: &Place) -> io::Result<()> {
     if length > LARGEST_FILE {
         return Err(io::Error::other(format!("it has {length} bytes, the limit is {LARGEST_FILE}")));
     }
-    // Whoever lets it grow meanwhile does not keep us.
+    // A file that grows meanwhile does not keep us.
     output::copy_at(target, &mut file.take(length))
 }
 

@@ -114,7 +114,7 @@ const RECORDED: &str = "The verdict compares with the recording, where nearly ev
                         follows judges each step from the trace's own state before it: what is wrong by itself, and what only \
                         follows from that.";
 
-/// Draws the card of a graded scene. `names` are those under which whoever reads the page finds scene and trace. Of a
+/// Draws the card of a graded scene. `names` are those under which the reader of the page finds scene and trace. Of a
 /// trace that was judged against a recording each step is judged once more, from the trace's own state.
 pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {

@@ -20,7 +20,7 @@ use std::{
 const LARGEST_RECORDING: u64 = 1 << 30;
 
 pub(super) fn run(arguments: &Record) -> Result<u8> {
-    // Whoever names a folder means that folder.
+    // A folder that was named is used even if it does not exist.
     let defaults = arguments.assets == Path::new("assets") && arguments.references == Path::new("references");
     let embedded = arguments.check && defaults && !arguments.assets.is_dir();
     let scenes = if embedded { bundled() } else { scenes(&arguments.assets)? };

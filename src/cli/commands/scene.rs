@@ -1,4 +1,4 @@
-//! `scene`: the scenes that come with the program, in the hands of whoever wants to look at them.
+//! `scene`: lists, prints and exports the scenes that come with the program.
 use crate::{
     cli::{
         console, exit, output,

@@ -1,4 +1,4 @@
-//! `serve`: becomes the program `fosssim-server`, so that whoever grades at a terminal carries no server along.
+//! `serve`: becomes the program `fosssim-server`, so that users who grade at a terminal carry no server along.
 use crate::cli::arguments::Serve;
 use anyhow::{Context, Result, bail};
 use std::{os::unix::process::CommandExt, process::Command};

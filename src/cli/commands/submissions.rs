@@ -188,7 +188,7 @@ fn entry(folder: &Path, path: &Path) -> Entry {
     }
 }
 
-/// A scene in the place of the program is a slip of whoever types.
+/// A scene in the place of the program is a slip of the user.
 fn refuse_scene(path: &Path) -> Result<()> {
     if input::is_scene(path) {
         let name = input::shown(path);
@@ -243,8 +243,8 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     paths.iter().zip(&own).map(&mut name).collect()
 }
 
-/// Which file each program is. Where several are one file, who owns it has handed it in: the owner of a folder, in which
-/// alone an entry of a class has an owner of its own.
+/// Which file each program is. Where several are one file, who owns it has handed it in: the owner of a folder, in
+/// which alone an entry of a class has an owner of its own.
 fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     let file = |entry: &Entry| {
         let program = entry.program.as_ref()?;

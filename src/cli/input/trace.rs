@@ -77,7 +77,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     Ok(TraceInput { name: shown, reader, length, identity, looks_like, failure })
 }
 
-/// A scene in the place of the trace is a slip of whoever types, and no wrong trace: refused where name and content
+/// A scene in the place of the trace is a slip of the user, and no wrong trace: refused where name and content
 /// agree.
 fn refuse_scene(name: &Path, shown: &str) -> Result<()> {
     if is_scene(name) {

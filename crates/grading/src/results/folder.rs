@@ -92,7 +92,7 @@ impl FolderResults {
         let mut found = BTreeMap::new();
         let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL))? };
         if metadata.nlink() > 1 {
-            // A backup, or whoever linked another's file here: what has the other names stays as it is.
+            // A backup, or a student who linked another's file here: the other names keep their file.
             file = copy(&file, sound, &opened).map_err(at(JOURNAL))?;
         }
         // What a crash left behind the last whole line goes away.

@@ -13,8 +13,8 @@ fosssim_model::drops_leading!();
 pub struct Match {
     /// The positive factor by which the logged one is larger; `None` where round-off is all there is.
     pub scale: Option<f64>,
-    /// The largest share of the tolerance that a coefficient uses, 0 to 1; at most so, where it is right at once (a
-    /// quarter or less).
+    /// The largest share of its tolerance that a coefficient uses, 0 to 1. For a polynomial that is accepted early this
+    /// is an upper bound (a quarter or less).
     pub share: f64,
 }
 

@@ -275,7 +275,7 @@ fn a_lost_record_spoils_two_steps() {
     }
 }
 
-/// Where the scene itself leads nowhere, whoever gets there has done what it asks.
+/// Where the scene itself leads nowhere, a trace that gets there is right.
 #[test]
 fn the_references_own_way_is_right_wherever_it_leads() {
     let scene = scene(

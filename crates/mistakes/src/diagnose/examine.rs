@@ -14,8 +14,8 @@ pub struct Keep {
     /// The greatest number of bytes kept of its beginning, the reference's own steps not counted; with 0 nothing is
     /// kept, and nothing explained.
     pub most: usize,
-    /// Whether what follows is read, too, where judging stops before the trace's end. Whoever writes a trace may write
-    /// no more.
+    /// Whether what follows is read, too, where judging stops before the trace's end. A program that writes a trace may
+    /// write no more.
     pub reads_on: bool,
 }
 

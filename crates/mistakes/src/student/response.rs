@@ -88,7 +88,7 @@ impl<'a> Response<'a> {
         if student.makes(Mistake::ResponseEndVelocity) || student.is_stale(place) {
             return at(&self.predicted.v, particle);
         }
-        // Whoever changes the positions that responses are computed from answers a round's contacts one by one.
+        // A student who changes the positions for responses answers a round's contacts one by one.
         let predicted = student.fresh(Place::Simultaneous { kind }, &self.predicted.x, &self.result.x);
         let mean = over(at(predicted, particle) - at(self.q_start, particle), self.world.scene.time_step);
         student.vector(place, mean)

@@ -1,7 +1,7 @@
 //! The pairs that a detection pass looks at: their kinds, order and number, and whose a logged polynomial is
 //! (collisions.md 1, trace-format.md 2).
 //!
-//! This is the only enumeration of a pass: whoever goes through the pairs of a particle, for the sake of values that
+//! This is the only enumeration of a pass: code that goes through the pairs of a particle, for the sake of values that
 //! pairs share, takes the ranges of each kind from [`Objects::row`].
 use super::pair::{ByKind, Pair, PairKind, pair};
 use crate::scene::Scene;

@@ -1,12 +1,13 @@
 //! Polynomials as a trace holds them: written once, where they are known.
 //!
 //! A detection pass whose polynomials only have to be logged writes them here (trace-format.md 1: little-endian,
-//! packed, a 32-bit size before the coefficients), and whoever records or compares a step takes the bytes as they are.
+//! packed, a 32-bit size before the coefficients), and the recorder and the comparison of a step take the bytes as they
+//! are.
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 use std::ops::Range;
 
 /// A list of polynomials in a trace's own bytes, without the list's count. Its memory is kept from step to step, and so
-/// may be its bytes, for whoever writes those of several steps at once.
+/// may be its bytes, for a caller that writes those of several steps at once.
 #[derive(Debug, Clone, Default)]
 pub struct PolynomialBytes {
     /// Those from `begin` up to `used` are the list's; before them earlier ones may stand; what follows is room for

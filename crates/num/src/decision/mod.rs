@@ -24,7 +24,7 @@
 //! not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11); a time of
 //! exactly 1 counts, sets that end at exactly 0 do not (16.2); an empty list, an empty polynomial and one that vanishes
 //! are nowhere positive (17.2). Coefficients are taken as they are: small leading ones are not dropped, and `c t^m` is
-//! positive after 0 if `c` is, while the original takes it as nowhere positive (17.1). Whoever compares with the
+//! positive after 0 if `c` is, while the original takes it as nowhere positive (17.1). Code that compares with the
 //! original has to know these two.
 pub mod exact;
 pub(crate) mod pieces;

@@ -21,7 +21,7 @@ pub struct ResidualPlot<'a> {
     pub title: &'a str,
     /// One to four residuals.
     pub series: &'a [Series<'a>],
-    /// The bound that they are held to.
+    /// The tolerance of these residuals.
     pub tolerance: Option<f64>,
     /// A step to be pointed at, from 1, and why.
     pub mark: Option<(u32, &'a str)>,

@@ -1,4 +1,4 @@
-//! The entries of a class's folder that are no submissions, in every format: whoever is missing in a list is told.
+//! The entries of a class's folder that are no submissions, in every format: a list says who is missing in it.
 use super::{Format, csv_table, github, json, junit, one_line, shortened};
 use crate::{
     style::{Look, Style},

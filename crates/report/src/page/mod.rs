@@ -66,7 +66,7 @@ pub struct Case<'a> {
     pub what_if: Option<&'a WhatIf>,
     /// How much is told. What is not is not in the file at all.
     pub hints: Hints,
-    /// Whether whoever reads the page has the trace, so that commands may name it.
+    /// Whether the reader of the page has the trace, so that commands may name it.
     pub has_trace: bool,
 }
 

@@ -38,9 +38,9 @@ pub(super) fn may_count_children(announced: &Announced, user: Option<u32>) -> bo
 
 /// Threads that wait for a word that other processes might share, as the C library waits for the end of a thread.
 ///
-/// The kernel finds such words by the file in whose pages they are, and wakes whoever waits there when a thread ends
-/// that names the same word: in a library's pages that would be another run's. So nobody waits in the kernel. After a
-/// pause the thread is told to look at its word again, which it must do after every wait; the pauses double.
+/// The kernel finds such words by the file in whose pages they are, and wakes the threads that wait there when a thread
+/// ends that names the same word: in a library's pages that would be another run's. So nobody waits in the kernel.
+/// After a pause the thread is told to look at its word again, which it must do after every wait; the pauses double.
 #[derive(Debug, Default)]
 pub(super) struct SharedWaits {
     /// The announcements, with the time of their answer and whether they have a limit of time.
@@ -73,7 +73,8 @@ impl SharedWaits {
             if *due > now {
                 return true;
             }
-            // Whoever waits with a limit of time looks at its word after that, too. Who is gone needs no answer.
+            // A thread that waits with a limit of time looks at its word after that, too. A thread that is gone needs
+            // no answer.
             let _ = sys::answer(listener, *id, if *limited { Err(libc::ETIMEDOUT) } else { Ok(()) });
             false
         });

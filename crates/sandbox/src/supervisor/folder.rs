@@ -81,7 +81,7 @@ pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<
 }
 
 /// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth: what lies
-/// deeper than [`DEEPEST`] is moved up into `folder` itself, because whoever removes it later would run out of
+/// deeper than [`DEEPEST`] is moved up into `folder` itself, because the process that removes it later would run out of
 /// descriptors. The answer is whether nothing lay so deep. Only called while no process of the program is alive.
 pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     let mut moved: Vec<CString> = Vec::new();

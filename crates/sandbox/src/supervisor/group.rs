@@ -287,7 +287,7 @@ fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
     std::fs::create_dir(&path)?;
     let folder = File::open(&path)?;
     folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
-    // Whoever takes it away holds the lock meanwhile: what is there now stays.
+    // A process that removes a group holds the lock meanwhile, so this group stays.
     path.symlink_metadata()?;
     Ok((path, folder))
 }

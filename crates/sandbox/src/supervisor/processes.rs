@@ -142,7 +142,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
             victims.extend(user.into_iter().flat_map(of_user));
             victims
         });
-        // No child is left: whoever is alive by name only is gone, too.
+        // No child is left, and no zombie either.
         if reap_all(&mut reaped) && user.is_none_or(|user| of_user(user).is_empty()) {
             return Left::default();
         }
@@ -154,7 +154,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
     }
 }
 
-/// Reaps whoever has ended; whether no child is left.
+/// Reaps the children that have ended; true if no child is left.
 fn reap_all(reaped: &mut impl FnMut(sys::Reaped)) -> bool {
     loop {
         match sys::reap() {

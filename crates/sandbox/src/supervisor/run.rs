@@ -264,7 +264,7 @@ impl Run {
             Some(failure) => return Err(failure),
             None => None,
         };
-        // What the kernel holds is the host's matter; whoever else would not go has seen to it.
+        // A process that the kernel holds is the host's matter; any other that did not end has caused this itself.
         self.blame_if(left.count > 0 && !left.held, Cause::Call("none, but it left processes that do not end".into()));
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
         self.blame_if(out_of_memory, Cause::Memory);
@@ -451,7 +451,7 @@ impl Run {
         Ok(())
     }
 
-    /// Reaps whoever has ended.
+    /// Reaps the children that have ended.
     fn reap(&mut self) {
         while let Ok(Some(process)) = sys::reap() {
             if process.pid == self.child {

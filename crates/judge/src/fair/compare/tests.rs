@@ -148,7 +148,7 @@ fn only_small_leading_coefficients_may_be_missing() {
     assert!(compare(&right, &[2.2, -0.71], &[1.0]).is_err(), "not small at scale 1");
 }
 
-/// Whoever divides polynomials by their size makes ordinary numbers of round-off.
+/// A program that divides polynomials by their size makes ordinary numbers of round-off.
 #[test]
 fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
     let right = [1e-16, 0.0].map(|value: f64| Bounded { value, bound: 1.0 });
