@@ -19,7 +19,7 @@ const NUMBERS: usize = 40_000;
 /// A motion counts as another one than the reference's where a coordinate is further off than this, in scene units.
 const APART: f64 = 1e-10;
 
-/// What a step is, for the strip over all steps.
+/// The class of a step, for the strip over all steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepClass {
     /// Right, and where the reference is.
@@ -48,7 +48,7 @@ impl StepClass {
 /// One step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// What it is.
+    /// Its class.
     pub class: StepClass,
     /// Largest distance of a position coordinate from where the reference ends from the trace's own state; NaN where
     /// one of them is no number.
@@ -61,7 +61,7 @@ pub struct Step {
     pub actual_passes: Option<u32>,
 }
 
-/// What to look at closely: a step, and there a pair in a pass, or wherever it collides.
+/// A place to look at closely: a step, and there a pair in a pass, or wherever it collides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Focus {
     /// The step, from 1.

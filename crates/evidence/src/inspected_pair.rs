@@ -6,7 +6,7 @@ use fosssim_model::{
     trace::PolynomialLog,
 };
 
-/// What a trace says of a step beyond the state that it starts from.
+/// The records of a step in the trace, without the state that it starts from.
 #[derive(Debug, Clone, Copy)]
 pub struct Records<'a> {
     /// Its mid record's state, from which a `hybrid` step goes on.

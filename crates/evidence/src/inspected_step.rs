@@ -47,7 +47,7 @@ pub struct MergedZones {
     pub zones: Vec<(Vec<u32>, bool)>,
 }
 
-/// What a trace has logged for a call.
+/// The trace's log of a call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Logged {
     /// These polynomials in the order of the reference's, highest power first; one that is missing is empty.
@@ -65,11 +65,11 @@ pub struct InspectedCall {
     pub pass: Pass,
     /// The pair.
     pub pair: Pair,
-    /// What the reference computes of it.
+    /// The reference's own computation of it.
     pub study: Result<Study, NoAnswer>,
     /// How many polynomials the reference logs for it; none without continuous-time detection.
     pub polynomials: usize,
-    /// What the trace has logged for it.
+    /// The trace's log of it.
     pub logged: Logged,
 }
 
@@ -78,9 +78,9 @@ pub struct InspectedCall {
 pub struct InspectedStep {
     /// The step, from 1.
     pub step: u32,
-    /// What the mid record should hold, given the state that the step starts from.
+    /// The expected mid record, given the state that the step starts from.
     pub expected_mid: Option<State>,
-    /// What the end record should hold, given the trace's own mid record; `None` where the step has no result.
+    /// The expected end record, given the trace's own mid record; `None` where the step has no result.
     pub expected_end: Option<State>,
     /// The reference's detection passes, the first ones.
     pub passes: Vec<InspectedPass>,
@@ -175,7 +175,7 @@ impl<'a> Inspector<'a> {
         (POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, PASSES)
     }
 
-    /// What was seen, with what the trace has logged for it.
+    /// The inspected step, with the trace's log of each call.
     pub(crate) fn finish(mut self) -> InspectedStep {
         let (expected, actual) = (self.step.expected_polynomials, self.step.actual_polynomials);
         if expected == actual {
@@ -293,7 +293,7 @@ impl<'a> Inspector<'a> {
     }
 }
 
-/// What a list has for a call by its place; unknown where it has another length than the reference's.
+/// The log of a call by its place in the list; unknown where the list has another length than the reference's.
 fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> Logged {
     match log {
         Some(log) if log.len() == expected => {

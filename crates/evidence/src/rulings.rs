@@ -4,7 +4,7 @@ use fosssim_judge::{
     replay::{Progress, Remark, WrongStep},
 };
 
-/// What the rule books say of one step.
+/// The ruling of both rule books on one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StepRuling {
     /// Whether the original's rules find something wrong in it.

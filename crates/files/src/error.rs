@@ -20,7 +20,7 @@ pub enum FileError {
     NotRegular {
         /// The file's name, escaped.
         name: String,
-        /// What it is instead.
+        /// The kind of thing found instead.
         what: &'static str,
     },
     /// The file has further names, perhaps outside the folder.

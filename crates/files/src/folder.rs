@@ -35,7 +35,7 @@ pub struct Folder {
     shown: PathBuf,
 }
 
-/// What lies in a [`Folder`].
+/// An entry of a [`Folder`].
 #[derive(Debug)]
 pub enum FolderEntry {
     /// A regular file, open.
@@ -84,7 +84,7 @@ impl Folder {
         Self::to_write(path)
     }
 
-    /// What it was called when it was opened.
+    /// The name under which it was opened.
     #[must_use]
     pub fn shown(&self) -> &Path {
         &self.shown
@@ -107,7 +107,7 @@ impl Folder {
         Ok(names)
     }
 
-    /// What lies under this name, opened once.
+    /// The entry under this name, opened once.
     ///
     /// # Errors
     /// When it can't be opened; [`io::ErrorKind::NotFound`] when it has gone.

@@ -9,8 +9,8 @@ use pulp::Arch;
 pub use pulp::Simd;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// What the formulas of detection compute with: one number, or a lane of each of several pairs. Besides, a `f64` in
-/// front multiplies it.
+/// The number type of the detection formulas: one number, or a lane of each of several pairs. Besides, a `f64` in front
+/// multiplies it.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {}
 
 impl<N> Number for N where N: Copy + Add<Output = N> + Sub<Output = N> + Mul<Output = N> + Neg<Output = N> {}
@@ -121,7 +121,7 @@ impl Instructions {
 
 /// Something to be done in lanes.
 pub trait Work {
-    /// What it yields.
+    /// The type of the result.
     type Output;
     /// Does it. To be inlined always, with all that it calls and without closures, which would be compiled for other
     /// instructions: the callers are compiled once for each set.

@@ -9,7 +9,7 @@ use crate::{
 };
 use std::{ffi::OsString, os::unix::ffi::OsStringExt};
 
-/// What was asked for.
+/// The arguments, parsed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Arguments {
     pub(crate) scene: OsString,

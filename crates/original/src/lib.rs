@@ -37,8 +37,8 @@ use std::{
 /// Names of the program that make it behave as the original, whatever follows in the name.
 const NAME: &[u8] = b"FOSSSimOracle";
 
-/// What the words of a command line say after the program's own name, where the drop-in is meant: by the name
-/// `FOSSSimOracle...`, or by the first word, `original`. First the name that its messages show.
+/// The name that messages show, and the words for the drop-in, if it is meant: by the program's name
+/// `FOSSSimOracle...`, or by the first word, `original`.
 fn meant(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
     let (program, rest) = words.split_first()?;
     let program = program.as_bytes();
@@ -65,12 +65,12 @@ pub fn run_if_meant(outside: &dyn Outside) -> Result<ExitCode, Vec<OsString>> {
     }
 }
 
-/// What the drop-in asks of the program around it.
+/// The services that the drop-in needs from the program around it.
 pub trait Outside {
     /// Is asked before anything else is done.
     fn prepare(&self);
 
-    /// What draws the pictures that are asked for: of `-g 1` as PNG, of `-m DIR` as SVG in that folder.
+    /// A drawer of pictures: of `-g 1` as PNG, of `-m DIR` as SVG in that folder.
     ///
     /// # Errors
     /// What to print, when a folder is missing.

@@ -113,7 +113,7 @@ fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
     refusal.exit_code
 }
 
-/// What the original would need a window, a picture or very much memory for.
+/// The reason why this run is not supported: a window, a picture, or very much memory.
 fn unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     if arguments.display {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
@@ -234,7 +234,7 @@ fn grade(
     }
 }
 
-/// What the original computes without end, or gives up.
+/// Ends a run in which the original computes without end, or gives up.
 fn step_failed(error: &StepError, outside: &dyn Outside) -> u8 {
     match error {
         StepError::VortexHessian { .. } => complain(NO_VORTEX_HESSIAN),

@@ -11,7 +11,7 @@ use fosssim_model::scene::{Integrator, Scene};
 use fosssim_num::printed::general;
 use std::io::{self, Write};
 
-/// What the original shows above a run.
+/// The lines that the original shows above a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Heading<'a> {
     /// The scene argument as typed.
@@ -20,11 +20,11 @@ pub(crate) struct Heading<'a> {
     pub(crate) scene: &'a Scene,
     /// The description as the file has it.
     pub(crate) description: &'a [u8],
-    /// What is to be done.
+    /// The task of the run.
     pub(crate) task: Task<'a>,
 }
 
-/// What the original is asked to do.
+/// A task for the original.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task<'a> {
     /// Simulate and keep nothing.

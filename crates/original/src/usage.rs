@@ -4,12 +4,12 @@ use crate::flags::{FLAGS, Flag};
 const WIDTH: usize = 75;
 const TITLE: &str = "Forty One Sixty Seven Sim";
 
-/// What `--version` prints.
+/// The output of `--version`.
 pub(crate) fn version(program: &[u8]) -> Vec<u8> {
     [b"\n", program, b"  version: none\n\n"].concat()
 }
 
-/// What `--help` prints.
+/// The output of `--help`.
 pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     let mut text = b"\nUSAGE: \n\n".to_vec();
     text.extend(brief(program));
@@ -36,7 +36,7 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     text
 }
 
-/// What a parse error prints; `argument` is a space when no argument is to blame.
+/// The output of a parse error; `argument` is a space when the error belongs to no argument.
 pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
     let mut text = [b"PARSE ERROR: ", argument, b"\n             ", message, b"\n\nBrief USAGE: \n"].concat();
     text.extend(brief(program));

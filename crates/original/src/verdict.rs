@@ -3,7 +3,7 @@ use crate::words::{PINK, PLAIN};
 use fosssim_judge::{Outcome, Overall, Residuals};
 use fosssim_num::printed::general;
 
-/// What the original calls the residuals, in its order.
+/// The original's names of the residuals, in its order.
 const NAMES: [&str; 4] = [
     "Accumulated Position Residual",
     "Accumulated Velocity Residual",

@@ -23,7 +23,7 @@ const HUGE: f64 = 100_000.0;
 /// The greatest number of points drawn of a particle's path; older ones grow sparse.
 const LONGEST_PATH: usize = 2000;
 
-/// What a picture shows besides the bodies.
+/// The parts of a picture besides the bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PictureOptions {
     /// The size of the picture.
@@ -120,7 +120,7 @@ impl Painter {
         colours
     }
 
-    /// What a second motion is drawn in: it stands out against light and dark backgrounds.
+    /// The colour of a second motion: it stands out against light and dark backgrounds.
     fn overlay_colour(&self) -> Colour {
         if self.background.brightness() > 127 { Colour([178, 0, 110]) } else { Colour([255, 140, 220]) }
     }

@@ -58,7 +58,7 @@ pub enum Shape {
     Text {
         /// Its lower left corner.
         place: Point,
-        /// What it says.
+        /// Its text.
         text: String,
         /// Its colour.
         colour: Colour,

@@ -144,7 +144,7 @@ impl Supervisor {
         }
     }
 
-    /// What a prober says.
+    /// The answer of a prober.
     fn answer(child: Child) -> Result<Probe, SandboxError> {
         let output = child.wait_with_output();
         let lost = |how: String| SandboxError::Lost { how };

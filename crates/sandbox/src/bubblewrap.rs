@@ -10,7 +10,7 @@ use std::process::Command;
 
 /// Where the system keeps it; a `PATH` could name somebody else's.
 const PLACES: [&str; 3] = ["/usr/bin/bwrap", "/usr/local/bin/bwrap", "/bin/bwrap"];
-/// What the supervisor itself writes to: its locks for users, and control groups.
+/// Places to which the supervisor itself writes: its locks for users, and control groups.
 const SUPERVISORS: [&str; 4] =
     ["/run/fosssim-oracle-users", "/var/tmp/fosssim-oracle-users", "/tmp/fosssim-oracle-users", "/sys/fs/cgroup"];
 

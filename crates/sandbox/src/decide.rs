@@ -82,7 +82,7 @@ pub(super) fn beyond_trace(ended: Ended, is_beyond: bool) -> Ended {
     }
 }
 
-/// What the kernel's refusal to execute means.
+/// The meaning of the kernel's refusal to execute.
 fn start_problem(errno: i32) -> StartProblem {
     match errno {
         libc::ENOENT => StartProblem::NotFound,

@@ -18,7 +18,7 @@ const DT_RUNPATH: u64 = 29;
 /// No table of a sane program is longer than this.
 const LONGEST_TABLE: u64 = 16 << 20;
 
-/// What a program or library asks of the loader.
+/// The requests of a program or library to the loader.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Dynamic {
     /// Names of libraries.
@@ -47,7 +47,7 @@ pub(super) fn segments(file: &mut File, start: &[u8]) -> Vec<Segment> {
     table.chunks_exact(56).filter_map(segment).collect()
 }
 
-/// What the file asks of the loader; `None` where it is no ELF file, or has no dynamic section.
+/// The requests of the file to the loader; `None` where it is no ELF file, or has no dynamic section.
 pub(super) fn dynamic(path: &Path) -> Option<Dynamic> {
     let mut file = File::open(path).ok()?;
     let start = read_at(&mut file, 0, 256).filter(|start| start.starts_with(MAGIC))?;

@@ -8,12 +8,12 @@ use super::layers::LayerReport;
 use super::outcome::{Captured, Ended, RunOutcome, StartProblem};
 use super::running::Running;
 
-/// What a fake run answers.
+/// The answer of a fake run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FakeRun {
     /// How it ended.
     pub ended: Ended,
-    /// What came through the trace pipe, if the job has one.
+    /// The bytes from the trace pipe, if the job has one.
     pub trace: Vec<u8>,
     /// Standard output.
     pub stdout: Vec<u8>,

@@ -25,7 +25,7 @@ pub enum SandboxError {
     /// The supervisor ended without a report.
     #[error("the sandbox's supervisor was lost ({how}); what it ran has been ended")]
     Lost {
-        /// What is known about its end.
+        /// A description of its end, as far as it is known.
         how: String,
     },
     /// A step of the set-up failed.
@@ -93,8 +93,8 @@ pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
     SandboxError::SetUp { stage: failure.stage, source }
 }
 
-/// What is known about a supervisor that ended without a word. The way to it is closed by now, which ends one that is
-/// merely confused.
+/// The error for a supervisor that ended without a word. Its channel is closed by now, which ends one that is merely
+/// confused.
 pub(super) fn lost(mut child: Child) -> SandboxError {
     let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
     let mut text = String::new();

@@ -7,7 +7,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// What a program may do, beyond computing and writing into its working folder.
+/// The rights of a program, beyond computing and writing into its working folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Policy {
     /// A student's program: threads, but no other process and no second program.
@@ -161,7 +161,7 @@ impl Job {
         self
     }
 
-    /// What the program may do.
+    /// Sets the rights of the program.
     #[must_use]
     pub fn policy(mut self, policy: Policy) -> Self {
         self.policy = policy;

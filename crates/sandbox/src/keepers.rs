@@ -17,8 +17,8 @@ use super::program::Program;
 use super::sys;
 use super::wire::{self, Order, Report};
 
-/// What runs must have in common to be served by one keeper: all of the order but arguments, environment and working
-/// folder with what lies there, and the very files that it names.
+/// The properties that all runs of one keeper share: all of the order but arguments, environment and working folder
+/// with its contents, and the very files that it names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: Order,
@@ -99,13 +99,13 @@ impl Drop for Keeper {
 #[derive(Debug, Default)]
 pub(super) struct Pool {
     idle: Mutex<Vec<Keeper>>,
-    /// What was found out last about a copy of ours.
+    /// The last result of examining a copy of ours.
     known: Mutex<Option<(PathBuf, Identity, Program)>>,
 }
 
 impl Pool {
-    /// What is found out about the job's program, or what is known of it: a copy of ours that is still the same file
-    /// needs no second look.
+    /// The properties of the job's program, examined or remembered: a copy of ours that is still the same file needs no
+    /// second look.
     pub(super) fn examined(
         &self,
         job: &Job,
@@ -141,7 +141,7 @@ impl Pool {
     }
 }
 
-/// What supervises a run.
+/// The supervisor of a run.
 #[derive(Debug)]
 pub(super) enum Host {
     /// A process of its own.
@@ -151,7 +151,7 @@ pub(super) enum Host {
 }
 
 impl Host {
-    /// What is known about a supervisor that ended without a word. The way to it must be closed.
+    /// The error for a supervisor that ended without a word. Its channel must be closed.
     pub(super) fn lost(self) -> SandboxError {
         match self {
             Self::Own(child) => lost(child),

@@ -84,9 +84,9 @@ pub struct LayerReport {
     pub active: bool,
     /// Whether this host may not grade without it.
     pub required: bool,
-    /// What holds, or why it does not.
+    /// The property that holds, or the reason why it does not.
     pub detail: String,
-    /// What to install or enable, when it does not hold and something can be done.
+    /// The thing to install or enable, when the layer does not hold and something can be done.
     pub remedy: Option<&'static str>,
 }
 
@@ -315,7 +315,7 @@ fn active(reports: &[LayerReport]) -> Walls {
     }
 }
 
-/// What a report says of a run that never happened.
+/// The layers in a report on a run that never happened.
 pub(super) fn none() -> Arc<[LayerReport]> {
     let off = |layer| LayerReport {
         layer,

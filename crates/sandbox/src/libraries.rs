@@ -14,7 +14,7 @@ use super::{machine, own};
 
 /// Where shared libraries lie.
 pub(super) const FOLDERS: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];
-/// What the C library opens by itself: to end a thread on request, or to unwind.
+/// Libraries that the C library opens by itself: to end a thread on request, or to unwind.
 const BY_ITSELF: [&str; 1] = ["libgcc_s.so.1"];
 /// Its lists of conversions between character sets, and the modules for usual ones that are not built in.
 const CONVERSIONS: [&str; 8] = [
@@ -32,7 +32,7 @@ pub(super) const LOADERS: [&str; 2] = ["/etc/ld.so.cache", "/etc/ld.so.preload"]
 /// No program needs more, nor does an interpreter's own library hold more files.
 const MOST: usize = 5_000;
 
-/// What a program may read of the system.
+/// The files of the system that a program may read.
 #[derive(Debug, Default)]
 pub(super) struct Readable {
     /// Files and folders, with real paths.
@@ -184,7 +184,7 @@ fn libraries_in(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// What the loader's cache lists, by name: `struct cache_file_new` of the C library.
+/// The libraries in the loader's cache, by name: `struct cache_file_new` of the C library.
 fn listed(cache: &[u8]) -> BTreeMap<String, Vec<PathBuf>> {
     const MAGIC: &[u8] = b"glibc-ld.so.cache1.1";
     const HEADER: usize = 48;

@@ -145,7 +145,7 @@ pub enum StartProblem {
     /// An ELF file that is not a program, for example an object file or a core dump.
     #[error("the file is {what}, not a linked program; upload what the linker wrote")]
     NotLinked {
-        /// What it is instead.
+        /// The kind of thing found instead.
         what: Cow<'static, str>,
     },
     /// A 32-bit program.
@@ -154,9 +154,9 @@ pub enum StartProblem {
     /// A program for another processor.
     #[error("this program was built for {machine}, but this machine is {here}; build it on the grading platform")]
     WrongMachine {
-        /// What it was built for.
+        /// The machine for which it was built.
         machine: String,
-        /// What this machine is.
+        /// The kind of this machine.
         here: Cow<'static, str>,
     },
     /// The program names a dynamic loader that is not here.
@@ -211,7 +211,7 @@ pub enum StartProblem {
     Refused(String),
 }
 
-/// What a program wrote to one stream.
+/// The output of a program to one stream.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Captured {
     /// The first bytes, up to the limit. They are the program's words: escape them before they are shown.

@@ -82,7 +82,7 @@ pub(super) enum Allowed {
     Listing(PathBuf),
 }
 
-/// What to allow so that everything at and beneath `path` is allowed except the files `own` (resolved paths).
+/// The rules that allow everything at and beneath `path` except the files `own` (resolved paths).
 ///
 /// Links beneath a folder that is split are left out: what they lead to is allowed where it lies, or not at all.
 pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<Allowed> {

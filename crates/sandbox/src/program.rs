@@ -23,7 +23,7 @@ const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
 const LIBRARIES: [&str; 8] =
     ["/lib", "/lib32", "/lib64", "/libx32", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/libexec"];
 
-/// What the sandbox must know of a program before it starts it.
+/// The facts about a program that the sandbox needs before it starts it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Program {
     /// Loaders and interpreters that the kernel executes on the way to it.

@@ -12,8 +12,8 @@ pub(super) fn is_enough_for(bytes: u64) -> bool {
     left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
 }
 
-/// What the machine and our groups have left, as it was at most a moment ago: to add it up takes the kernel longer than
-/// to start a small program.
+/// The memory that the machine and our groups have left, as it was at most a moment ago: the kernel needs longer to add
+/// it up than to start a small program.
 fn left() -> Option<u64> {
     const MOMENT: Duration = Duration::from_millis(500);
     static LAST: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);
@@ -28,7 +28,7 @@ fn left() -> Option<u64> {
     left
 }
 
-/// What the kernel could give to programs.
+/// The memory that the kernel could give to programs.
 fn available() -> Option<u64> {
     available_in(&std::fs::read_to_string("/proc/meminfo").ok()?)
 }

@@ -50,7 +50,7 @@ enum State {
 #[derive(Debug)]
 pub(super) struct Supervised {
     pub(super) host: Host,
-    /// What the supervisor says.
+    /// The supervisor's answers.
     pub(super) answers: File,
     pub(super) session: Option<i32>,
     pub(super) user: Option<u32>,

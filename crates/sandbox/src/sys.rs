@@ -307,7 +307,7 @@ pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
     Ok((time(usage.ru_utime) + time(usage.ru_stime), usage.ru_maxrss.unsigned_abs() * 1024))
 }
 
-/// What [`poll`] found out about a descriptor.
+/// The result of [`poll`] for a descriptor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Readiness {
     /// Nothing to do.

@@ -18,7 +18,7 @@ pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
 pub(super) const COMMAND_CANCEL: u8 = b'c';
 /// Command byte: stop the program, its trace is too long.
 pub(super) const COMMAND_TRACE_LIMIT: u8 = b't';
-/// What the trace pipe holds: the larger, the fewer switches between the program and the grader.
+/// The size of the trace pipe: the larger, the fewer switches between the program and the grader.
 pub(super) const PIPE_BYTES: i32 = 1 << 20;
 /// Few messages are longer than this.
 const USUAL_MESSAGE: u64 = 4 << 10;
@@ -67,7 +67,7 @@ pub(super) struct Walls {
     pub(super) bubblewrap: bool,
 }
 
-/// What the supervisor is to run.
+/// The order for one run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Order {
     pub(super) program: Raw,
@@ -108,7 +108,7 @@ pub(super) struct Order {
     pub(super) open_files: u32,
 }
 
-/// What the supervisor answers.
+/// A message of the supervisor.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Event {
     /// The child was forked: its session, unless its process namespace has numbers of its own,
@@ -161,7 +161,7 @@ pub(super) struct Report {
     pub(super) cpu_micros: u64,
     pub(super) wall_micros: u64,
     pub(super) peak_memory: u64,
-    /// What the folder holds at the end beyond what was there at the start.
+    /// The growth of the folder from the start to the end.
     pub(super) folder_growth: u64,
     /// Whether the folder is over a limit at the end.
     pub(super) folder_over: bool,
@@ -173,7 +173,7 @@ pub(super) struct Report {
     pub(super) survivors: u32,
 }
 
-/// What the one-shot probe found; a text is why a layer does not hold.
+/// The results of the one-shot probe; a text is the reason why a layer does not hold.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Probe {
     pub(super) root: bool,
@@ -195,7 +195,7 @@ pub(super) struct Probe {
     pub(super) group: Option<String>,
     /// Why bubblewrap does not help. Only tried when the supervisor cannot make namespaces by itself.
     pub(super) bubblewrap: Option<String>,
-    /// What the kernel limits for a group here.
+    /// The quantities that the kernel limits for a group here.
     pub(super) group_controls: Vec<String>,
     /// Whether a group here ends as a whole.
     pub(super) group_ends: bool,

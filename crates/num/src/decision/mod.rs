@@ -65,7 +65,7 @@ pub enum Certainty {
     Borderline,
 }
 
-/// What has decided, cheapest first.
+/// The level that decided, cheapest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Signs of the coefficients, or the interval sum of their terms (L0).

@@ -23,7 +23,7 @@ const MOST_PIECES: u32 = 5_000;
 /// Coefficients below this many times their rounding are noise: halving shows no more.
 const NOISE: f64 = 2.0;
 
-/// What a search has found.
+/// The result of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Answer {
     /// At this time all polynomials are positive, so `tau` is at most this.
@@ -181,7 +181,7 @@ fn rises_once(control: &Control) -> bool {
     negative > 0 && positive > 0 && negative + positive + 1 >= values.len()
 }
 
-/// What the Bernstein coefficients of a piece say.
+/// The sign of a piece, as its Bernstein coefficients show it.
 enum Sign {
     /// All are negative, by this much at least.
     Negative(f64),

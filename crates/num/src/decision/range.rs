@@ -17,7 +17,7 @@ pub(crate) enum Ends {
 /// More than all that underflow can take from a sum or a convex combination of six numbers, fifty times in a row.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
 
-/// What the Bernstein coefficients may be off by, in units of the sum of the moduli of the power coefficients: a
+/// A bound on the error of the Bernstein coefficients, in units of the sum of the moduli of the power coefficients: a
 /// rounded weight, a product, at most five sums, and the rounding of that sum of moduli; sixteen is twice as much.
 const CONVERSION: f64 = 16.0 * UNIT_ROUNDOFF;
 

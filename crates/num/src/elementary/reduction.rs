@@ -7,7 +7,7 @@ use super::{fused, tables::TWO_OVER_PI, trigonometry::QUARTER};
 pub(super) struct Reduced {
     pub(super) quarters: u32,
     pub(super) angle: f64,
-    /// What the angle is more than its nearest number.
+    /// The difference of the angle from its nearest number.
     pub(super) rest: f64,
 }
 

@@ -12,7 +12,7 @@ struct Convergence {
     threshold: f64,
 }
 
-/// What one step says about a sequence.
+/// The measure of convergence of a sequence after one step.
 #[derive(Clone, Copy)]
 struct Measure {
     change: f64,

@@ -79,7 +79,7 @@ impl Zeros {
     }
 }
 
-/// What a search stage found, with the polynomial that is left: its first `n + 1 - found` coefficients.
+/// The result of a search stage, with the polynomial that is left: its first `n + 1 - found` coefficients.
 enum Found {
     One { zero: f64, quotient: Coefficients },
     Two { zeros: [Zero; 2], quotient: Coefficients },

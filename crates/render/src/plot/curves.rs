@@ -10,7 +10,7 @@ use fosssim_num::{interval::Interval, polynomial::evaluate};
 /// A polynomial.
 #[derive(Debug, Clone, Copy)]
 pub struct PlottedPolynomial<'a> {
-    /// What it is, in a few words.
+    /// Its name, in a few words.
     pub name: &'a str,
     /// Its coefficients, highest power first.
     pub coefficients: &'a [f64],
@@ -20,7 +20,7 @@ pub struct PlottedPolynomial<'a> {
     pub positive: &'a [Interval],
 }
 
-/// What the plot shows.
+/// The contents of a plot of polynomials.
 #[derive(Debug, Clone, Copy)]
 pub struct PolynomialPlot<'a> {
     /// Its title.
@@ -87,7 +87,7 @@ impl PolynomialPlot<'_> {
         sheet.finish()
     }
 
-    /// What the plot says, in words.
+    /// The plot in words, for readers who do not see it.
     fn description(&self) -> String {
         let mut words: Vec<String> =
             self.curves.iter().map(|curve| format!("{} is positive {}", curve.name, within(curve.positive))).collect();

@@ -4,7 +4,7 @@ use super::{
     sheet::{Anchor, Columns, Ink, Sheet, Tone, WIDTH, ticks},
 };
 
-/// What the plot shows.
+/// The contents of a plot of passes.
 #[derive(Debug, Clone, Copy)]
 pub struct PassPlot<'a> {
     /// Its title.
@@ -84,7 +84,7 @@ impl PassPlot<'_> {
         }
     }
 
-    /// What the plot says, in words.
+    /// The plot in words, for readers who do not see it.
     fn description(&self) -> String {
         let compared = self.expected.len().min(self.actual.len());
         let differing = (0..compared).filter(|&place| self.differs(place)).count();

@@ -8,13 +8,13 @@ use crate::number::{decades, short};
 /// A residual of every step, from the first one on.
 #[derive(Debug, Clone, Copy)]
 pub struct Series<'a> {
-    /// What it is, in a word or two.
+    /// Its name, in a word or two.
     pub name: &'a str,
     /// One value per step.
     pub values: &'a [f64],
 }
 
-/// What the plot shows.
+/// The contents of a plot of residuals.
 #[derive(Debug, Clone, Copy)]
 pub struct ResidualPlot<'a> {
     /// Its title.
@@ -83,7 +83,7 @@ impl ResidualPlot<'_> {
         sheet.finish()
     }
 
-    /// What the plot says, in words.
+    /// The plot in words, for readers who do not see it.
     fn description(&self) -> String {
         let mut words = Vec::new();
         for series in self.series {

@@ -6,14 +6,14 @@ use std::fmt::Write;
 /// Widths of all sheets.
 pub const WIDTH: f64 = 640.0;
 
-/// What a mark is drawn in: its class in the style sheet, and the colour for readers without one.
+/// The ink of a mark: its class in the style sheet, and the colour for readers without one.
 #[derive(Debug, Clone, Copy)]
 pub enum Ink {
     /// Axes.
     Axis,
     /// Grid lines.
     Grid,
-    /// What is wrong, limits, impacts.
+    /// Wrong values, limits, impacts.
     Bad,
     /// Series, from 0; after four the styles begin anew.
     Series(usize),

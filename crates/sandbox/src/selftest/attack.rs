@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::job::Policy;
 use crate::outcome::{Ended, Stream};
 
-/// What an attack needs of the machine to prove anything.
+/// The needs of an attack, without which it proves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Need {
     FileRules,
@@ -67,7 +67,7 @@ pub(super) struct Attack {
     pub(super) policy: Policy,
     pub(super) wall: Option<Duration>,
     pub(super) needs: Vec<Need>,
-    /// What must be collected as `trace.bin`: `nothing`, `refused`, or this text.
+    /// The expected `trace.bin`: `nothing`, `refused`, or this text.
     pub(super) leaves: Option<String>,
     /// Whether the trace is a pipe, and how many bytes must come through it.
     pub(super) pipe: Option<Option<usize>>,

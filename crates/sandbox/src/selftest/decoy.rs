@@ -21,7 +21,7 @@ pub(super) struct Decoy {
     victim: Child,
 }
 
-/// What the decoys look like: for every path its facts and contents.
+/// The state of the decoys: for every path its facts and contents.
 pub(super) struct State(BTreeMap<PathBuf, (Facts, Vec<u8>)>);
 
 type Facts = [i64; 7];
@@ -75,7 +75,7 @@ impl Decoy {
         Ok(own)
     }
 
-    /// What the program is told: secrets, victim, scene, neighbour.
+    /// The arguments of the program: secrets, victim, scene, neighbour.
     pub(super) fn arguments(&self) -> [OsString; 4] {
         [
             self.root.join("secrets").into(),

@@ -64,7 +64,7 @@ pub struct Promise {
     pub state: PromiseState,
 }
 
-/// What the sandbox promises, and what of it holds on this machine.
+/// The promises of the sandbox, and how many of them hold on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PromiseTable {
     /// All promises, by the attack's name.
@@ -313,7 +313,7 @@ fn limits(attack: &Attack) -> Limits {
     }
 }
 
-/// What a hostile program is told by its environment.
+/// The environment of a hostile program.
 fn environment() -> [(&'static str, String); 3] {
     let grader = std::fs::read_link("/proc/self/exe").unwrap_or_default();
     [(PERMIT, "1".into()), (GRADER, grader.display().to_string()), (GROUP, sys::group().to_string())]

@@ -14,8 +14,8 @@ macro_rules! calls {
     };
 }
 
-/// What every program needs: its own memory, files, time, threads and signals. File calls are bounded by Landlock,
-/// amounts by the resource limits.
+/// Calls that every program needs: its own memory, files, time, threads and signals. File calls are bounded by
+/// Landlock, amounts by the resource limits.
 pub(super) const ALLOWED: &[Call] = calls![
     SYS_read SYS_write SYS_readv SYS_writev SYS_pread64 SYS_pwrite64 SYS_preadv SYS_pwritev SYS_preadv2 SYS_pwritev2
     SYS_openat SYS_close SYS_close_range SYS_lseek SYS_fstat SYS_newfstatat SYS_statx SYS_faccessat SYS_faccessat2

@@ -33,7 +33,7 @@ pub(super) struct Plan {
     pub(super) folder: OwnedFd,
     /// The program or script, opened while we could still reach it, for a user who cannot.
     pub(super) opened: Option<Opened>,
-    /// What is executed, open under a number beyond the limit of descriptors, where execution is not announced.
+    /// The program to execute, open under a number beyond the limit of descriptors, where execution is not announced.
     pub(super) entrance: Option<OwnedFd>,
     pub(super) rules: Option<RulesetCreated>,
     /// The filters, as far as they are compiled.
@@ -153,7 +153,7 @@ fn limits(order: &Order, own_user: bool) -> io::Result<()> {
 /// Filters that were compiled before there was a child, with what they are for.
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
-/// What the filters of a child with this number are for.
+/// The purpose of the filters of a child with this number.
 pub(super) fn purpose(order: &Order, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
     let walls = order.walls;
     Purpose {

@@ -115,7 +115,7 @@ const HARMLESS_OPTIONS: [i32; 10] = [
     libc::PR_GET_TIMERSLACK,
 ];
 
-/// What a set of filters is for.
+/// The purpose of a set of filters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Purpose {
     /// Compilers may start processes, execute programs and make links within their folder.
@@ -157,7 +157,7 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
 /// Rules with the answer to what they match; calls without rules always match.
 type Layer = (Rules, SeccompAction);
 
-/// What each of these calls is answered by layers of which the first that matches decides.
+/// The answer to each of these calls by layers; the first layer that matches decides.
 fn joined(calls: impl Iterator<Item = i64>, layers: &[Layer]) -> io::Result<BTreeMap<u32, Answer>> {
     let mut answers = BTreeMap::new();
     for call in calls {
@@ -390,8 +390,7 @@ fn condition(argument: u8, operator: SeccompCmpOp, value: u64) -> io::Result<Sec
 mod tests {
     use super::*;
 
-    /// What the kernel makes of filters that are installed one after the other: the strictest answer, of equals the
-    /// latest.
+    /// The kernel's answer for filters that are installed one after the other: the strictest one, of equals the latest.
     fn stacked(filters: &[BpfProgram], call: u32, architecture: u32, arguments: [u64; 6]) -> u32 {
         let answers = filters.iter().rev().map(|filter| search::tests::run(filter, call, architecture, arguments));
         // The action is the upper half, and killing a process is negative.

@@ -18,7 +18,7 @@ const DEEPEST: u32 = 32;
 /// Blocks that `stat` counts in.
 const BLOCK: u64 = 512;
 
-/// What a folder holds.
+/// The contents of a folder, counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Contents {
     /// Bytes on disk.
@@ -43,7 +43,8 @@ impl Contents {
     }
 }
 
-/// What the file system whose root is `folder` holds by the kernel's own count: removed files that are in use as well.
+/// The contents of the file system whose root is `folder`, by the kernel's own count: removed files that are in use as
+/// well.
 pub(super) fn in_use(folder: BorrowedFd<'_>) -> Contents {
     // The root itself, and the trace pipe, if there is one.
     const OWN_FILES: u64 = 2;

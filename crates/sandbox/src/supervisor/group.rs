@@ -23,7 +23,7 @@ const PREFIX: &str = "fosssim-oracle-";
 const SPARE_MEMORY: u64 = 64 << 20;
 const SPARE_PROCESSES: u32 = 16;
 
-/// What a hierarchy of groups is for.
+/// The purpose of a hierarchy of groups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// The one of version 2.
@@ -76,7 +76,7 @@ impl Group {
         Ok(group)
     }
 
-    /// What is limited by the kernel.
+    /// The quantities that the kernel limits.
     pub(super) fn controls(&self) -> Vec<&'static str> {
         [Limit::Memory, Limit::Processes]
             .into_iter()
@@ -148,7 +148,7 @@ impl Group {
     }
 }
 
-/// What the kernel can limit for a group.
+/// A quantity that the kernel can limit for a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Limit {
     Memory,
@@ -165,7 +165,7 @@ impl Limit {
 }
 
 impl Kind {
-    /// What such a group limits, if its controller is there.
+    /// The limits of such a group, if its controller is there.
     fn limits(self) -> &'static [Limit] {
         match self {
             Self::Unified => &[Limit::Memory, Limit::Processes],

@@ -143,7 +143,7 @@ impl Keeper {
         }
     }
 
-    /// What the run's supervisor does; the answer is its exit code.
+    /// Serves one run; the answer is the run's exit code.
     fn supervise(&mut self, request: Request) -> u8 {
         let Request { order, control, mut answers, folder, files } = request;
         let Some(held) = self.held.take() else { return 1 };

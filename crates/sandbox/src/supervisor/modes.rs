@@ -76,8 +76,8 @@ fn named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root:
     })
 }
 
-/// What lies at the path, if that is beneath the working folder, opened without any right but to name it. No link on
-/// the way is followed.
+/// The file at the path, if that is beneath the working folder, opened without any right but to name it. No link on the
+/// way is followed.
 fn beneath(path: &Path, folder: BorrowedFd<'_>, root: &Path) -> io::Result<OwnedFd> {
     let inside = path.strip_prefix(root).map_err(io::Error::other)?;
     sys::open_beneath(folder, &CString::new(inside.as_os_str().as_bytes())?, libc::O_PATH)

@@ -12,7 +12,7 @@ use crate::mounts;
 use crate::sys::{self, Fork, SingleThread};
 use crate::wire::{Failure, Order};
 
-/// What a run has to itself on this machine, for as long as this is held.
+/// The resources that a run has to itself on this machine, for as long as this is held.
 pub(super) struct Held {
     /// A user of its own.
     pub(super) slot: Option<slot::Slot>,
@@ -30,7 +30,7 @@ impl Held {
     }
 }
 
-/// What can be made ready before there is a program, and serves all runs that differ in scene and folder only.
+/// The preparations that need no program, and serve all runs that differ in scene and folder only.
 #[derive(Default)]
 pub(super) struct Prepared {
     places: Option<walls::Places>,

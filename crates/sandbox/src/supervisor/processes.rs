@@ -35,7 +35,7 @@ impl Stat {
     }
 }
 
-/// What a group of processes uses together.
+/// The usage of a group of processes together.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Usage {
     /// Processor time of those that live, and of their reaped children.
@@ -46,7 +46,7 @@ pub(super) struct Usage {
     pub(super) threads: u64,
 }
 
-/// What the process `pid` uses; with `tree`, it and all other descendants of this process. `/proc` counts time in
+/// The usage of the process `pid`; with `tree`, of it and all other descendants of this process. `/proc` counts time in
 /// hundredths of a second on every Linux.
 pub(super) fn usage(pid: i32, tree: bool) -> Usage {
     let mut usage = Usage::default();
@@ -112,7 +112,7 @@ pub(super) fn threads_of_user(user: u32) -> u64 {
     of_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
 }
 
-/// Who would not go.
+/// The processes that did not end.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Left {
     /// Processes.

@@ -361,7 +361,7 @@ impl Run {
         }
     }
 
-    /// What the child says on its way; the end of the socket means that the program has started.
+    /// Reads the child's messages; the end of the socket means that the program has started.
     fn hear(&mut self) {
         let mut buffer = [0; 4096];
         while let Some(status) = &self.status {
@@ -530,7 +530,7 @@ impl Run {
     }
 }
 
-/// What the order's folder holds, to its end.
+/// The contents of the order's folder.
 fn contents(order: &Order, folder: BorrowedFd<'_>) -> Contents {
     let contents = folder::measure(folder, u64::MAX, u64::MAX);
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }

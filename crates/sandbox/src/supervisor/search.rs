@@ -19,12 +19,12 @@ const RETURN_CONSTANT: u16 = 0x06;
 /// The farthest that a comparison can jump.
 const FARTHEST: usize = 255;
 
-/// What a filter answers to a call.
+/// The answer of a filter to a call.
 #[derive(Debug, Clone)]
 pub(super) enum Answer {
     /// Always this.
     Constant(u32),
-    /// What the first of these filters says that does not allow it; they need not ask for the number again.
+    /// The answer of the first of these filters that does not allow the call; they need not ask for the number again.
     Asked(Vec<BpfProgram>),
 }
 
@@ -49,7 +49,7 @@ pub(super) fn filter(answers: &BTreeMap<u32, Answer>, otherwise: u32, mut frame:
     Ok(frame)
 }
 
-/// What is done with calls from a number on.
+/// The treatment of calls from a number on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Leaf {
     Answer(u32),
@@ -123,7 +123,7 @@ impl Tail {
         self.reversed.len() - 1
     }
 
-    /// What an instruction that is added now passes over to get to the place.
+    /// The number of instructions between an instruction that is added now and the place.
     fn distance(&self, place: usize) -> usize {
         self.last() - place
     }
@@ -217,7 +217,7 @@ pub(super) mod tests {
     const AND: u16 = 0x54;
     const JUMP_IF_GREATER: u16 = 0x25;
 
-    /// What a filter answers: the kernel's rules for these instructions, on its description of a call.
+    /// The answer of a filter: the kernel's rules for these instructions, on its description of a call.
     pub(in super::super) fn run(program: &[sock_filter], call: u32, architecture: u32, arguments: [u64; 6]) -> u32 {
         let mut description = vec![call, architecture, 0, 0];
         description.extend(arguments.iter().flat_map(|argument| [*argument as u32, (*argument >> 32) as u32]));

@@ -30,7 +30,7 @@ const MOST_LINKS: u32 = 40;
 /// Room for the folders, links and empty files that mounts lie on.
 const ROOM: &str = "mode=755,size=4m,nr_inodes=20k";
 
-/// What may be done with a place.
+/// The rights at a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Access {
     Read,

@@ -25,7 +25,7 @@ use crate::wire::{self, Order};
 /// [`LayerReport`]: crate::LayerReport
 const NEWEST: ABI = ABI::V6;
 
-/// What runtimes ask about the machine: which processors there are, and its time zone.
+/// Files that runtimes ask about the machine: its processors and its time zone.
 const MACHINE: [&str; 4] = [
     "/sys/devices/system/cpu/online",
     "/sys/devices/system/cpu/possible",
@@ -138,7 +138,7 @@ fn place(path: &Path, access: BitFlags<AccessFs>) -> Option<(OwnedFd, BitFlags<A
     Some((opened.into(), if is_folder { access } else { access & AccessFs::from_file(NEWEST) }))
 }
 
-/// What lies at the path, open for being named only.
+/// The file at the path, open for being named only.
 fn at_place(path: &Path) -> io::Result<File> {
     File::options().read(true).custom_flags(libc::O_PATH).open(path)
 }

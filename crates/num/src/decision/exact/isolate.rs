@@ -94,7 +94,7 @@ pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
     roots
 }
 
-/// What is still to be looked at.
+/// An interval that is not decided yet.
 enum Pending {
     /// From `start / 2^exponent` on, `1 / 2^exponent` wide.
     Interval(Integer, BigInt, u64),
