@@ -7,7 +7,7 @@
 
 /// How many bytes of the place hold the id, or several with commas between them; what follows is zero.
 const ROOM: usize = 256;
-/// What stands before them, so that the place is found, backwards: forwards it stands in the place alone.
+/// The bytes before them, by which the place is found, backwards: forwards they stand in the place alone.
 const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 /// The whole place.
 const LENGTH: usize = MARK_BACKWARDS.len() + ROOM;

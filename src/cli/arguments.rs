@@ -196,7 +196,7 @@ pub(super) struct Check {
 /// How much an explanation tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Hints {
-    /// What the likely mistake is, in one sentence.
+    /// The likely mistake, in one sentence.
     What,
     /// Also the exact terms and an example: this may give the right formula away.
     Full,

@@ -22,7 +22,7 @@ use std::{
 };
 use terminal_size::{Width, terminal_size_of};
 
-/// What `--color` says.
+/// The value of `--color`.
 static COLOUR: OnceLock<Colour> = OnceLock::new();
 
 /// Remembers what `--color` says; the first word counts.

@@ -8,7 +8,7 @@ use crate::{
 use clap::{Args, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
-/// What is said of `--format`, where these formats are taken.
+/// The help of `--format`, where these formats are taken.
 fn help_of_formats(takes: impl Fn(Format) -> bool) -> String {
     format!("A report: {}; with =FILE into a file", Format::names(takes))
 }
@@ -140,7 +140,7 @@ impl FromStr for Shard {
     }
 }
 
-/// Whom a page is for.
+/// The reader of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Audience {
     /// Staff: every group. How much is told of each scene is the suite's choice of hints, or `--hints`.

@@ -16,7 +16,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// So long nothing may move after the first signal.
+/// The longest time without any progress after the first signal.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Temporary files that an interrupt has to remove.

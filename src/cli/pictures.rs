@@ -4,7 +4,7 @@ use crate::render::Size;
 use clap::{Args, ValueEnum};
 use std::{num::NonZeroU32, path::PathBuf};
 
-/// What is drawn.
+/// The form of the pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum RenderFormat {
     /// Pictures as SVG: a folder of them, or one with --step.
@@ -41,7 +41,7 @@ pub(super) struct Render {
     /// The file or folder to write; the ending of a file's name says what it becomes.
     #[arg(short, long, value_name = "FILE or DIR")]
     pub(super) output: PathBuf,
-    /// What is drawn, if the name of the output does not say it.
+    /// The form of the output, if its name does not say it.
     #[arg(long, value_enum)]
     pub(super) format: Option<RenderFormat>,
     /// Width and height in pixels.

@@ -24,20 +24,20 @@ pub enum Rating {
     Misleading,
 }
 
-/// What is told of the program of a mutant.
+/// The explanations of a mutant's program, rated.
 #[derive(Debug)]
 pub struct Rated {
     /// The mutant's name.
     pub id: &'static str,
-    /// What is wrong with it.
+    /// The mistake of the program, in words.
     pub what: &'static str,
     /// How what is told stands to that.
     pub rating: Rating,
-    /// What is told, the likeliest first.
+    /// The explanations, the likeliest first.
     pub told: Vec<Explanation>,
 }
 
-/// What is told of a program after it has run on the probe scenes.
+/// The explanations of a program after it has run on the probe scenes.
 #[must_use]
 pub fn told_of(student: Student) -> Vec<Explanation> {
     let options = Options { threads: 1, fair: true, ..Options::default() };

@@ -53,9 +53,9 @@ fn trace(scene: &Scene, student: Student) -> Vec<u8> {
 /// A program with one mistake.
 #[derive(Debug)]
 pub struct WrongProgram {
-    /// What is wrong with it: the name of a row, of a mutant, or place and operator of a mutation.
+    /// The name of its mistake: of a row, of a mutant, or place and operator of a mutation.
     pub name: String,
-    /// Who writes it.
+    /// The student who writes it.
     pub student: Student,
 }
 

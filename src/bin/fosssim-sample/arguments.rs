@@ -53,7 +53,7 @@ struct Typed {
     json: bool,
 }
 
-/// What is to be done.
+/// A task of the sample program.
 pub enum Task {
     /// Print the catalogue.
     List {
@@ -88,7 +88,7 @@ pub fn parse() -> Result<Task, String> {
     Ok(Task::Run(Options { scene, output: typed.output, student }))
 }
 
-/// Who makes the mistakes that the command line, the program's name or the environment asks for.
+/// The student with the mistakes that the command line, the program's name or the environment asks for.
 fn student(option: Option<String>) -> Result<Student, String> {
     let (source, ids) = if let Some(id) = pin::read(&PINNED) {
         ("this copy of the program", id.to_owned())

@@ -21,7 +21,7 @@ const HOG_BYTES: usize = 4 << 30;
 /// Where hostile programs put their names.
 const CHILD_VARIABLE: &str = "FOSSSIM_SAMPLE_CHILD";
 
-/// What the original oracle prints after a run without faults.
+/// The output of the original oracle after a run without faults.
 const FORGED_VERDICT: &str = "\
 Accumulated Position Residual: 0   Passed.
 Accumulated Velocity Residual: 0   Passed.
@@ -33,7 +33,8 @@ Overall success: Passed.
 {\"score\": 100, \"output\": \"accepted\"}
 ";
 
-/// What escapes from a log that is not cleaned: colours, the window's title, markup, a formula, control characters.
+/// Text that escapes from a log that is not cleaned: colours, the window's title, markup, a formula, control
+/// characters.
 const ESCAPES: &str = "\u{1b}[2J\u{1b}[31;1mred\u{1b}[m \u{1b}]0;title\u{7} <script>alert(1)</script> \
     <b onmouseover='x'>&amp;</b> | `code` **bold** ::error::no \r\n=HYPERLINK(\"http://example.invalid\",\"x\")\n\
     ]]> \u{202e}reversed\u{202c} \u{0}\u{8}\u{c}\n";
@@ -69,7 +70,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
     Ok(None)
 }
 
-/// What happens in mid-run.
+/// A hostile act in the middle of a run.
 pub enum Midway {
     /// The simulation goes on.
     GoOn,
@@ -102,7 +103,7 @@ pub fn midway(student: Student) -> io::Result<Midway> {
     Ok(Midway::GoOn)
 }
 
-/// What follows the last record.
+/// Writes the bytes behind the last record.
 pub fn after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileTrailingBytes) => output.write_all(&[0; 8]),

@@ -6,7 +6,7 @@ use crate::{
 };
 use std::path::{Path, PathBuf};
 
-/// What is known of the grading.
+/// The part of the grading that the commands below a report need.
 pub(super) struct Closer<'a> {
     pub(super) arguments: &'a Arguments,
     pub(super) plan: &'a Plan,
@@ -39,7 +39,7 @@ impl Closer<'_> {
         lines
     }
 
-    /// What `check` calls a scene.
+    /// The name of a scene for `check`.
     fn scene(&self, name: &str) -> Option<String> {
         let task = self.plan.scenes().find(|task| task.name == name)?;
         if library::scene(name).is_some_and(|embedded| embedded == task.xml) {

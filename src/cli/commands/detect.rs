@@ -142,7 +142,7 @@ fn simulated(scene: &SceneInput, step: u32) -> Result<State> {
     Ok(simulation.state().clone())
 }
 
-/// What a trace says of a step.
+/// The records of a step in a trace.
 struct Traced {
     before: State,
     /// The mid record's state; that of the record before the step's end where the scene has none.

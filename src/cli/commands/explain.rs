@@ -38,14 +38,14 @@ use std::{
     time::Duration,
 };
 
-/// So much of a trace is looked at, in bytes.
+/// The greatest number of bytes of a trace that are read.
 const LONGEST: usize = Keep::EXPLAINED.most;
 
-/// So often a program may run into a limit; from then on it has [`LEAST`]: what it has recorded until then is looked at
-/// all the same.
+/// The number of runs of a program that may end at a limit. Further runs have [`LEAST`]; what they have recorded until
+/// then is read all the same.
 const PATIENCE: usize = 2;
 
-/// So much time is left to a program that runs into limits, on scenes of which a right one needs some milliseconds.
+/// The time for a program that runs into limits, on scenes of which a right one needs some milliseconds.
 const LEAST: Duration = Duration::from_secs(2);
 
 pub(super) fn run(arguments: &Explain) -> Result<u8> {
@@ -201,8 +201,8 @@ fn program_on_probes(
     Ok(Some((Diagnosis { cases, common, located }, cards)))
 }
 
-/// What the scenes have in common in which the program failed, by how it ended in each and how many steps were
-/// complete.
+/// The properties that the failing scenes have in common, by the end of the program in each and the number of complete
+/// steps.
 fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Located> {
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;

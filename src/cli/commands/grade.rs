@@ -174,7 +174,7 @@ impl Session<'_> {
         }
     }
 
-    /// What was taken over from earlier runs, and how to go on with one that was stopped.
+    /// Says which results come from earlier runs, and how to go on with a grading that was stopped.
     fn say_what_was_kept(&self, grades: &[Grade]) {
         let taken: usize = grades.iter().map(Grade::taken_over).sum();
         let all = grades.iter().flat_map(Grade::scenes).count();

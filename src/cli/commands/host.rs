@@ -38,7 +38,7 @@ use std::{
 /// A sample program of more bytes is none of ours.
 const LARGEST_PROGRAM: u64 = 1 << 30;
 
-/// What the wrong sample of the demo gets wrong, unless told otherwise.
+/// The default mistake of the demo's wrong sample.
 const DEMO_MISTAKE: &str = "pe-square-no-eh";
 
 /// The demo's suite: few scenes, all kinds of collisions.

@@ -21,7 +21,7 @@ const LARGEST: u64 = 256 << 20;
 /// By submission and scene, whether it was accepted.
 type Known = BTreeMap<String, BTreeMap<String, bool>>;
 
-/// What is known of the last run.
+/// The verdicts of the last run.
 #[derive(Debug, Default)]
 pub(super) struct LastRun {
     file: Option<Place>,
@@ -29,7 +29,7 @@ pub(super) struct LastRun {
 }
 
 impl LastRun {
-    /// What is known of these submissions on this suite.
+    /// Reads the verdicts of these submissions on this suite.
     pub(super) fn open(folder: Option<&Path>, submissions: &[Submission], suite: &str) -> Self {
         let file = folder.map(|folder| Place::new(folder, FILE)).or_else(|| {
             let mut hasher = blake3::Hasher::new();

@@ -109,7 +109,7 @@ impl Pages {
     }
 }
 
-/// What stands above the card of a trace that was judged against a recording.
+/// The sentence above the card of a trace that was judged against a recording.
 const RECORDED: &str = "The verdict compares with the recording, where nearly everything after the first divergence differs. What \
                         follows judges each step from the trace's own state before it: what is wrong by itself, and what only \
                         follows from that.";
@@ -195,7 +195,7 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
     Card::of(&case, depth)
 }
 
-/// What a viewer is to look at closely: what both books found, the official one's first.
+/// The places that a viewer shows closely: the findings of both books, the official one's first.
 pub(super) fn focus(outcome: &Outcome) -> Vec<Focus> {
     let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
     books.flat_map(|book| book.first_divergence.iter().chain(&book.examples)).map(Focus::from).collect()

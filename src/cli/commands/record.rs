@@ -70,7 +70,7 @@ fn scenes(folder: &Path) -> Result<Vec<Input>> {
     files.into_iter().map(read).collect()
 }
 
-/// What was recorded before.
+/// The recordings before this run.
 trait Old {
     fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>>;
     /// The paths of recordings, without their extension.

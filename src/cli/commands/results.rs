@@ -65,7 +65,7 @@ pub(super) struct Results<'a> {
     /// The folder for results, when there is one.
     pub(super) folder: Option<&'a Path>,
     pub(super) pages: Option<&'a Pages>,
-    /// Whom the pages are for.
+    /// The reader of the pages.
     pub(super) reader: Audience,
     /// Whether scenes of the suite were left out on purpose.
     pub(super) is_part: bool,

@@ -25,7 +25,7 @@ const LARGEST: u64 = 4 << 30;
 /// The version of what stands in it.
 const SCHEMA: u32 = 1;
 
-/// What all shards of one grading agree on.
+/// The inputs that all shards of one grading share.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Common {
     schema: u32,
@@ -44,7 +44,7 @@ pub(super) struct Common {
 }
 
 impl Common {
-    /// What two gradings do not agree on, as a sentence.
+    /// The difference of two gradings, as a sentence.
     pub(super) fn difference(&self, other: &Self) -> Option<&'static str> {
         [
             (self.schema == other.schema && self.version == other.version, "the grader's version differs"),
@@ -61,7 +61,7 @@ impl Common {
     }
 }
 
-/// What a shard leaves.
+/// The result of a shard.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Part {
     pub(super) common: Common,

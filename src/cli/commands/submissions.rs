@@ -13,7 +13,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What a folder of results holds, whatever it is called.
+/// Files that mark a folder as one of results, under any name.
 const RESULTS: [&str; 2] = [".lock", "journal.jsonl"];
 
 /// The folders in it.
@@ -25,7 +25,7 @@ const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
 /// A class has no more entries.
 const MOST_ENTRIES: usize = 100_000;
 
-/// What was found.
+/// The submissions of a command line, and entries that are none.
 pub(super) struct Found {
     pub(super) submissions: Vec<Submission>,
     pub(super) passed_over: Vec<PassedOver>,

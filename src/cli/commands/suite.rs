@@ -64,7 +64,7 @@ fn undecided(plan: &plan::Plan) -> Vec<Undecided> {
     all.filter(|(_, found)| !matches!(found, Ok(found) if found.is_empty())).collect()
 }
 
-/// What the scenes contain, measured on all cores. Of a scene that can't be simulated to its end `undecided` tells.
+/// The coverage of the scenes, measured on all cores. `undecided` names a scene that can't be simulated to its end.
 fn coverage(plan: &plan::Plan) -> Coverage {
     let tasks: Vec<_> = plan.scenes().collect();
     let all: Vec<Coverage> = tasks.par_iter().filter_map(|task| Coverage::of(&task.scene).ok()).collect();

@@ -15,7 +15,7 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use std::io::Read;
 
-/// What a trace holds. Exit code 1 when it can't be read to its end.
+/// Prints the contents of a trace. Exit code 1 when it can't be read to its end.
 pub(super) fn info(arguments: &TraceInfo) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;

@@ -19,13 +19,13 @@ pub(in crate::cli) struct TraceInput {
     pub(in crate::cli) length: Option<u64>,
     /// The file, when there is one.
     pub(in crate::cli) identity: Option<Identity>,
-    /// What it looks like, where it begins as no trace does.
+    /// The kind of file that it seems to be, if it can't be a trace.
     pub(in crate::cli) looks_like: Option<&'static str>,
     failure: Failure,
 }
 
 impl TraceInput {
-    /// What the operating system or the decoder said when reading failed: not the fault of who wrote the trace.
+    /// The message of the operating system or the decoder when reading failed: not the fault of the trace's author.
     pub(in crate::cli) fn failure(&self) -> Option<String> {
         self.failure.get()
     }
@@ -102,8 +102,7 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
 /// The number of bytes that show the kind of a file.
 const LOOKED_AT: u64 = 512;
 
-/// What a file looks like that begins with these bytes, where that is no trace: a trace begins with the bits of a
-/// position.
+/// The kind of a file that begins with these bytes, if it can't be a trace: a trace begins with the bits of a position.
 fn looks_like(start: &[u8]) -> Option<&'static str> {
     const MARKS: [(&[u8], &str); 8] = [
         (b"\x7fELF", "looks like a program (ELF)"),

@@ -103,7 +103,7 @@ fn main() -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(accused)))
 }
 
-/// What all traces of a mistake say together.
+/// The explanation that all traces of a mistake give together.
 fn together(rows: &[&student::Row], results: &[Vec<(Outcome, Duration, Vec<Explanation>)>]) {
     let mut confused = Vec::new();
     let wrong = rows.iter().zip(results).filter(|(row, _)| row.kind == RowKind::Wrong);

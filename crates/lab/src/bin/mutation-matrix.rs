@@ -24,7 +24,7 @@ use rayon::prelude::*;
 /// A rule book: what it says of a trace.
 type Rules = fn(&Scene, &[u8]) -> Answer;
 
-/// What a rule book says of a trace.
+/// The answer of a rule book to a trace.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Answer {
     /// It is accepted.
@@ -71,7 +71,7 @@ struct Case {
     correct: Vec<u8>,
 }
 
-/// What came of one sample on one scene.
+/// The result of one sample on one scene.
 #[derive(Clone)]
 enum Cell {
     /// The trace is the correct one.

@@ -162,7 +162,7 @@ fn is_tidy(scene: &Scene) -> bool {
     no_overlaps && off_planes && off_edges
 }
 
-/// What the scenes lack.
+/// The properties that the scenes lack.
 #[derive(Clone, Default)]
 struct Wanted {
     pairings: Vec<Pairing>,
@@ -171,7 +171,7 @@ struct Wanted {
 }
 
 impl Wanted {
-    /// What of this a scene has; without the programs where only `pairings` are asked for.
+    /// The wanted properties that a scene has; without the programs where only `pairings` are asked for.
     fn of(&self, scene: &Scene, programs: &[WrongProgram]) -> Self {
         let pairings = gain(scene, &self.pairings);
         if !is_tidy(scene) || scene.particles.is_empty() || Coverage::of(scene).is_err() {
@@ -194,7 +194,7 @@ const PROGRAM: f64 = 6.0;
 /// others.
 const SHOWN: usize = 500;
 
-/// What a scene has of what is missing.
+/// The missing pairs of properties that a scene has.
 fn gain(scene: &Scene, missing: &[Pairing]) -> Vec<Pairing> {
     if scene.particles.is_empty() || !is_tidy(scene) {
         return Vec::new();

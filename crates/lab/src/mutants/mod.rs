@@ -17,10 +17,10 @@ pub struct Mutant {
     pub area: Area,
     /// The kind of pair that it is made for, as explanations call it; empty where it is made for all.
     pub kind: &'static str,
-    /// What is wrong.
+    /// The mistake, in words.
     pub what: &'static str,
-    /// What an explanation has to say at least in order to be right: one of these words stands in its sentence, its
-    /// key, or its exact form.
+    /// The least that a right explanation has to say: one of these words stands in its sentence, its key, or its exact
+    /// form.
     pub told_by: &'static [&'static str],
     /// The change that makes it.
     pub change: Change,

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// The number of programs with one mistake outside of the catalogue and one of it.
 const PROGRAMS: usize = 14;
 
-/// What is said of a program that makes several mistakes.
+/// The quality of the explanations of a program that makes several mistakes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Said {
     /// All of them, by name or by what is wrong, and nothing else.
@@ -48,7 +48,7 @@ fn programs() -> Vec<Vec<&'static Row>> {
     programs
 }
 
-/// What is said of a program with these mistakes.
+/// The explanations of a program with these mistakes.
 fn said_of(program: &[&Row]) -> (Said, String) {
     let student = program.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
     let mut told = told_of(student);
@@ -160,7 +160,7 @@ fn of_unknown_mistakes_the_place_is_told_and_none_is_taken_for_another() {
     assert!(5 * open.len() <= rated.len() && rated.len() >= 15, "{open:#?}");
 }
 
-/// What is said of a mutant's trace of one probe scene.
+/// The explanation of a mutant's trace of one probe scene.
 fn said_on(id: &str, probe: &str) -> Explanation {
     let mutant = mutants().find(|mutant| mutant.id == id).expect("a mutant");
     let (_, scene) = probe_scenes(Assignment::T2M2).into_iter().find(|(name, _)| name == probe).expect("a probe scene");

@@ -22,10 +22,10 @@ pub fn is_true(scene: &Scene, trace: &[u8], told: &Explanation) -> bool {
     steps.iter().any(|step| says::is_so(scene, step, fault)) && !steps.iter().any(is_denied)
 }
 
-/// Two mistakes together may make a program that goes on for ever: so many polynomials are enough of a step.
+/// The greatest number of polynomials of a step: two mistakes together may make a program that goes on for ever.
 pub const MOST: usize = 20_000;
 
-/// What is false in what is said of this program's trace of a scene, and of what sort what is said is.
+/// The sort of the statement about this program's trace of a scene, with the statement itself if it is false.
 #[must_use]
 pub fn checked(scene: &Scene, student: Student) -> Option<(String, Option<Explanation>)> {
     let trace = student::trace_within(scene, student, MOST).unwrap_or_else(|(bytes, _)| bytes);

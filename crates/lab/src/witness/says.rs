@@ -154,7 +154,7 @@ fn responses(scene: &Scene, step: &Step, kind: Option<PairKind>, wrong: &WrongRe
     })
 }
 
-/// What is said of the impulse rounds.
+/// Whether the statement about the impulse rounds is true.
 fn rounds(scene: &Scene, step: &Step, fault: &StageFault) -> bool {
     let ((ours, behind), (theirs, _)) = (step.right_passes(), step.passes());
     let first = || step.heard.hits.iter().filter(|hit| hit.0 == 0);
@@ -210,7 +210,7 @@ fn rounds(scene: &Scene, step: &Step, fault: &StageFault) -> bool {
     }
 }
 
-/// What is said of what follows a middle that is right.
+/// Whether the statement about the part behind a right middle is true.
 fn behind_middle(scene: &Scene, step: &Step, fault: &StageFault) -> bool {
     let ((_, ours), (middle, theirs)) = (step.right_passes(), step.passes());
     let reaches = |passes: usize| step.right_lists() >= (middle + passes) * step.size();

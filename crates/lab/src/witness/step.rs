@@ -10,7 +10,7 @@ use fosssim_num::vector::{Vec2, at, length};
 /// Numbers this close are the same: between round-off and what a mistake makes.
 const SAME: f64 = 1e-10;
 
-/// What the reference does.
+/// The events of the reference's step.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Heard {
     /// Pass, pair, time, contact vector, index of the first polynomial.

@@ -34,7 +34,7 @@ const ENCODERS: [(&str, &[&str]); 4] = [
 /// A program that takes nothing for so long is ended.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// So much of what it says is kept.
+/// The number of bytes kept of its messages.
 const WORDS: usize = 4096;
 
 /// A film that is being encoded.
@@ -47,7 +47,7 @@ pub(super) struct Ffmpeg {
     output: Option<Output>,
 }
 
-/// What the thread that watches knows.
+/// The state of the thread that watches.
 #[derive(Default)]
 struct Watch {
     pictures: AtomicU64,

@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
     Ok(if stopped.is_empty() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// What is made.
+/// The kind of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
     /// One picture.
@@ -95,7 +95,7 @@ enum Kind {
 }
 
 impl Form {
-    /// What was asked for, by `--format` or by the name of the output.
+    /// The kind of output, by `--format` or by the name of the output.
     fn of(arguments: &Render) -> Result<Self> {
         let output = &arguments.output;
         let by_name = |extension: &str| has_extension(output, extension);

@@ -47,7 +47,7 @@ impl Picks {
 
 /// Positions of all particles at the steps that are drawn.
 pub(super) struct Motion {
-    /// Whose motion it is, for messages.
+    /// The owner of the motion, for messages.
     pub(super) name: String,
     /// How many steps it holds.
     pub(super) pictures: u32,

@@ -14,7 +14,7 @@ use std::{
     },
 };
 
-/// What was compared so far.
+/// Counts of the comparison so far.
 #[derive(Default)]
 struct Compared {
     steps: u64,
