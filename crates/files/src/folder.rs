@@ -215,8 +215,8 @@ impl Folder {
         Replacement::new(self.clone(), single(name)?, mode)
     }
 
-    /// Writes a whole file by rename: it appears with all its bytes or not at all. What has its name is replaced, and no
-    /// link is followed.
+    /// Writes a whole file by rename: it appears with all its bytes or not at all. What has its name is replaced, and
+    /// no link is followed.
     ///
     /// # Errors
     /// When it can't be written.

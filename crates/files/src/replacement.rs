@@ -71,8 +71,8 @@ impl Replacement {
         self.folder.shown().join(&self.name)
     }
 
-    /// Lets the file appear under its name. What has the name already is replaced; a link is, too, and not what it leads
-    /// to.
+    /// Lets the file appear under its name. What has the name already is replaced; a link is, too, and not what it
+    /// leads to.
     ///
     /// # Errors
     /// When it can't be renamed; what had the name is then as it was.

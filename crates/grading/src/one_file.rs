@@ -1,5 +1,5 @@
-//! Whose a file is that has several names. Backups and tools that save room make such files, and nobody loses points for
-//! that; only a submission that was seen to have another's file has none of its own.
+//! Whose a file is that has several names. Backups and tools that save room make such files, and nobody loses points
+//! for that; only a submission that was seen to have another's file has none of its own.
 use fosssim_files::Identity;
 use std::{fs::File, io, os::unix::fs::MetadataExt};
 

@@ -38,8 +38,8 @@ pub(super) fn has_swap() -> bool {
 /// The answer to `sysinfo` as of a machine on which nothing is in use and nobody else runs, in the kernel's form.
 pub(super) fn without_others() -> Vec<u8> {
     let about = asked();
-    // SAFETY: an all-zero structure is valid. It is made of integers only; what may lie between them is zero as well, and
-    // its bytes are read while it lives.
+    // SAFETY: an all-zero structure is valid. It is made of integers only; what may lie between them is zero as well,
+    // and its bytes are read while it lives.
     unsafe {
         let mut told: libc::sysinfo = std::mem::zeroed();
         (told.uptime, told.mem_unit, told.procs) = (about.uptime, about.mem_unit, 1);

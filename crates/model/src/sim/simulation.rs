@@ -116,7 +116,8 @@ impl Simulation {
         self.handler.forgo_lanes();
     }
 
-    /// Lets steps end with [`StepError::Work`] after the detection pass or the iteration that takes [`Simulation::work`] beyond this.
+    /// Lets steps end with [`StepError::Work`] after the detection pass or the iteration that takes
+    /// [`Simulation::work`] beyond this.
     pub fn limit_work(&mut self, most: u64) {
         self.most_work = most;
     }

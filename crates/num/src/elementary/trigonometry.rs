@@ -1,5 +1,5 @@
-//! Sine and cosine by a table of angles in steps of 1/128 and short series in between, as IBM's library does it (Gal and
-//! Bachelis, ACM TOMS 17, 1991). An angle beyond the table's is first brought near zero.
+//! Sine and cosine by a table of angles in steps of 1/128 and short series in between, as IBM's library does it (Gal
+//! and Bachelis, ACM TOMS 17, 1991). An angle beyond the table's is first brought near zero.
 use super::{
     fused,
     reduction::{Reduced, far, near},

@@ -6,7 +6,8 @@ use crate::elementary::{exp, ln};
 /// Newton steps after which the iteration is known to cycle; every other one makes fewer than 500.
 const MAX_NEWTON_STEPS: usize = 1000;
 
-/// The bound for a polynomial of degree `N`; 0 when its constant term is 0. The steps that it takes are added to `steps`.
+/// The bound for a polynomial of degree `N`; 0 when its constant term is 0. The steps that it takes are added to
+/// `steps`.
 ///
 /// # Errors
 /// [`DoesNotTerminate`] when a coefficient is not finite, or when the Newton iteration cycles among subnormals.

@@ -34,8 +34,8 @@ const MACHINE: [&str; 4] = [
 ];
 /// The folder of most of that.
 const PROCESSORS: &str = "/sys/devices/system/cpu";
-/// What runtimes ask about their own process. Left out are its counters (`stat`, `statm`, `status` and others): they tell
-/// which pages of a file were in memory already, because these are mapped together and need no wait.
+/// What runtimes ask about their own process. Left out are its counters (`stat`, `statm`, `status` and others): they
+/// tell which pages of a file were in memory already, because these are mapped together and need no wait.
 const OWN_FILES: [&CStr; 6] = [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps"];
 /// Folders there that it may list: the threads' own numbers, which some runtimes count, and its descriptors.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];

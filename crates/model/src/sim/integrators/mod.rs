@@ -12,8 +12,8 @@ use super::{bodies::Bodies, forces::Forces, matrix::Matrix, state::State};
 use crate::scene::{Integrator, Scene};
 use fosssim_num::linear::Workspace;
 
-/// The update's norm stays above the bound after too many iterations, or the iterates repeat; or the work that is allowed
-/// is used up.
+/// The update's norm stays above the bound after too many iterations, or the iterates repeat; or the work that is
+/// allowed is used up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct DoesNotConverge;
 
@@ -29,8 +29,8 @@ pub(super) struct Stepper {
     effort: Effort,
 }
 
-/// The work of Newton's method over all steps, in the unit of [`SearchCounts::work`](super::search::SearchCounts::work).
-/// Methods that do the same in every step count nothing.
+/// The work of Newton's method over all steps, in the unit of
+/// [`SearchCounts::work`](super::search::SearchCounts::work). Methods that do the same in every step count nothing.
 #[derive(Debug, Clone, Copy)]
 struct Effort {
     done: u64,
