@@ -19,9 +19,9 @@ pub struct Judged<'a> {
     pub task: &'a SceneTask,
     /// The result, cut to what the hints let through.
     pub result: &'a SceneResult,
-    /// What judging yielded; it tells more than hints may let through.
+    /// The outcome of judging; it tells more than hints may let through.
     pub outcome: &'a Outcome,
-    /// What the rule books say of each step.
+    /// The ruling of the rule books on each step.
     pub rulings: &'a [StepRuling],
     /// The trace, or its beginning.
     pub trace: &'a [u8],

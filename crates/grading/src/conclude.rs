@@ -15,17 +15,17 @@ use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::{scene::Scene, trace::Layout};
 use fosssim_sandbox::{self as sandbox, Ended, Stream};
 
-/// What a report keeps of each of the program's streams.
+/// The bytes that a report keeps of each of the program's streams.
 const KEPT_OUTPUT: usize = 4096;
 
-/// What is known of one run.
+/// The facts about one run.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// How the program ended.
     pub program: &'a sandbox::RunOutcome,
-    /// What its trace holds.
+    /// The judged trace.
     pub judged: &'a Outcome,
     /// Bytes of the trace that arrived.
     pub trace_bytes: u64,
@@ -39,7 +39,7 @@ pub struct Run<'a> {
     pub limits: &'a RunLimits,
 }
 
-/// What is looked for in a wrong trace.
+/// The depth of the search for explanations of a wrong trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
     /// Only where numbers end, which is quick.
@@ -100,8 +100,8 @@ pub fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     (layout.polynomials && layout.steps > 0 && has_pairs).then(|| layout.records() * record)
 }
 
-/// What the program's end alone says. Bytes behind the last record mean the same however many they are: a program that
-/// is stopped because of them ended when the judge had what it came for.
+/// The verdict by the program's end alone. Bytes behind the last record mean the same however many they are: a program
+/// that is stopped because of them ended when the judge had all records.
 fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {
@@ -128,7 +128,7 @@ fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
     Reached { limit, steps: judged.steps_judged }
 }
 
-/// What the trace alone says.
+/// The verdict by the trace alone.
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
     // States that nothing keeps apart may lead nowhere: the trace is complete all the same.

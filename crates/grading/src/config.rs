@@ -47,7 +47,7 @@ pub struct Group {
     pub points: f64,
     /// How partial success counts.
     pub credit: Credit,
-    /// Who sees it.
+    /// The readers who see it.
     pub visibility: Visibility,
 }
 
@@ -58,7 +58,7 @@ pub struct Marking {
     pub points: f64,
     /// How partial success counts.
     pub credit: Credit,
-    /// Who sees it.
+    /// The readers who see it.
     pub visibility: Visibility,
 }
 
@@ -123,7 +123,7 @@ pub enum Credit {
     All,
 }
 
-/// Who sees a group's results, in Gradescope's words.
+/// The visibility of a group's results, in Gradescope's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
@@ -174,7 +174,7 @@ impl std::fmt::Display for Position {
     }
 }
 
-/// What is wrong with a suite file.
+/// A fault of a suite file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}", problems.iter().map(|(at, text)| format!("{at}: {text}")).collect::<Vec<_>>().join("\n"))]
 pub struct SuiteError {

@@ -36,8 +36,8 @@ const TRACE_FILE: &str = "trace.bin";
 /// A fault of ours or of the machine is tried so often before it is reported.
 const ATTEMPTS: u32 = 2;
 
-/// So much of a trace is kept in memory while it is judged, in bytes, where it differs from the reference's: should it
-/// be wrong, it is explained, and should the grader fail on it, it is put aside. The course's largest trace has 18 MB.
+/// The greatest number of bytes kept in memory of a trace that differs from the reference's. A wrong trace is explained
+/// from them; if the grader fails, they are put aside. The course's largest trace has 18 MB.
 const KEPT_TRACE: usize = 24 << 20;
 
 /// How scenes are run.

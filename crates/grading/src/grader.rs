@@ -31,7 +31,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// What is graded.
+/// A submission to grade.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Submission {
     /// Its name in reports.
@@ -69,7 +69,7 @@ pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> Place + Sync + 'a;
 /// Everything that the submissions of one grading have in common.
 #[derive(Clone, Copy)]
 pub struct Grader<'a> {
-    /// What to run.
+    /// The plan: scenes, limits and rules.
     pub plan: &'a Plan,
     /// Where to run it.
     pub backend: &'a Backend,
@@ -105,18 +105,18 @@ impl Grader<'_> {
     }
 }
 
-/// What the submissions of one grading share while they are graded.
+/// The values that the submissions of one grading share.
 pub(super) struct Shared<'a> {
     cancellation: &'a Cancellation,
     results: Option<&'a dyn Results>,
     folders: Folders,
-    /// What keys hold besides program and scene.
+    /// The parts of keys besides program and scene.
     words: Vec<String>,
     /// Kept by this very grading: equal programs of two submissions are both run, whatever the number of jobs.
     kept: Mutex<BTreeSet<Key>>,
     /// Why results can't be kept any more.
     full: OnceLock<KeepError>,
-    /// What the plan's scenes contain, once somebody has asked.
+    /// The contents of the plan's scenes, once somebody has asked.
     contents: OnceLock<Vec<Contents>>,
 }
 
@@ -126,7 +126,7 @@ impl<'a> Shared<'a> {
         Self { cancellation, results, folders, words: grader.words(), kept, full, contents }
     }
 
-    /// What the reference's run of each scene contains. A scene without an end contains nothing that is known.
+    /// The contents of the reference's run of each scene. A scene without an end has none.
     pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
         let of = |task: &SceneTask| Coverage::of(&task.scene).map(|seen| Content::of(&seen)).unwrap_or_default();
         self.contents.get_or_init(|| plan.scenes().map(of).collect())
@@ -187,7 +187,7 @@ impl Done {
     }
 }
 
-/// What is told of a scene at work.
+/// The progress of a scene.
 pub(super) enum Progress {
     /// It begins.
     Begins,
@@ -207,7 +207,7 @@ pub(super) struct Grading<'a> {
     known: Mutex<Known>,
 }
 
-/// What is known of a submission's scenes.
+/// The results of a submission's scenes so far.
 struct Known {
     /// Verdict of every scene that is done, and how long its run and judging it took.
     done: Vec<Option<(Verdict, Duration)>>,

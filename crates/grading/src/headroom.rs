@@ -38,7 +38,7 @@ pub struct FirstFailure {
 /// correct programs differ by more.
 pub const FAIR_ROOM: f64 = 2.0;
 
-/// What is known of one scene.
+/// The headroom of one scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Headroom {
     /// The largest modulus of a coefficient at the scene's own size; `None` where its traces hold no polynomials: an

@@ -6,7 +6,7 @@ use std::{
     sync::OnceLock,
 };
 
-/// What a result depends on, digested.
+/// A digest of everything that a result depends on.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Key(String);
 

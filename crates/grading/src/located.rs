@@ -18,7 +18,7 @@ pub struct Content {
     pub value: Option<(usize, usize)>,
 }
 
-/// What scenes contain: their spectrum.
+/// The contents of scenes: their spectrum.
 pub type Contents = BTreeSet<Content>;
 
 /// How programs fail.
@@ -38,12 +38,12 @@ pub enum Failing {
     Several,
 }
 
-/// What the scenes have in common in which a program fails.
+/// The contents that the failing scenes have in common.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Located {
     /// How it fails.
     pub failing: Failing,
-    /// What all these scenes contain, the most general first; the scenes can't tell these apart.
+    /// The contents of all these scenes, the most general first; the scenes can't tell them apart.
     pub contents: Vec<Content>,
     /// In so many scenes it fails; all of them contain it.
     pub failed: usize,
@@ -66,7 +66,7 @@ pub struct Tried<'a> {
     pub failing: Option<Failing>,
     /// Steps whose records were complete.
     pub steps: u32,
-    /// What the scene contains.
+    /// The contents of the scene.
     pub contents: &'a Contents,
 }
 
@@ -98,8 +98,8 @@ impl Content {
         values.chain(kinds).collect()
     }
 
-    /// What lies later in a step is the narrower place: zones, then contacts, then the step as a whole; what does not
-    /// happen comes last.
+    /// The rank of a content: a later place in a step is narrower (zones, then contacts, then the step as a whole), and
+    /// absent events come last.
     const fn rank(self) -> (bool, usize) {
         let place = match self.family {
             4 => 0,
@@ -111,7 +111,7 @@ impl Content {
     }
 }
 
-/// What the scenes have in common in which a program fails; nothing where the evidence is weak.
+/// The contents that the failing scenes have in common; nothing where the evidence is weak.
 #[must_use]
 pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
     let failed: Vec<&Tried<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();

@@ -14,21 +14,21 @@ pub struct OneFile {
     pub is_anothers: bool,
 }
 
-/// What is said of two submissions of which nobody can tell whose the file is. It names nobody: students read it, too.
+/// The message for two submissions with one file whose owner nobody can tell. It names nobody: students read it, too.
 pub(super) const SHARED: &str =
     "the program is one file with another submission's (a hard link); the machine can't tell whose it is";
 
-/// What is said of a program that is another submission's.
+/// The message for a program that is another submission's.
 pub(super) const ANOTHERS: &str = "it is another submission's file under a second name (a hard link)";
 
-/// Whose an open file is.
+/// The owner of an open file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Whose {
     Own,
     Anothers,
 }
 
-/// Whose an open file is, after what was noted when submissions were looked for.
+/// The owner of an open file, by the notes from the search for submissions.
 pub(super) fn whose(file: &File, noted: Option<&OneFile>) -> io::Result<Whose> {
     let metadata = file.metadata()?;
     match noted {

@@ -109,7 +109,7 @@ pub enum FindError {
     /// No such suite.
     #[error("no suite {name}: it is neither a file nor one of {}", built_in_names().collect::<Vec<_>>().join(", "))]
     Unknown {
-        /// What was asked for.
+        /// The name that was asked for.
         name: String,
         /// Why it is no file.
         #[source]
@@ -129,7 +129,7 @@ pub enum FindError {
     Unsound {
         /// The file.
         name: String,
-        /// What is wrong with it.
+        /// The fault of it.
         error: SuiteError,
     },
 }
@@ -250,7 +250,7 @@ fn embedded(pattern: &str) -> Result<Found, String> {
     Ok(found)
 }
 
-/// What a suite's files may still take.
+/// The room that is left for a suite's files.
 struct Room {
     scenes: usize,
     bytes: u64,

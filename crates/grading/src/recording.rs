@@ -72,7 +72,7 @@ impl Recording {
         format!("{} {} steps {} bytes sha256 {}\n", self.name, self.steps, self.trace.len(), self.sha256)
     }
 
-    /// What differs from the recorded files, as a text for people; `None` when everything is the same.
+    /// The difference from the recorded files, as a text for people; `None` when everything is the same.
     #[must_use]
     pub fn difference(&self, packed: Option<&[u8]>, steps: Option<&[u8]>) -> Option<String> {
         let Some(packed) = packed else { return Some(format!("{}: there is no recording\n", self.name)) };

@@ -41,7 +41,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
     }
 }
 
-/// What one of so many scenes of a group is worth.
+/// The worth of one scene in a group of this number of scenes.
 #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
 fn worth(points: f64, scenes: usize) -> f64 {
     if scenes == 0 { 0.0 } else { points / scenes as f64 }
@@ -70,8 +70,8 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
     })
 }
 
-/// What a grade says that its own verdicts deny: points, or a verdict, that do not follow from those of its scenes. A
-/// grade that comes from elsewhere is asked before its points are believed.
+/// A contradiction in a grade: points, or a verdict, that do not follow from the verdicts of its scenes. A grade from
+/// elsewhere is checked before its points are believed.
 #[must_use]
 pub fn contradiction(grade: &Grade) -> Option<&'static str> {
     let max_points: f64 = grade.groups.iter().map(|group| group.max_points).sum();
@@ -178,8 +178,8 @@ impl Grading<'_> {
 }
 
 impl Grade {
-    /// What the scenes have in common in which the program fails. `contents` are those of all scenes in their order,
-    /// asked for only where some fail and some do not.
+    /// The contents that the failing scenes have in common. `contents` are those of all scenes in their order, computed
+    /// only where some fail and some do not.
     fn locate<'a>(&self, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
         let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
         let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));

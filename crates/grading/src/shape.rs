@@ -11,7 +11,7 @@ use toml::{
 /// A problem and where it is, in bytes.
 pub(super) type Problem = (Range<usize>, String);
 
-/// What a key takes.
+/// The type of a key's value.
 enum Kind {
     Text,
     Texts,
@@ -167,7 +167,7 @@ fn article(kind: &str) -> String {
     format!("{} {kind}", if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
-/// What to say of a word that is none of these.
+/// The message for a word that is none of these.
 fn not_among(name: &str, word: &str, words: &[&str]) -> String {
     let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
     format!("{name} \"{word}\" is not known: there are {}{}", listed(words, "and"), hint.unwrap_or_default())
@@ -182,7 +182,7 @@ fn listed(words: &[&str], last: &str) -> String {
     }
 }
 
-/// What to say of a key that does not belong here.
+/// The message for a key that does not belong here.
 fn unknown(key: &str, keys: &[Key], place: &str) -> String {
     let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
     let here = keys.iter().map(|Key(name, ..)| *name);

@@ -29,10 +29,10 @@ use std::{
 /// A submission's folder may hold so many bytes and files, nested so deep; more is no homework.
 const LARGEST_FOLDER: u64 = 1 << 30;
 const MOST_FILES: u64 = 20_000;
-/// What a build may have in its folder, sources included.
+/// The greatest size of a build's folder, sources included.
 const LARGEST_BUILD: u64 = 2 << 30;
 const DEEPEST: u32 = 64;
-/// What a report keeps of the compiler's output.
+/// The bytes that a report keeps of the compiler's output.
 const KEPT_OUTPUT: usize = 64 << 10;
 /// Bytes that are copied at one go.
 const AT_ONE_GO: usize = 1 << 16;
@@ -95,7 +95,7 @@ impl From<StagingError> for CopyError {
     }
 }
 
-/// What a failure to open or read part of a submission means: closed or vanished files are the submission's doing.
+/// The meaning of a failure to open or read part of a submission: closed or vanished files are the submission's doing.
 fn unreadable(name: &Path, error: io::Error) -> CopyError {
     // A path may be as long as the submission likes, and a disk that fails is the machine's.
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);

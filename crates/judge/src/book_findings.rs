@@ -1,7 +1,7 @@
 //! What one rule book has found in a trace: the same of both.
 use super::{counts::FindingCounts, finding::Finding};
 
-/// What one book has found.
+/// The findings of one book.
 #[derive(Debug, Clone, Default)]
 pub struct BookFindings {
     /// Counts per kind of finding.

@@ -10,7 +10,7 @@ use fosssim_model::{
     sim::{Observer, RootSearch, Simulation, StepError, pairs},
 };
 
-/// What every trace may ask for, however simple its scene is: about a tenth of a second's work.
+/// The work that every trace may ask for, however simple its scene is: about a tenth of a second's.
 pub(crate) const FLOOR: u64 = 1_000_000;
 
 /// Beyond that, so many times the scene's own run by the original's rules ...
@@ -18,13 +18,13 @@ const PARITY: u64 = 10;
 /// ... and where the fair rules may repeat steps: at most 26 times, of which the trace of a wrong program needs 11.
 const FAIR: u64 = 40;
 
-/// What is left for one trace.
+/// The work that is left for one trace.
 #[derive(Debug)]
 pub struct Budget<'a> {
     scene: &'a Scene,
     factor: u64,
     rest: u64,
-    /// What was allowed for the scene without knowing its own run.
+    /// The work that was allowed for the scene without knowing its own run.
     at_least: u64,
     is_wide: bool,
 }
@@ -44,7 +44,7 @@ impl<'a> Budget<'a> {
         Self { rest: floor, at_least: 0, ..self }
     }
 
-    /// What is left.
+    /// The work that is left.
     #[must_use]
     pub fn rest(&self) -> u64 {
         self.rest
@@ -86,8 +86,8 @@ impl<'a> Budget<'a> {
     }
 }
 
-/// What the scene's own run costs at least: a detection pass for each step, if there are any. Nearly all traces stay
-/// below the multiple of this that they may take, and the scene need not be run.
+/// The least work of the scene's own run: a detection pass for each step, if there are any. Nearly all traces stay
+/// below the allowed multiple of this, and the scene need not be run.
 fn least(scene: &Scene) -> u64 {
     match scene.collision {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => {
@@ -97,7 +97,7 @@ fn least(scene: &Scene) -> u64 {
     }
 }
 
-/// What the scene's own run costs.
+/// The work of the scene's own run.
 fn of_scene(scene: &Scene) -> u64 {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     for _ in 0..scene.steps() {

@@ -7,7 +7,7 @@
 /// Coefficients agree up to this share of themselves.
 const ALIKE: f64 = 1e-9;
 
-/// What cancels is known to this share of the sum of moduli only.
+/// The share of the sum of moduli to which a value is known if its terms cancel.
 const FLOOR: f64 = 1e-13;
 
 /// The positive factor of the trace's polynomial on which most coefficients agree; 1 where none is better than that.

@@ -118,7 +118,7 @@ pub struct Finding {
     pub step: u32,
     /// The frame of the trace that holds what was compared, from 0 (the initial record).
     pub frame: u64,
-    /// What is wrong.
+    /// The fault, with its values.
     pub detail: FindingDetail,
 }
 
@@ -147,7 +147,7 @@ impl Finding {
     }
 }
 
-/// What is wrong, with expected (reference) and actual (trace) values.
+/// A fault, with expected (reference) and actual (trace) values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FindingDetail {
     /// The reference collides here, the trace does not.
@@ -219,7 +219,7 @@ pub enum FindingDetail {
         actual: f64,
         /// Their distance.
         residual: f64,
-        /// What the original compares; `None` from the fair rules.
+        /// The values that the original compares; `None` from the fair rules.
         rescaled: Option<Rescaled>,
         /// The reference's whole polynomial, not rescaled.
         expected_polynomial: Polynomial,
@@ -326,13 +326,13 @@ pub struct Rescaled {
 /// A part of a step's collision handling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// What comes before the mid record: the only pass, or the impulse rounds.
+    /// The part before the mid record: the only pass, or the impulse rounds.
     Impulses,
     /// Impact zones and the rigid failsafe.
     Geometric,
 }
 
-/// What two records of a step may contradict each other in.
+/// The part in which two records of a step contradict each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RecordPart {
     /// Positions or velocities.
@@ -350,13 +350,13 @@ pub struct PolynomialPlace {
     pub pass: Pass,
     /// The pair.
     pub pair: Pair,
-    /// What the polynomial says.
+    /// The role of the polynomial.
     pub role: Role,
     /// Its number in the frame's list, from 0.
     pub index: usize,
 }
 
-/// What a detection polynomial says when it is positive (collisions.md 2).
+/// The meaning of a detection polynomial that is positive (collisions.md 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// The objects overlap (the distance is below the sum of radii).

@@ -20,7 +20,7 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-/// So much of a trace's beginning may be kept as a whole, in bytes.
+/// The greatest length of a trace's beginning that may be kept as a whole, in bytes.
 pub const LONGEST: u64 = 64 << 20;
 
 /// Memory for wrong steps beyond the beginning, in bytes.
@@ -71,7 +71,7 @@ impl<'a> Keeper<'a> {
         }
     }
 
-    /// What was kept.
+    /// The kept trace.
     #[must_use]
     pub fn into_kept(self) -> KeptTrace<'a> {
         KeptTrace { scene: self.scene, store: self.store.into_inner().unwrap_or_else(PoisonError::into_inner) }
@@ -137,7 +137,7 @@ impl Progress for Heard<'_, '_> {
     }
 }
 
-/// What is kept, and what has been read beyond the steps that are judged.
+/// The kept steps, and the bytes behind the steps that are judged.
 #[derive(Debug)]
 struct Store {
     layout: Layout,
@@ -314,13 +314,13 @@ impl Store {
         State { positions, velocities: numbers.collect() }
     }
 
-    /// What was read behind the pieces.
+    /// The bytes behind the pieces.
     fn rest(&self) -> &[u8] {
         if self.is_closed { &[] } else { self.read(self.covered, self.end()) }
     }
 }
 
-/// What was kept of a trace.
+/// The parts of a trace that were kept.
 #[derive(Debug)]
 pub struct KeptTrace<'a> {
     scene: &'a Scene,
@@ -368,9 +368,9 @@ impl KeptTrace<'_> {
 pub struct Beginning<'a> {
     scene: &'a Scene,
     pieces: std::slice::Iter<'a, Piece>,
-    /// What comes behind the pieces.
+    /// The bytes behind the pieces.
     rest: Option<&'a [u8]>,
-    /// What is left of the piece that is being read.
+    /// The rest of the piece that is being read.
     bytes: &'a [u8],
     run: Option<Run>,
     /// A step of the run, and how much of it has been read.

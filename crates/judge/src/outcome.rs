@@ -17,7 +17,7 @@ pub enum Stop {
         frame: u64,
         /// The step it belongs to; 0 for the initial record.
         step: u32,
-        /// What could not be read.
+        /// The reason why it could not be read.
         cause: Unreadable,
         /// Byte offset of the damage.
         offset: u64,
@@ -45,9 +45,9 @@ pub struct Damage {
 /// Everything that judging one trace yields.
 #[derive(Debug)]
 pub struct Outcome {
-    /// What the original's rules say.
+    /// The judgement by the original's rules.
     pub parity: parity::Judgement,
-    /// What the fair rules say, if they were asked.
+    /// The judgement by the fair rules, if they were asked.
     pub fair: Option<Box<fair::Judgement>>,
     /// Steps that were judged.
     pub steps_judged: u32,

@@ -50,7 +50,7 @@ pub struct Judgement {
     pub residuals: Residuals,
     /// Whether collisions passed; polynomials count as collisions. `None` without a verdict.
     pub collisions_passed: Option<bool>,
-    /// What was found.
+    /// The findings.
     pub findings: BookFindings,
 }
 

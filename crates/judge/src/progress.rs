@@ -30,7 +30,7 @@ pub struct StepPlace {
     pub begin: u64,
     /// The last of its records.
     pub last: u64,
-    /// What follows it.
+    /// The offset behind it.
     pub end: u64,
     /// Whether its records were compared as bytes and are the reference's.
     pub is_own: bool,
@@ -41,14 +41,14 @@ pub struct StepPlace {
 pub struct WrongStep<'a> {
     /// The step, from 1.
     pub step: u32,
-    /// What the original's rules have found.
+    /// The findings by the original's rules.
     pub parity: StepFindings<'a>,
-    /// What the fair rules have found; empty when they were not asked. What only the whole trace tells, such as mixed
-    /// forms, is not among it.
+    /// The findings by the fair rules; empty when they were not asked. Findings that only the whole trace shows, such
+    /// as mixed forms, are not among them.
     pub fair: StepFindings<'a>,
 }
 
-/// What one book has found in one step.
+/// The findings of one book in one step.
 #[derive(Debug, Clone, Copy)]
 pub struct StepFindings<'a> {
     /// The first finding of each kind, in the order in which they were made.
@@ -59,7 +59,7 @@ pub struct StepFindings<'a> {
 
 impl Progress for () {}
 
-/// What the original prints about a step, in its order.
+/// A line that the original prints about a step; in its order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Remark {
     /// A collision that the trace lacks.

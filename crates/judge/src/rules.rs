@@ -126,7 +126,7 @@ impl Outcome {
         right.saturating_sub(self.damaged_steps).min(self.steps.saturating_sub(1))
     }
 
-    /// What a book has found; by the fair one what the original has, if the fair one was not asked.
+    /// The findings of a book; by the fair one the original's, if the fair one was not asked.
     #[must_use]
     pub fn findings_by(&self, book: Book) -> &BookFindings {
         match (book, &self.fair) {

@@ -59,7 +59,7 @@ pub(crate) fn changed(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Ve
     written(scene, &frames)
 }
 
-/// What both books say.
+/// The outcome by both books.
 pub(crate) fn judged(scene: &Scene, trace: &[u8]) -> Outcome {
     let options = Options { fair: true, threads: 1, ..Options::default() };
     replay::judge(scene, trace, &options, &mut ())

@@ -23,7 +23,7 @@ fosssim_model::drops_leading!();
 /// One polynomial of a detection call, and where it is positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// What it says when it is positive.
+    /// Its meaning when it is positive.
     pub role: Role,
     /// Its coefficients, highest power first, nothing dropped.
     pub untrimmed: Polynomial,
@@ -68,7 +68,7 @@ pub struct NoAnswer {
     pub coefficients: Polynomial,
 }
 
-/// What a list of polynomials decides.
+/// The decision of a list of polynomials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     /// Where all are positive, over all times; sorted and apart. A set may be a single time.
@@ -122,7 +122,7 @@ const SETS: usize = 32;
 pub struct RightApproach {
     /// The polynomial; it differs from the course's in t^3 only.
     pub curve: Curve,
-    /// What follows from it and the other three.
+    /// The decision of it and the other three.
     pub answer: Answer,
 }
 
@@ -133,7 +133,7 @@ pub struct Study {
     pub motion: PairMotion,
     /// Its polynomials in the order of the trace.
     pub curves: Vec<Curve>,
-    /// What the reference decides.
+    /// The reference's decision.
     pub answer: Answer,
     /// Whether the pair collides whatever rounding does to a correct program; `None` where round-off may flip it.
     pub certain: Option<bool>,

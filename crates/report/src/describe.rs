@@ -2,7 +2,7 @@
 use fosssim_judge::PairWords;
 use fosssim_model::sim::StepError;
 
-/// What is said when judging a trace would take too long.
+/// The message when judging a trace would take too long.
 const BEYOND_BUDGET: &str = "up to here, judging took many times the work of the scene's own run, which is as much as a \
                              trace may ask for";
 

@@ -33,14 +33,14 @@ pub struct Place<'a> {
     pub pass: Option<Pass>,
     /// How many passes the reference makes in this step.
     pub passes: usize,
-    /// What the trace logged for this call.
+    /// The trace's log of this call.
     pub logged: &'a Logged,
 }
 
 /// A detection call to be shown.
 #[derive(Debug, Clone, Copy)]
 pub struct Detect<'a> {
-    /// What was found.
+    /// The computation.
     pub study: &'a Study,
     /// Where the pair comes from; `None` when its numbers were typed.
     pub place: Option<Place<'a>>,
@@ -217,7 +217,7 @@ fn beside(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     text
 }
 
-/// What the right approach polynomial changes.
+/// The difference that the right approach polynomial makes.
 fn with_right(course: &Answer, right: &Answer) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {

@@ -11,7 +11,7 @@ use fosssim_model::{
 };
 use serde_json::json;
 
-/// What a simulation did.
+/// The results of a simulation.
 #[derive(Debug, Clone, Copy)]
 pub struct SimulationSummary<'a> {
     /// The scene as typed.
@@ -20,7 +20,7 @@ pub struct SimulationSummary<'a> {
     pub output: Option<&'a str>,
     /// Steps of the scene.
     pub steps: u32,
-    /// What happened in the steps.
+    /// The events of the steps.
     pub counts: EventCounts,
     /// Size of the trace.
     pub written: Written,

@@ -10,7 +10,7 @@ pub enum Style {
     Colour,
 }
 
-/// What a piece of text is to look like.
+/// The look of a piece of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
     /// A verdict or value that is right.

@@ -21,10 +21,10 @@ pub type Undecided = (String, Result<Vec<Borderline>, StepError>);
 /// The greatest number of decisions listed of a scene.
 const LISTED: usize = 3;
 
-/// What the scenes of a suite contain, and whether what is missing is listed.
+/// The contents of a suite's scenes, with or without a list of the missing ones.
 #[derive(Debug)]
 pub struct Contents {
-    /// What is measured.
+    /// The measured coverage.
     pub coverage: Coverage,
     /// Whether each missing pair of properties has a line.
     pub lists_missing: bool,
@@ -97,7 +97,7 @@ pub fn counted_points(value: f64) -> String {
     format!("{words} point{plural}")
 }
 
-/// What the choice of rule books means.
+/// The meaning of the choice of rule books.
 const fn rules(rules: Rules) -> &'static str {
     match rules {
         Rules::Parity => "parity: the original's verdict counts, the fair rules are not asked",
@@ -106,7 +106,7 @@ const fn rules(rules: Rules) -> &'static str {
     }
 }
 
-/// What partial success counts.
+/// The meaning of partial credit.
 const fn credit(credit: Credit) -> &'static str {
     match credit {
         Credit::Scenes => "credit per scene",
@@ -181,7 +181,7 @@ fn of_contents(contents: &Contents, style: Style) -> String {
     text
 }
 
-/// What is no error, but worth knowing before a class is graded.
+/// A note that is no error, but worth knowing before a class is graded.
 fn note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
     let (note, scene) = (style.paint(Look::Notice, "note"), one_line(scene));
     let found = match found {

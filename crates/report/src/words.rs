@@ -49,7 +49,7 @@ pub(crate) fn ending(result: &SceneResult) -> String {
     format!("the program {ended}{limit}")
 }
 
-/// What else is to be said of a scene, line by line: the first divergence, counts, damage, where a trace is kept.
+/// Further lines about a scene: the first divergence, counts, damage, where a trace is kept.
 #[must_use]
 pub fn details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
@@ -83,7 +83,7 @@ pub fn details(result: &SceneResult) -> Vec<String> {
     lines
 }
 
-/// What is wrong with the submission itself, and so with each of its scenes.
+/// The fault of the submission itself, and so of each of its scenes.
 #[must_use]
 pub fn unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
@@ -93,7 +93,8 @@ pub fn unfit(grade: &Grade) -> Option<String> {
     })
 }
 
-/// What is said of a submission that logs nothing in any scene: what is not written yet, as far as that may be told.
+/// The text for a submission that logs nothing in any scene: the parts that are not written yet, as far as that may be
+/// told.
 fn unwritten(grade: &Grade) -> String {
     let scenes = counted(grade.scenes().count() as u64, "scene");
     let missing = match grade.likely_mistakes().first() {

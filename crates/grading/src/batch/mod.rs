@@ -17,7 +17,7 @@ use std::sync::{
     mpsc,
 };
 
-/// What happens during a grading.
+/// An event of a grading.
 #[derive(Debug)]
 pub enum Event<'a> {
     /// A scene begins to run.
@@ -56,16 +56,16 @@ pub enum Event<'a> {
     },
 }
 
-/// What a grading ended with.
+/// The result of a grading.
 #[derive(Debug)]
 pub struct Graded {
     /// The grades, in the order of the submissions.
     pub grades: Vec<Grade>,
-    /// What went wrong besides.
+    /// A fault beside the grades.
     pub fault: Option<GradeFault>,
 }
 
-/// What can go wrong beside the scenes' own results; always ours or the machine's.
+/// A fault beside the scenes' own results; always ours or the machine's.
 #[derive(Debug, thiserror::Error)]
 pub enum GradeFault {
     /// Results could no longer be kept, for example because the disk is full: grading was stopped then.
@@ -76,7 +76,7 @@ pub enum GradeFault {
     Telling(Fault),
 }
 
-/// What a job sends of a submission's scene.
+/// A message of a job about a submission's scene.
 enum Message {
     Progress(Progress),
     /// The result, and whether it was taken from an earlier run.

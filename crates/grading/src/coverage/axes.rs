@@ -3,7 +3,7 @@
 /// A property: its name, and what it may be.
 #[derive(Debug, Clone, Copy)]
 pub struct Axis {
-    /// What is told apart.
+    /// The name of the property.
     pub name: &'static str,
     /// The values, in words.
     pub values: &'static [&'static str],

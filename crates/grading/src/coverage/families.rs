@@ -9,7 +9,7 @@ use super::axes::{
 /// A kind of event with its properties. Scenes have to contain every pair of values of two of them.
 #[derive(Debug)]
 pub struct Family {
-    /// What happens.
+    /// The name of the event.
     pub name: &'static str,
     /// Its properties.
     pub axes: &'static [Axis],

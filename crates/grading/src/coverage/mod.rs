@@ -66,14 +66,14 @@ impl Pairing {
     }
 }
 
-/// What some scenes contain.
+/// The events of some scenes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Coverage {
     seen: BTreeSet<Pairing>,
 }
 
 impl Coverage {
-    /// What one scene contains; nothing where its collisions are not those of the assignment whose steps are looked at.
+    /// The events of one scene; none where its collisions are not those of the assignment.
     ///
     /// # Errors
     /// When it can't be simulated to its end.
@@ -106,7 +106,7 @@ impl Coverage {
         self.seen.contains(&pairing)
     }
 
-    /// What it contains by single values: the kind of event, a property, and its value.
+    /// The contents by single values: the kind of event, a property, and its value.
     pub fn values(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let values = self
             .seen

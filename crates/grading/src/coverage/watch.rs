@@ -28,7 +28,7 @@ pub(super) struct Watch<'a> {
     q_start: Vec<f64>,
     q_end: Vec<f64>,
     contacts: Vec<(Vec<usize>, Contact)>,
-    /// What the impulse rounds of the step, or its only pass, have found, pass by pass.
+    /// The number of hits in each pass: of the impulse rounds, or of the step's only pass.
     hits: Vec<usize>,
     /// All contacts of the step's passes for zones.
     zone_contacts: BTreeSet<Pair>,

@@ -7,7 +7,7 @@ use fosssim_model::{
 };
 use fosssim_num::vector::at;
 
-/// What all steps share.
+/// The values that all steps share.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context<'a> {
     /// The scene.

@@ -6,7 +6,7 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// What the sizes of states lie between.
+/// The smallest and the largest size of states.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Range {
     /// The largest position.
@@ -18,7 +18,7 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// What the scene's start tells.
+    /// The range of the scene's start.
     pub(super) fn of(scene: &Scene) -> Self {
         let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);
         let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| extent(half_plane.point)));
@@ -30,12 +30,12 @@ impl Range {
     }
 }
 
-/// What a step's states are compared with at once; most need nothing else.
+/// The range with which a step's states are compared first; most need no other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ordinary(Range);
 
 impl Ordinary {
-    /// What the scene's start leads one to expect.
+    /// The range to expect from the scene's start.
     pub fn of(scene: &Scene) -> Self {
         Self(Range::of(scene))
     }

@@ -69,7 +69,7 @@ impl Deviation {
     }
 }
 
-/// What one repetition yields.
+/// The result of one repetition.
 struct Run {
     passes: Vec<Vec<f64>>,
     mid: Deviation,

@@ -9,7 +9,7 @@ pub(super) struct Deviation {
     pub velocities: Vec<f64>,
 }
 
-/// What is known of a step's sensitivity.
+/// The sensitivity of a step, as far as it was measured.
 #[derive(Debug, Clone)]
 pub(super) struct Sensitivity {
     /// For each detection pass the deviation of the positions that it sees, 2N each.

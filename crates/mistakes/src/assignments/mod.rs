@@ -5,8 +5,8 @@ pub mod t2m2;
 use fosssim_model::{assignments::Assignment, scene::Scene};
 use t2m2::{Row, probes};
 
-/// What programs of an assignment do differently. Programs of the earlier milestones are parts of the later ones', and
-/// so are their mistakes.
+/// The mistakes and variants of an assignment's programs. Programs of the earlier milestones are parts of the later
+/// ones', and so are their mistakes.
 #[must_use]
 pub const fn catalogue(assignment: Assignment) -> &'static [Row] {
     match assignment {

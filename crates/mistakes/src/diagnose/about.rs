@@ -6,7 +6,7 @@ use super::{
 use crate::assignments::t2m2::Subject;
 use fosssim_model::sim::PairKind;
 
-/// What an explanation is about.
+/// The subject of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum About {
     /// A mistake of the catalogue, the one of this key.

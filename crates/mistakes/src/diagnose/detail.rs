@@ -23,11 +23,11 @@ pub enum Detail {
 /// The exact form of what is wrong with polynomials.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PolynomialDetail {
-    /// Each detection logs so many of so many.
+    /// Each detection logs another number of polynomials than it should.
     Logged {
-        /// What it logs.
+        /// The number that it logs.
         logged: usize,
-        /// What it should.
+        /// The expected number.
         of: usize,
     },
     /// They are right up to this error, relative to the size of their terms.
@@ -77,7 +77,7 @@ pub enum PolynomialDetail {
         reading: Reading,
         /// The letter.
         letter: &'static str,
-        /// What stands there.
+        /// The thing in its place.
         stand: Stand,
     },
     /// A coefficient carries a factor.
@@ -98,7 +98,7 @@ pub enum PolynomialDetail {
     Alternative(Vec<Weight>),
 }
 
-/// What stands for a letter of a formula.
+/// The value in place of a letter of a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stand {
     /// The letter itself with this factor.
@@ -155,7 +155,7 @@ pub enum StageDetail {
     Times(Ratios),
     /// By how much times of impact are off, in steps.
     TimesOff(f64),
-    /// What times of impact are for.
+    /// The use of times of impact.
     TimesUsed,
     /// Detection passes of impulse rounds.
     Passes {
@@ -166,9 +166,9 @@ pub enum StageDetail {
         /// How many rounds the scene allows.
         most: i32,
     },
-    /// What isolated contacts change.
+    /// The changes by isolated contacts.
     Change {
-        /// Whose what.
+        /// The quantity, and its owner.
         changed: Changed,
         /// By how much.
         amount: Amount,

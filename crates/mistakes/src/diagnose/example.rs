@@ -10,11 +10,11 @@ pub struct Example {
     pub step: u32,
     /// Where in the step.
     pub place: ExamplePlace,
-    /// What went in, in the assignment's notation.
+    /// The inputs, in the assignment's notation.
     pub given: Vec<ExampleValue>,
-    /// What should have come out.
+    /// The expected result.
     pub expected: Vec<f64>,
-    /// What did.
+    /// The actual result.
     pub actual: Vec<f64>,
 }
 

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub struct Explanation {
     /// A stable key for machines: the id of a known mistake (`pe-square-no-eh`) or of a general finding (`reversed`).
     pub key: String,
-    /// What is wrong: what can be said in a sentence to the student without giving a formula away.
+    /// The mistake, as far as a sentence to the student can tell it without giving a formula away.
     pub about: About,
     /// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away.
     pub details: Vec<Detail>,
@@ -56,7 +56,7 @@ impl Explanation {
     /// The key of what is right but for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
-    /// What is said of something, without any evidence for it yet.
+    /// An explanation without any evidence for it yet.
     pub(super) fn about(key: impl Into<String>, about: About) -> Self {
         Self {
             key: key.into(),
@@ -111,8 +111,7 @@ impl Explanation {
         matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
     }
 
-    /// What it says, in one word: equal for explanations that are told in the same words, and different where they are
-    /// not.
+    /// The statement in one word: equal for explanations in the same words, and different for others.
     #[must_use]
     pub fn said(&self) -> String {
         match &self.about {

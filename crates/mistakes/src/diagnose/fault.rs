@@ -19,7 +19,7 @@ pub enum StepStage {
     Zones,
 }
 
-/// What is wrong with a stage whose inputs are right.
+/// The fault of a stage whose inputs are right.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StageFault {
     /// The pairs are looked at in another order.
@@ -37,14 +37,14 @@ pub enum StageFault {
     ContactVectors {
         /// The kind of all these pairs, if they have one.
         kind: Option<PairKind>,
-        /// What is wrong with them.
+        /// The fault of the vectors.
         wrong: WrongVectors,
     },
-    /// What isolated contacts change.
+    /// The changes by isolated contacts.
     Responses {
         /// The kind of all these pairs, if they have one and others are right.
         kind: Option<PairKind>,
-        /// What is wrong with it.
+        /// The fault of the changes.
         wrong: WrongResponses,
         /// Whether it is seen in impulse rounds only, which hand on what contacts change.
         in_rounds: bool,
@@ -58,7 +58,7 @@ pub enum StageFault {
     },
     /// The number of impulse rounds.
     Rounds(WrongNumber),
-    /// What the impulse rounds hand over, which are right themselves.
+    /// The values that the impulse rounds hand over; the rounds themselves are right.
     HandedOver {
         /// Positions or velocities; none where it is both.
         quantity: Option<Quantity>,
@@ -67,9 +67,9 @@ pub enum StageFault {
         /// Whether contacts could change it so.
         or_response: bool,
     },
-    /// What the contacts of the first impulse round change.
+    /// The changes by the contacts of the first impulse round.
     FirstRound,
-    /// What several contacts of the first impulse round change, though isolated ones are right.
+    /// The changes by several contacts of the first impulse round, though isolated ones are right.
     LaterRounds,
     /// Rounds behind the first one detect on the prediction again.
     RoundsOfPrediction,
@@ -79,7 +79,7 @@ pub enum StageFault {
     Geometric(WrongGeometric),
     /// The positions of a detection pass of the geometric part.
     ZonePositions(WrongPositions),
-    /// What follows the impulse rounds.
+    /// The part of the step behind the impulse rounds.
     AfterRounds,
     /// Zones in later rounds.
     ZoneRounds(WrongZoneRounds),
@@ -87,7 +87,7 @@ pub enum StageFault {
     Zones(WrongZones),
     /// How zones are moved.
     Motion {
-        /// What is wrong with it.
+        /// The faults of the motion.
         wrong: Vec<WrongMotion>,
         /// Whether zones of other particles could move so, too.
         or_zones: bool,
@@ -105,7 +105,7 @@ pub enum WrongDecisions {
     Both,
 }
 
-/// What is wrong with contact vectors.
+/// A fault of contact vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WrongVectors {
     /// They are perpendicular to the right ones.
@@ -122,7 +122,7 @@ pub enum WrongVectors {
     Length,
 }
 
-/// What is wrong with what isolated contacts change.
+/// A fault of the changes by isolated contacts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum WrongResponses {
     /// They change nothing.
@@ -135,7 +135,7 @@ pub enum WrongResponses {
     Amount(Vec<Changed>),
 }
 
-/// Whose what a contact changes.
+/// A quantity that a contact changes, and its owner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Changed {
     /// The kind of the contact's pair.
@@ -143,11 +143,11 @@ pub struct Changed {
     /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint, and 2 its
     /// second one.
     pub body: usize,
-    /// What of it.
+    /// The quantity.
     pub quantity: Quantity,
 }
 
-/// What a state holds of a body.
+/// A quantity of a body in a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
     /// Where it is.
@@ -199,7 +199,7 @@ pub enum LoopEnd {
     Settled,
 }
 
-/// What is wrong with the rounds in which zones grow.
+/// A fault of the rounds in which zones grow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WrongZoneRounds {
     /// The zones themselves.
@@ -212,7 +212,7 @@ pub enum WrongZoneRounds {
     Later,
 }
 
-/// What is wrong with which zones are moved, and which are stopped.
+/// A fault of the choice of zones that are moved or stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WrongZones {
     /// Some particles of a zone are not moved with it.
@@ -237,7 +237,7 @@ pub enum WrongZones {
     KeepVelocities,
 }
 
-/// What is wrong with the motion of zones.
+/// A fault of the motion of zones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WrongMotion {
     /// Where their centre of mass goes.
@@ -363,12 +363,12 @@ impl StageFault {
     }
 }
 
-/// What is no finite number in a trace, from where on.
+/// The values of a trace that are not finite, and their first place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotFinite {
     /// The step, from 1; 0 is the first record. None where several traces are told about.
     pub step: Option<u32>,
-    /// What makes it of numbers.
+    /// The stage that makes them from numbers.
     pub stage: NanStage,
     /// Whether the first one is NaN, and not infinite.
     pub is_nan: bool,
@@ -385,7 +385,7 @@ pub enum NanStage {
     Detection(Option<PairKind>),
     /// Contact vectors and times.
     ContactVectors,
-    /// What a contact changes.
+    /// The changes by a contact.
     Responses,
     /// The impulse rounds; their contacts are not in the trace.
     ImpulseRounds,

@@ -1,7 +1,7 @@
 //! Guesses about wrong polynomials, without what would give a formula away
 //! ([`PolynomialDetail`](super::PolynomialDetail)).
 
-/// What is likely wrong with polynomials.
+/// A guess about wrong polynomials.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Guess {
     /// Something about the whole list of coefficients.
@@ -16,7 +16,7 @@ pub enum Guess {
     Coefficients {
         /// Those powers, the highest first.
         powers: Vec<usize>,
-        /// What is wrong with them.
+        /// The guess about them.
         wrong: CoefficientGuess,
     },
 }
@@ -50,7 +50,7 @@ pub(super) fn digest(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// What is likely wrong with a whole list of coefficients.
+/// A guess about a whole list of coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListGuess {
     /// All are zero, or none is there.
@@ -109,7 +109,7 @@ impl ListGuess {
     }
 }
 
-/// What is likely wrong with one quantity of a formula, wherever it stands.
+/// A guess about one quantity of a formula, in all its places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QuantityGuess {
     /// Its sign.
@@ -122,7 +122,7 @@ pub enum QuantityGuess {
     Other,
 }
 
-/// What is likely wrong with coefficients.
+/// A guess about coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CoefficientGuess {
     /// Several are wrong, each for itself.

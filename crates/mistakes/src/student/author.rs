@@ -66,7 +66,7 @@ impl Student {
         Self { mutation: Some(mutation), ..self }
     }
 
-    /// What the student changes that the catalogue does not have.
+    /// The student's change that the catalogue does not have.
     pub(super) fn change(self) -> Option<&'static Change> {
         self.change
     }

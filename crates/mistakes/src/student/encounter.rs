@@ -13,7 +13,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// What moves from `start` to `end`.
+    /// A point that moves from `start` to `end`.
     pub(super) fn new(start: Vec2, end: Vec2, radius: f64) -> Self {
         Self { start, displacement: end - start, radius }
     }

@@ -151,7 +151,7 @@ fn cap(world: &World, before: &State, state: &mut State) {
     }
 }
 
-/// What happens when all rounds found contacts: nothing more, in a correct program.
+/// The end of the rounds when all found contacts: nothing more, in a correct program.
 fn finish(
     world: &World,
     q_start: &[f64],

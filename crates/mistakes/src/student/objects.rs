@@ -20,7 +20,7 @@ pub struct Pair {
     pub object: Object,
 }
 
-/// What a particle may collide with, by its index among its kind.
+/// An object that a particle may collide with, by its index among its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Object {
     /// Another particle.
@@ -34,7 +34,7 @@ pub enum Object {
 /// A collision that detection found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// Who collides.
+    /// The pair that collides.
     pub pair: Pair,
     /// The shortest vector from the particle to the object at the time of impact, not normalised.
     pub n: Vec2,

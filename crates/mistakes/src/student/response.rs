@@ -130,7 +130,7 @@ impl<'a> Response<'a> {
         }
     }
 
-    /// What a mistake that the catalogue does not have makes of a change.
+    /// Applies a mistake that the catalogue does not have to a change.
     fn respond(&mut self, particle: usize, change: fn(&mut Share), velocity: Vec2, position: Vec2) {
         let role = match self.contact.pair.object {
             Object::Edge(index) if particle == self.world.scene.edges[index].second => 2,

@@ -19,7 +19,7 @@ use super::{
 pub struct World {
     /// The scene as loaded.
     pub scene: Arc<Scene>,
-    /// Whose program this is, that is: which mistake it makes.
+    /// The author of this program, that is: the mistakes that it makes.
     pub student: Student,
     /// The mass of each particle twice, in the order of the state.
     pub masses: Arc<[f64]>,
@@ -27,7 +27,7 @@ pub struct World {
     changed: Option<Vec<Pair>>,
 }
 
-/// What a step leaves for the trace.
+/// The log of a step for the trace.
 #[derive(Clone, Default)]
 pub struct StepLog<'a> {
     /// The impulses, in the order in which they were applied.

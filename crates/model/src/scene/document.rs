@@ -12,7 +12,7 @@ use super::grammar::{self, Rule};
 use super::problem::{Finding, MOST_PROBLEMS, Report, quote};
 use super::tag::{self, Tag, is_space, offset};
 
-/// What the text holds.
+/// The elements of the text.
 #[derive(Debug, Default)]
 pub(super) struct Document<'t> {
     /// The bytes of `<scene`, when there is a scene.

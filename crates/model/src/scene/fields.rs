@@ -16,7 +16,7 @@ use fosssim_num::vector::Vec2;
 /// How many objects of a kind there are, for indices that point to them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Count {
-    /// What they are called: `particle`.
+    /// The name of one of them: `particle`.
     pub(super) what: &'static str,
     pub(super) count: usize,
     /// Whether the number is certain; after broken XML or a misspelt element it is not, and indices are not judged.
@@ -286,7 +286,7 @@ fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
     }
 }
 
-/// What to say about a bad number: what is wrong, and what to do.
+/// The message about a bad number: its flaw, and the remedy.
 fn words(text: &str, flaw: &Flaw) -> (String, String) {
     let text = quote(text.trim_ascii());
     match flaw {

@@ -1,6 +1,6 @@
 //! The names that a scene may use, and the one that somebody probably meant (scene-format.md 4, 5).
 
-/// What is known about one element.
+/// The rules for one element.
 #[derive(Debug)]
 pub(super) struct Rule {
     pub(super) name: &'static str,
@@ -51,7 +51,7 @@ pub(super) fn similar_element(name: &str) -> Option<&'static str> {
     closest(name, RULES.iter().map(|rule| rule.name))
 }
 
-/// What many people write for a name of the format.
+/// Names that many people write for a name of the format.
 const HABITS: [(&str, &str); 8] = [
     ("mass", "m"),
     ("x", "px"),

@@ -24,7 +24,7 @@ pub struct Scene {
     pub forces: Vec<Force>,
     /// The text shown in the banner, when the scene has one.
     pub description: Option<String>,
-    /// What only a display uses.
+    /// The values that only a display uses.
     pub display: Display,
 }
 
@@ -114,7 +114,7 @@ impl Collision {
         }
     }
 
-    /// What its assignment asks of a program.
+    /// The handling that its assignment asks of a program.
     ///
     /// # Panics
     /// Never: a test holds every type to be handled by its assignment.
@@ -213,7 +213,7 @@ pub enum Force {
     },
 }
 
-/// What only a display uses; kept so that a scene survives being read and written.
+/// The values that only a display uses; kept so that a scene survives being read and written.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Display {
     /// `maxsimfreq max`, steps per second of wall time.

@@ -3,7 +3,7 @@
 //! Where the original takes the longest prefix and ignores the rest (scene-format.md 2), this says what the original
 //! would have read. White space around a number is allowed.
 
-/// What is wrong with a number.
+/// A flaw of a number.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Flaw {
     /// Nothing there.

@@ -29,9 +29,9 @@ pub struct Problem {
     pub element: Option<String>,
     /// The attribute that it is about.
     pub attribute: Option<String>,
-    /// What was found, as a lowercase fragment.
+    /// The fault, as a lowercase fragment.
     pub message: String,
-    /// What is allowed, or what to do.
+    /// The allowed values, or the remedy.
     pub help: Option<String>,
 }
 

@@ -17,7 +17,7 @@ pub const LARGEST_SCENE: usize = 8 << 20;
 pub struct Loaded {
     /// The scene; all indices are valid, all numbers finite.
     pub scene: Scene,
-    /// What its author should look at all the same, in the order of the places.
+    /// Oddities for its author to look at, in the order of the places.
     pub warnings: Vec<Problem>,
 }
 

@@ -98,7 +98,7 @@ impl<'t> Tag<'t> {
     }
 }
 
-/// What is wrong with the form of an attribute. `start` is where `inner` starts in the text.
+/// The fault in the form of an attribute. `start` is where `inner` starts in the text.
 fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Finding {
     let (at, message) = match *error {
         AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),

@@ -23,7 +23,7 @@ pub(super) struct Objects {
 pub(super) struct Place {
     /// The particle.
     pub first: usize,
-    /// What it meets.
+    /// The kind of the object that it meets.
     pub kind: PairKind,
     /// The number of that; behind the last one the next kind follows.
     pub second: usize,
@@ -55,8 +55,8 @@ impl Objects {
         }
     }
 
-    /// What is left of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of what
-    /// it meets. Among edges there are those that it is an end of ([`is_end`]).
+    /// The rest of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of the
+    /// objects that it meets. Among edges there are those that it is an end of ([`is_end`]).
     #[inline(always)]
     pub fn row(self, from: Place) -> [Range<usize>; PairKind::ALL.len()] {
         PairKind::ALL.map(|kind| {
@@ -143,7 +143,7 @@ impl Pairs<'_> {
         self.counts().iter().map(|(kind, count)| kind.polynomials() * count).sum()
     }
 
-    /// Whose polynomial `index` of a step's list is: the number of the pass, the pair, and the polynomial's number
+    /// The owner of polynomial `index` of a step's list: the number of the pass, the pair, and the polynomial's number
     /// among its own. None where a pass has no polynomial.
     #[must_use]
     pub fn polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {

@@ -25,12 +25,12 @@ pub struct SearchCounts {
     pub disagreements: u64,
     /// Steps of root searches ([`Zeros::steps`](fosssim_num::rpoly::Zeros::steps)).
     pub steps: u64,
-    /// What passes over subnormal numbers took beyond what was counted, in units of work.
+    /// The additional work of passes over subnormal numbers, beyond the counted one.
     pub subnormal: u64,
 }
 
 impl SearchCounts {
-    /// What these calls cost, counted in calls that a certificate excludes. It is the same on every machine.
+    /// The work of these calls, in calls that a certificate excludes. It is the same on every machine.
     #[must_use]
     pub const fn work(&self) -> u64 {
         self.calls + SEARCH_WORK * self.searched + self.steps + self.subnormal
@@ -48,7 +48,7 @@ impl std::ops::AddAssign for SearchCounts {
     }
 }
 
-/// What was counted since `before`.
+/// The counts since `before`.
 impl std::ops::Sub for SearchCounts {
     type Output = Self;
     fn sub(self, before: Self) -> Self {

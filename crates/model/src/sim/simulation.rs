@@ -105,7 +105,7 @@ impl Simulation {
         self.handler.counts()
     }
 
-    /// What all steps so far have cost: detection ([`SearchCounts::work`]) and Newton's method.
+    /// The work of all steps so far: detection ([`SearchCounts::work`]) and Newton's method.
     #[must_use]
     pub fn work(&self) -> u64 {
         self.handler.counts().work() + self.stepper.work()

@@ -41,11 +41,11 @@ pub struct Difference {
     pub step: u32,
     /// Whether it is the step's mid record.
     pub mid: bool,
-    /// What differs.
+    /// The part that differs.
     pub block: Block,
 }
 
-/// What differs, with the left and the right value.
+/// A part that differs, with the left and the right value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Block {
     /// A component of a position.

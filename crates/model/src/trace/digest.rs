@@ -82,7 +82,7 @@ pub struct Digests {
     /// Whether more bytes follow, which were not read ([`TRAILING_LIMIT`](super::TRAILING_LIMIT)). `bytes` and
     /// `trailing` count only what was read, and the digest says nothing about the trace.
     pub unread: bool,
-    /// What ended the reading before the scene's last record.
+    /// The error that ended the reading before the scene's last record.
     pub stopped: Option<TraceError>,
 }
 
@@ -116,7 +116,7 @@ impl fmt::Display for Digests {
     }
 }
 
-/// What a walk over a whole trace tells at its end.
+/// The result of a walk over a whole trace.
 pub(crate) struct Walked {
     pub(crate) sha256: Sha,
     pub(crate) bytes: u64,

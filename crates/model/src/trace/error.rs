@@ -14,7 +14,7 @@ pub struct TraceError {
     pub frame: u64,
     /// The step it belongs to, from 1; 0 for the initial record.
     pub step: u32,
-    /// What is wrong, in words without position.
+    /// The fault, in words without position.
     pub what: Malformation,
 }
 
@@ -165,7 +165,7 @@ pub enum Malformation {
     IndexOutOfRange {
         /// Number of the impulse in the list, from 0.
         impulse: u64,
-        /// What it names: `particle`, `edge` or `half-plane`.
+        /// The kind of object that it names: `particle`, `edge` or `half-plane`.
         object: &'static str,
         /// The index.
         index: i32,

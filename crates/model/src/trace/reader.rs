@@ -302,7 +302,7 @@ impl<R: Read> Reader<R> {
         Ok(())
     }
 
-    /// What is odd about an impulse.
+    /// An oddity of an impulse.
     fn odd(&self, number: u64, impulse: &LoggedImpulse) -> Option<Malformation> {
         let particles = self.layout.particles;
         let Some(kind) = impulse.kind() else {

@@ -30,7 +30,7 @@ impl<W: Write> Recorder<W> {
         Self { writer, layout, log }
     }
 
-    /// What has been written so far, what is still in the buffer included.
+    /// The bytes and records written so far, those in the buffer included.
     #[must_use]
     pub fn written(&self) -> Written {
         self.writer.written()

@@ -21,7 +21,7 @@ pub(crate) struct Source<R> {
     length: Option<u64>,
     ended: bool,
     error: Option<(io::ErrorKind, String)>,
-    /// What was consumed since `start_tape`.
+    /// The bytes consumed since `start_tape`.
     tape: Option<Vec<u8>>,
 }
 

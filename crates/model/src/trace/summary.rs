@@ -26,7 +26,7 @@ const COEFFICIENTS: usize = 8;
 /// Steps are digested in at most so many groups.
 const GROUPS: u32 = 16;
 
-/// What a trace holds. Its `Display` is the text that a snapshot test keeps.
+/// The contents of a trace. Its `Display` is the text that a snapshot test keeps.
 ///
 /// ```
 /// use fosssim_model::{
@@ -89,7 +89,7 @@ pub struct Summary {
     /// Whether more bytes follow, which were not read. `bytes` and `trailing` count only what was read, and the digest
     /// says nothing about the trace.
     pub unread: bool,
-    /// What ended the reading before the scene's last record.
+    /// The error that ended the reading before the scene's last record.
     pub stopped: Option<TraceError>,
     /// Number of oddities that do not end the reading, and the first.
     pub notes: (u64, Option<TraceError>),

@@ -11,7 +11,7 @@ use std::{
     ops::Range,
 };
 
-/// What is gathered is handed on once it has this many bytes.
+/// The size in bytes at which gathered bytes are handed on.
 const PIECE: usize = 256 * 1024;
 
 /// A list of fewer bytes is copied, since a part of its own would cost the system more than a copy.
@@ -20,7 +20,7 @@ const LONG: usize = 1024;
 /// The greatest number of long lists that are gathered.
 const LISTS: usize = 128;
 
-/// What has been written.
+/// The bytes and records written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Written {
     /// Records.
@@ -100,7 +100,7 @@ impl<W: Write> Writer<W> {
         !self.lists.is_empty()
     }
 
-    /// What has been written so far, what is still in the buffer included.
+    /// The bytes and records written so far, those in the buffer included.
     #[must_use]
     pub fn written(&self) -> Written {
         Written { records: self.written.records, bytes: self.written.bytes + (self.buffer.len() + self.listed) as u64 }

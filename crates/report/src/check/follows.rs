@@ -2,7 +2,7 @@
 use crate::number::count as number;
 use fosssim_judge::{FindingKind, Outcome, fair::FairVerdict};
 
-/// What is wrong with a formula, and not with the positions that go into it.
+/// Faults of a formula, and not of the positions that go into it.
 const OF_FORMULAS: [FindingKind; 6] = [
     FindingKind::PolynomialDegree,
     FindingKind::VanishingPolynomial,

@@ -41,7 +41,7 @@ pub struct Check<'a> {
     pub scene: &'a str,
     /// The trace as typed.
     pub trace: &'a str,
-    /// What judging yielded.
+    /// The outcome of judging.
     pub outcome: &'a Outcome,
     /// Likely mistakes, the likeliest first; empty where nothing is wrong or nobody has asked.
     pub explanations: &'a [Explanation],
@@ -53,7 +53,7 @@ pub struct Check<'a> {
     pub audit: bool,
     /// Whether the text holds all tables, and not only what fits on a screen.
     pub tables: bool,
-    /// What the file looks like that is to be a trace, where it begins like something else.
+    /// The kind of file that the trace seems to be, where it begins like something else.
     pub looks_like: Option<&'a str>,
 }
 

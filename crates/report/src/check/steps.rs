@@ -26,7 +26,7 @@ pub enum StepChoice {
     These(Vec<u32>),
 }
 
-/// What is wrong in one step, by one book.
+/// The findings of one book in one step.
 #[derive(Debug, Clone)]
 struct Step {
     number: u32,
@@ -58,7 +58,7 @@ impl WrongSteps {
         Self { shown, ..Self::default() }
     }
 
-    /// What a book has found; what it could tell only from the whole trace is among it.
+    /// The findings of a book; those that it could tell only from the whole trace are among them.
     fn by(&self, book: Book, account: &BookFindings) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
@@ -115,7 +115,7 @@ impl Steps {
     }
 }
 
-/// What the official book has found, or the other one, where the official has nothing.
+/// The steps of the official book, or of the other one, where the official has nothing.
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     let of = |book| (book, check.steps.by(book, check.outcome.findings_by(book)));
     let official = of(check.book());
@@ -195,7 +195,7 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
     text
 }
 
-/// What is wrong in one step, for programs.
+/// The findings in one step, for programs.
 #[derive(Debug, Serialize)]
 pub(super) struct StepView {
     step: u32,

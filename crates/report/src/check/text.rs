@@ -63,7 +63,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.join("\n")
 }
 
-/// What the program is likely to get wrong. The likeliest mistakes fill no more than a screen.
+/// The likely mistakes of the program. The likeliest ones fill no more than a screen.
 fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     let most = if check.tables { usize::MAX } else { EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
@@ -87,7 +87,7 @@ fn head(check: &Check<'_>, style: Style) -> String {
     format!("{verdict}: {}\n  scene {}\n  trace {}\n", headline(check), check.scene, check.trace)
 }
 
-/// What stands behind the verdict, in one line.
+/// The reason behind the verdict, in one line.
 pub(crate) fn headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
     if let (Some(kind), true) = (check.looks_like, check.is_no_trace()) {
@@ -256,7 +256,7 @@ fn noted(check: &Check<'_>, style: Style) -> Option<String> {
     (!notes.is_empty()).then(|| format!("{}\n{lines}", style.paint(Look::Strong, "Notes")))
 }
 
-/// What else is worth knowing.
+/// Further notes.
 pub(super) fn notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();

@@ -64,7 +64,7 @@ pub(super) fn list_of_passed_over(entries: &[PassedOver]) -> String {
     format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
 
-/// What follows `::` in a workflow command.
+/// The text behind `::` in a workflow command.
 fn data(text: &str) -> String {
     one_line(text).replace('%', "%25")
 }

@@ -114,7 +114,7 @@ fn overall(grade: &Grade) -> String {
     lines.join("\n")
 }
 
-/// What a student is told when the platform's time was up: what used it.
+/// The message to a student when the platform's time was up: it says what used the time.
 fn out_of_time(grade: &Grade) -> String {
     let missing = grade.count(Verdict::NotRun);
     let mut text = format!(

@@ -39,7 +39,7 @@ struct GradeView {
     sandbox: Vec<String>,
     warnings: Vec<String>,
     build: Option<BuildView>,
-    /// What the scenes have in common in which the program crashes or runs into a limit.
+    /// The contents that the scenes have in common in which the program crashes or runs into a limit.
     located: Option<LocatedView>,
     /// The mistake that explains most wrong scenes, where several have explanations.
     likely_mistake: Option<ExplanationView>,

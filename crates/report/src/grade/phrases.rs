@@ -49,7 +49,7 @@ fn length_of_code(code: &str) -> Option<usize> {
     }
 }
 
-/// What a program printed, [`plain`] and without a terminal's codes. Names keep them, or two could look alike.
+/// The output of a program, [`plain`] and without a terminal's codes. Names keep them, or two could look alike.
 #[must_use]
 pub fn printed(text: &str) -> String {
     plain(&without_codes(text))
@@ -83,7 +83,7 @@ pub fn plain(text: &str) -> String {
     plain
 }
 
-/// What stands in the place of a verdict where an entry is no submission.
+/// The text in place of a verdict where an entry is no submission.
 pub(super) const NOT_GRADED: &str = "not graded";
 
 /// The likely mistakes, the one that explains most wrong scenes first, and how many scenes each explains.
@@ -113,7 +113,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
-/// What is said of a scene whose reason is that of the whole submission.
+/// The text for a scene whose reason is that of the whole submission.
 pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
     match scene.result.verdict {
         Verdict::Unwritten => "see above",

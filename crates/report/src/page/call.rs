@@ -103,7 +103,7 @@ fn common(logged: &[Vec<f64>]) -> Vec<Interval> {
     common
 }
 
-/// What the trace's own polynomials decide.
+/// The decision of the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
     let first = common(logged).iter().map(|set| set.lo).reduce(f64::min);
     match first {

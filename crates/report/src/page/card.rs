@@ -4,7 +4,7 @@ use crate::check::plots;
 use fosssim_grading::config::Hints;
 use serde::{Deserialize, Serialize};
 
-/// What stands for the key of a card until its page is known. No text holds it: text has no control characters.
+/// The placeholder for the key of a card until its page is known. No text holds it: text has no control characters.
 const KEY: &str = "\u{1}";
 
 /// Columns of a small terminal.
@@ -13,7 +13,7 @@ const TERMINAL: usize = 78;
 /// A card.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Card {
-    /// What is there without script.
+    /// The part that needs no script.
     html: String,
     /// The motions and what the viewer tells of them; empty where there is no motion.
     data: String,
@@ -77,7 +77,7 @@ impl Card {
         (self.html.len(), self.data.len())
     }
 
-    /// What is there without script, under a key that no other card of the page has.
+    /// The part that needs no script, under a key that no other card of the page has.
     pub(super) fn html(&self, key: &str) -> String {
         self.html.replace(KEY, key)
     }

@@ -150,7 +150,7 @@ pub(super) fn mistakes(explanations: &[Explanation]) -> String {
     out
 }
 
-/// What both rule books say.
+/// The verdicts of both rule books.
 fn books(outcome: &Outcome) -> String {
     let row = |name: &str, book: Book| {
         let ruling = outcome.ruling(book);

@@ -60,7 +60,7 @@ pub struct Case<'a> {
     pub check: Check<'a>,
     /// The scene.
     pub scene: &'a Scene,
-    /// What the viewer shows; `None` leaves viewer and plots out.
+    /// The data of the viewer; `None` leaves viewer and plots out.
     pub evidence: Option<&'a Evidence>,
     /// The proof of the first explanation.
     pub what_if: Option<&'a WhatIf>,
@@ -73,7 +73,7 @@ pub struct Case<'a> {
 /// A page about some traces.
 #[derive(Debug, Clone)]
 pub struct Page<'a> {
-    /// What stands in the window's title.
+    /// The title of the window.
     pub title: &'a str,
     /// The traces, in the order of the page.
     pub cases: Vec<Case<'a>>,

@@ -20,7 +20,7 @@ const KEPT: usize = 16_000;
 /// A unit is this part of what the bodies cross.
 const PARTS: f64 = 65536.0;
 
-/// What can't be told in units, or is no number.
+/// The mark of a value that has no number of units, or is no number.
 const BEYOND: i64 = 1 << 40;
 
 /// How motions are kept.
@@ -35,7 +35,7 @@ pub(super) enum Precision {
 /// How motions were rounded.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rounded {
-    /// What positions are multiples of.
+    /// The unit of positions.
     pub(super) unit: f64,
     /// The records that are exact, counted from the first that is kept.
     pub(super) exact: Vec<usize>,

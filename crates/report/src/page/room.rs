@@ -7,7 +7,7 @@ pub const BUDGET: usize = 2_950_000;
 /// The bytes of a page for the output of programs, of all scenes together.
 pub(super) const OUTPUTS: usize = 200_000;
 
-/// So much of it may go to pictures and tables before the first motion has room.
+/// The part of it for pictures and tables, before the first motion has room.
 const STILL: usize = BUDGET / 3 * 2;
 
 /// Which parts of a scene's card fit on the page.
@@ -61,7 +61,7 @@ pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clon
     rooms
 }
 
-/// What the page says of what has no room on it.
+/// The text of the page about cards that have no room on it.
 pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
     let of: Vec<Room> = cards
         .zip(rooms)

@@ -21,7 +21,7 @@ pub struct ShownRecord {
     pub mid: bool,
     /// Its content.
     pub frame: Frame,
-    /// What is odd about it, in words.
+    /// Its oddities, in words.
     pub notes: Vec<String>,
 }
 

@@ -7,7 +7,7 @@ use fosssim_grading::{
 /// The greatest number of other contents named that the scenes can't tell from the first one.
 const NAMED: usize = 2;
 
-/// What they have in common, with its counts, and where the first of them ends.
+/// The contents that they have in common, with counts, and where the first of them ends.
 #[must_use]
 pub fn located(found: &Located) -> String {
     let Located { failing, contents, failed, with, without, first, step } = found;

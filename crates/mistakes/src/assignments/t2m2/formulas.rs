@@ -10,7 +10,7 @@ use fosssim_num::bounded::Bounded;
 pub struct Letter {
     /// How a message calls it.
     pub name: &'static str,
-    /// What it is, in the assignment's notation; empty where the name says it.
+    /// Its meaning, in the assignment's notation; empty where the name says it.
     pub meaning: &'static str,
     /// Of which degree it is in the displacements.
     pub(crate) order: u8,

@@ -15,9 +15,9 @@ pub(crate) struct Inputs {
     pub d: [Bounded2; 3],
     /// The radius of the particle and that of the other object (0 for a half-plane).
     pub radii: [Bounded; 2],
-    /// What stands for the square of the sum of the radii.
+    /// The value for the square of the sum of the radii.
     pub square: Bounded,
-    /// What stands for the squared length of the normal; 0 without one.
+    /// The value for the squared length of the normal; 0 without one.
     pub normal_square: Bounded,
 }
 

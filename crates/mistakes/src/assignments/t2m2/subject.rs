@@ -1,7 +1,7 @@
 //! The polynomials of a detection.
 use fosssim_model::sim::PairKind;
 
-/// What a polynomial of a detection says (collisions.md 2).
+/// The meaning of a polynomial of a detection (collisions.md 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Subject {
     /// Two particles overlap.

@@ -14,11 +14,11 @@ pub(in crate::diagnose) struct Capture {
     logs_impulses: bool,
     has_mid: bool,
     pass: Option<Pass>,
-    /// What the step logs; valid after it.
+    /// The records of the step; valid after it.
     pub(in crate::diagnose) records: StepRecords,
     /// The pairs in the order of detection, with the pass and the index of their first polynomial.
     pub(super) detections: Vec<(Pair, Pass, usize)>,
-    /// What happened, as bits (see [`Capture::events`]).
+    /// The events of the step, as bits (see [`Capture::events`]).
     events: u32,
 }
 
@@ -37,8 +37,8 @@ impl Capture {
         (index < self.records.end.polynomials.len()).then_some((pair, pass, index - first))
     }
 
-    /// What happened in the step: one bit per kind of pair that collided and stage in which it did, per number of
-    /// rounds, per kind of zone. Zero when nothing collided.
+    /// The events of the step: one bit per kind of pair that collided and stage in which it did, per number of rounds,
+    /// per kind of zone. Zero when nothing collided.
     pub(super) fn events(&self) -> u32 {
         self.events
     }

@@ -42,11 +42,11 @@ pub(in crate::diagnose) const ROUND_OFF: Tolerance = Tolerance {
     time: KNOWN_TIME,
 };
 
-/// What nobody takes for round-off: a difference beyond this.
+/// The bound beyond which nobody takes a difference for round-off.
 pub(in crate::diagnose) const PLAIN: Tolerance =
     Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
 
-/// What is left of a step when its states were rounded to single precision before and after.
+/// The bound for a step whose states were rounded to single precision before and after.
 pub(super) const SINGLE_PRECISION: Tolerance =
     Tolerance { coefficient: 1e-4, floor: 1e-4, state: 1e-5, normal: 1e-2, time: 1e-1 };
 

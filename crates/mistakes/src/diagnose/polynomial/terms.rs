@@ -30,7 +30,7 @@ const MOST_ALTERNATIVES: usize = 3;
 /// The cost of a coefficient that nothing explains.
 const UNKNOWN: f64 = 20.0;
 
-/// What is wrong with one coefficient.
+/// A change of one coefficient.
 enum Edit {
     /// It carries a factor.
     Factor(Bounded),
@@ -48,7 +48,7 @@ struct Guess {
     alternatives: Vec<Vec<(usize, f64)>>,
 }
 
-/// What makes each coefficient wrong, where at least one wrong coefficient can be explained.
+/// The reasons for each wrong coefficient, where at least one of them can be explained.
 pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
     study.formulas().filter_map(|(reading, formula)| candidate(study, formula, reading)).collect()
 }

@@ -47,10 +47,10 @@ impl Group {
     }
 }
 
-/// What became of a zone.
+/// The fate of a zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Fate {
-    /// What should.
+    /// The expected one.
     Right,
     /// Its contacts were moved one after the other, or not all together.
     NotMerged,
@@ -86,7 +86,7 @@ pub(super) struct FirstRound<'a> {
     /// The end of the step: what the first round leaves of the zones that are looked at.
     pub(super) end: &'a State,
     pub(super) zones: Vec<Group>,
-    /// What each contact makes a zone of.
+    /// The zone that each contact makes.
     contacts: Vec<Group>,
     /// The second geometric pass among those that were logged.
     second: usize,
@@ -172,12 +172,12 @@ impl<'a> FirstRound<'a> {
         particles.iter().all(|&one| self.is_at(state, one))
     }
 
-    /// What should become of a zone.
+    /// The expected state of a zone.
     pub(super) fn expected(&self, zone: &Group) -> State {
         self.moved(&[zone])
     }
 
-    /// What became of a zone that is seen.
+    /// The fate of a zone that is seen.
     pub(super) fn fate(&self, zone: &Group) -> Fate {
         let all = &zone.particles;
         let expected = self.expected(zone);
@@ -279,7 +279,7 @@ impl<'a> FirstRound<'a> {
         several.map(|parts| parts.iter().map(|part| Group::union(part)).collect()).collect()
     }
 
-    /// What became of a zone that has to stop, all of whose particles belong together.
+    /// The fate of a zone that has to stop, all of whose particles belong together.
     fn stop(&self, zone: &Group, stopped: &State) -> Fate {
         let mut free = self.middle.clone();
         perform(self.scene, zone, false, &self.facts.before, &mut free);

@@ -25,7 +25,7 @@ fn both_readers_give_the_scenes_back() {
     }
 }
 
-/// What the detections of a kind showed.
+/// The detections of a kind, as they showed.
 #[derive(Default)]
 struct Seen {
     /// Per kind and polynomial the greatest modulus per coefficient, from the lowest power.
@@ -92,7 +92,7 @@ fn every_kind_of_pair_collides() {
     }
 }
 
-/// What a student's program writes; none where it would never end.
+/// The trace of a student's program; none where it would never end.
 fn trace(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
     student::trace(scene, Student::new(row.map(|row| row.mistake))).ok()
 }

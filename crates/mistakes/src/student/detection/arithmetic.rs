@@ -8,7 +8,7 @@ use fosssim_num::vector::Vec2;
 
 use crate::student::encounter::Body;
 
-/// What a program computes with.
+/// The numbers of a program.
 pub trait Number:
     Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {

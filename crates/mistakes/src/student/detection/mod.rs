@@ -288,7 +288,7 @@ fn out_of_reach(encounter: &Encounter) -> bool {
     }
 }
 
-/// What the formulas hand to the root finder, small leading coefficients dropped.
+/// The polynomials for the root finder, small leading coefficients dropped.
 fn trimmed(lists: &[Vec<f64>]) -> Vec<Polynomial> {
     lists.iter().map(|list| Polynomial::trimmed(list)).collect()
 }

@@ -18,7 +18,7 @@ use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 pub struct Share {
     /// 0 for the particle, 1 for the other one or the first endpoint, 2 for the second endpoint.
     pub role: usize,
-    /// What the contact is with.
+    /// The pair in contact.
     pub pair: Pair,
     /// The unit contact vector.
     pub u: Vec2,
@@ -54,7 +54,7 @@ pub struct Turn {
 pub enum Change {
     /// The coefficients of a pair.
     Polynomials(fn(&Encounter, &mut Vec<Vec<f64>>)),
-    /// What the root finder gets, behind the log.
+    /// The polynomials for the root finder, behind the log.
     Searched(fn(&mut Vec<Polynomial>)),
     /// The time of impact.
     Time(fn(f64) -> f64),
@@ -66,7 +66,7 @@ pub enum Change {
     Contacts(fn(&mut Vec<Contact>)),
     /// The pairs of all passes.
     Pairs(fn(&mut Vec<Pair>)),
-    /// What a contact changes.
+    /// The change by a contact.
     Respond(fn(&mut Share)),
     /// How many rounds there are.
     Limit(fn(i32) -> i32),

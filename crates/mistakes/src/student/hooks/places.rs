@@ -91,7 +91,7 @@ pub enum Place {
     CarriedVelocity,
 }
 
-/// What is done to what stands at a place.
+/// A change of the value at a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operator {
     /// An index: the one of the partner stands there.

@@ -90,7 +90,7 @@ impl<'t> Cursor<'t> {
         self.text.get(self.at + ahead).copied().unwrap_or(0)
     }
 
-    /// What is left, never past the end.
+    /// The rest of the text, never past the end.
     fn rest(&self) -> &'t [u8] {
         self.text.get(self.at..).unwrap_or_default()
     }
@@ -120,7 +120,7 @@ impl<'t> Cursor<'t> {
         Ok(())
     }
 
-    /// What follows a `<` that does not close: an element and whether it has contents, or something to ignore.
+    /// The node behind a `<` that does not close: an element and whether it has contents, or something to ignore.
     fn node(&mut self) -> Result<Option<(Element<'t>, bool)>, &'static str> {
         match self.peek(0) {
             b'?' => {

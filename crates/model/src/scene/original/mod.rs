@@ -30,7 +30,7 @@ pub struct OriginalScene {
     /// The scene. Text that is not UTF-8 is replaced there; trails of particles that do not exist are left out, since
     /// they have no effect.
     pub scene: Scene,
-    /// What the banner prints as the description, byte for byte; the original's default when the scene has none.
+    /// The description in the banner, byte for byte; the original's default when the scene has none.
     pub description: Vec<u8>,
 }
 
@@ -89,7 +89,7 @@ impl Refusal {
         Self { kind: RefusalKind::Crash, stderr: stderr.into_bytes(), exit_code: 134, explanation }
     }
 
-    /// What has no defined outcome in the original.
+    /// An input without a defined outcome in the original.
     fn undefined(explanation: String) -> Self {
         let stderr = format!("{explanation}\n").into_bytes();
         Self { kind: RefusalKind::Undefined, stderr, exit_code: 1, explanation }

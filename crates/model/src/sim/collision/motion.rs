@@ -96,7 +96,7 @@ impl PairMotion {
         }
     }
 
-    /// What the second object is.
+    /// The kind of the second object.
     #[must_use]
     pub const fn kind(&self) -> PairKind {
         match self {

@@ -46,7 +46,7 @@ impl Effort {
     }
 }
 
-/// What the implicit methods need on top: memory of size (2N)^2.
+/// The additional memory of the implicit methods, of size (2N)^2.
 #[derive(Debug, Clone)]
 struct ImplicitScratch {
     matrix: Matrix,

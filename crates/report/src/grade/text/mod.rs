@@ -34,7 +34,7 @@ pub enum TextDetail {
 /// Lines that say what to type next about a scene. Those that begin with `$ ` are commands.
 pub type Advice<'a> = &'a dyn Fn(&Grade, &SceneGrade) -> Vec<String>;
 
-/// What the text shows, and how.
+/// The options of the text.
 #[derive(Clone, Copy, Default)]
 pub struct Text<'a> {
     /// The decoration.
@@ -43,9 +43,9 @@ pub struct Text<'a> {
     pub shown: TextDetail,
     /// The room for tables, in columns; without it there is no limit.
     pub width: Option<usize>,
-    /// What to type to grade one scene again, shown with each scene that is wrong.
+    /// The command to grade one scene again, shown with each scene that is wrong.
     pub again: Option<Advice<'a>>,
-    /// What to type to look closer at the first wrong scene.
+    /// The command to look closer at the first wrong scene.
     pub closer: Option<Advice<'a>>,
 }
 

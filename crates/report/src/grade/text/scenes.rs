@@ -29,7 +29,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     groups.map(|group| scenes.group(group)).collect()
 }
 
-/// What is told of a scene whose program failed: scenes of which the same is told are told of once.
+/// The words about a scene whose program failed: scenes with the same words are listed once.
 type Words = (Verdict, String, Vec<String>);
 
 /// A wrong trace differs from scene to scene; a program that does not run ends in the same words each time.

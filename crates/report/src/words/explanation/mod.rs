@@ -15,7 +15,7 @@ use fosssim_mistakes::{
 
 pub(crate) use places::place;
 
-/// What is wrong, in one sentence to the student that gives no formula away.
+/// The mistake, in one sentence to the student that gives no formula away.
 #[must_use]
 pub fn what(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {

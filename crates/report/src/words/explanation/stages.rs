@@ -9,7 +9,7 @@ use fosssim_mistakes::{
 };
 use fosssim_model::sim::PairKind;
 
-/// What is wrong with a stage, with its place in front.
+/// The fault of a stage, with its place in front.
 pub(super) fn what(fault: &StageFault) -> String {
     format!("{}: {}.", place(fault), capitalised(&of_fault(fault)))
 }
@@ -165,7 +165,7 @@ fn of_responses(wrong: &WrongResponses) -> String {
     }
 }
 
-/// Who changes wrongly.
+/// The subject that changes wrongly.
 fn who_changes(all: &[Changed]) -> String {
     let quantities = distinct(all.iter().map(|one| one.quantity));
     let bodies = distinct(all.iter().map(body));

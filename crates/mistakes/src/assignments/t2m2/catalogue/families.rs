@@ -3,7 +3,7 @@
 use super::{Area, CATALOGUE, RowKind, find};
 use std::collections::BTreeSet;
 
-/// What stands in one place of a family.
+/// The contents of one place of a family.
 enum Cell {
     /// A row with this id.
     Is(&'static str),
@@ -17,7 +17,7 @@ use Cell::{Is, None as No};
 struct Family {
     /// The sides, in the order of the cells.
     sides: &'static [&'static str],
-    /// What is done wrong, for each side.
+    /// The mistakes, for each side.
     rows: &'static [(&'static str, &'static [Cell])],
 }
 

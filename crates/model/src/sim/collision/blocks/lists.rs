@@ -71,7 +71,7 @@ impl Lists {
         })
     }
 
-    /// What does not change while the scene is simulated.
+    /// Fills the lists of values that do not change while the scene is simulated.
     fn constants(&mut self, bodies: &Bodies) {
         let count = bodies.particles();
         self.own_edges = vec![Vec::new(); count];

@@ -20,7 +20,7 @@ use group::Group;
 use lists::Lists;
 use rows::Pairs;
 
-/// What a pass is about.
+/// The inputs of a pass.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Setting<'a> {
     /// The scene's constants.
