@@ -25,9 +25,9 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
         found += &format!(", among them {}", follows::words(follow));
     }
     let mut text = format!("{}\n", style.paint(Look::Strong, "Rule books"));
-    text += &format!("  the original's: {}{found}\n", style.paint(look, word));
+    text += &format!("  the original's rules: {}{found}\n", style.paint(look, word));
     let (look, word) = fair::verdict(judgement);
-    text += &format!("  the fair ones: {}: {}\n", style.paint(look, word), fair::summary(judgement, outcome));
+    text += &format!("  the fair rules: {}: {}\n", style.paint(look, word), fair::summary(judgement, outcome));
     if let Some(cause) = cause(outcome) {
         text += &format!("  {} {cause}\n", style.paint(Look::Notice, "They differ:"));
     }
