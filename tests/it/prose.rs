@@ -18,9 +18,11 @@ fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The documents at the top and in `docs`; those in `docs/spec` describe the original, in its terms.
+/// The documents: at the top, in `docs`, and beside files that need one. Those in `docs/spec` describe the original, in
+/// its terms.
 fn documents() -> Vec<PathBuf> {
-    let folders = [root().to_owned(), root().join("docs")];
+    let folders =
+        [".", "docs", "assets", "fuzz", "examples/deploy", "examples/traces"].map(|folder| root().join(folder));
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).expect("a folder"));
     let paths = entries.map(|entry| entry.expect("an entry").path());
     paths.filter(|path| path.extension().is_some_and(|ending| ending == "md")).collect()
