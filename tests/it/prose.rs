@@ -7,8 +7,8 @@ const MOST_WORDS: usize = 30;
 /// Four kinds of readers find their commands on one page.
 const MOST_WORDS_OF_README: usize = 1_200;
 
-/// Documents whose sentences may still be longer: the history, and two pages of the service.
-const LONGER: [&str; 3] = ["CHANGELOG.md", "service.md", "lti.md"];
+/// Documents whose sentences may still be longer: two pages of the service.
+const LONGER: [&str; 2] = ["service.md", "lti.md"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
