@@ -111,7 +111,7 @@ pub struct Evidence {
 }
 
 /// Goes through a trace: `rulings` are the judge's in the order of the steps, `fair` says which book decides, and
-/// `focus` is what findings are about, the most important first.
+/// `focus` names the places of findings, the most important first.
 ///
 /// A trace that can't be read to its end gives evidence as far as it goes.
 pub fn gather<R: Read>(
@@ -284,7 +284,7 @@ struct Count<'a> {
     mid: Option<&'a State>,
     passes: u32,
     polynomials: usize,
-    /// How far the trace's mid record is from what it should hold: positions and velocities.
+    /// The distance of the trace's mid record from the expected one: positions and velocities.
     apart: [f64; 2],
 }
 

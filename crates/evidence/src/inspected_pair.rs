@@ -1,4 +1,4 @@
-//! One pair in one step, from a given state: what the reference asks of it, and what a trace has logged for that.
+//! One pair in one step, from a given state: the reference's computation, and the trace's log of it.
 use crate::inspected_step::{InspectedStep, Inspector, WantedCalls};
 use fosssim_model::{
     scene::{Collision, Scene},

@@ -143,7 +143,7 @@ pub(crate) struct Inspector<'a> {
 }
 
 impl<'a> Inspector<'a> {
-    /// Nothing seen yet. `log` is what the trace has logged in the step, of `logged` polynomials the first ones.
+    /// Nothing seen yet. `log` holds the first of the `logged` polynomials that the trace has in this step.
     pub(crate) fn new(
         scene: &'a Scene,
         step: u32,
@@ -165,7 +165,7 @@ impl<'a> Inspector<'a> {
             zones: Vec::new(),
             calls: Vec::new(),
         };
-        // What is not kept of a list can't be told from what is not there.
+        // An entry that was not kept looks like one that is missing.
         let log = (log.len() == logged && logged > 0).then_some(log);
         let (asked, right) = (Vec::new(), PolynomialLog::default());
         Self { scene, mid, log, wanted, pass: None, asked, right, places: Vec::new(), calls: 0, step }

@@ -1,9 +1,10 @@
-//! Evidence: what a viewer shows of a judged trace. Both motions, what the reference does in each step from the trace's
-//! own state, and the detection calls that findings are about.
+//! Evidence: the data that a viewer shows of a judged trace. Both motions, the reference's events in each step from the
+//! trace's own state, and the detection calls that findings are about.
 //!
-//! Judges nothing: which steps are wrong it is told ([`StepRulings`]). It goes through the trace once more and holds no
-//! more than [`BUDGET`] says, so that it can be made of a trace of any length. A step starts from the trace's own state
-//! (oracle-behaviour.md 4.2), takes over the trace's mid record, and ends where the reference ends from there.
+//! Judges nothing: its caller knows which steps are wrong ([`StepRulings`]). It goes through the trace once more and
+//! holds no more than [`BUDGET`] says, so that it can be made of a trace of any length. A step starts from the trace's
+//! own state (oracle-behaviour.md 4.2), takes over the trace's mid record, and ends where the reference ends from
+//! there.
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 

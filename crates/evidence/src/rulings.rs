@@ -15,7 +15,7 @@ pub struct StepRuling {
     pub damaged: bool,
 }
 
-/// Keeps the rulings on all steps and passes on what it hears.
+/// Keeps the rulings on all steps, and passes all events on.
 pub struct StepRulings<'a> {
     inner: &'a mut dyn Progress,
     steps: Vec<StepRuling>,

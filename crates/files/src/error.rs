@@ -1,4 +1,4 @@
-//! Why a file was not taken.
+//! The reason why a file was not taken.
 use std::{
     ffi::OsStr,
     fs::{File, Metadata},
@@ -6,7 +6,7 @@ use std::{
     os::unix::fs::FileTypeExt,
 };
 
-/// Why a file was not taken. Except for [`FileError::System`] the person who filled the folder caused these.
+/// The reason why a file was not taken. Except for [`FileError::System`] the person who filled the folder caused these.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// Nothing lies there.

@@ -53,7 +53,7 @@ impl From<OwnedFd> for Folder {
 }
 
 impl Folder {
-    /// Opens the folder at the path, to read what lies in it. The path itself may lead over links.
+    /// Opens the folder at the path, to read its entries. The path itself may lead over links.
     ///
     /// # Errors
     /// When there is none or it is closed to us.
@@ -90,7 +90,7 @@ impl Folder {
         &self.shown
     }
 
-    /// The names of what lies in it.
+    /// The names of its entries.
     ///
     /// # Errors
     /// When it can't be read.
@@ -215,7 +215,7 @@ impl Folder {
         Replacement::new(self.clone(), single(name)?, mode)
     }
 
-    /// Writes a whole file by rename: it appears with all its bytes or not at all. What has its name is replaced, and
+    /// Writes a whole file by rename: it appears with all its bytes or not at all. A file of that name is replaced, and
     /// no link is followed.
     ///
     /// # Errors
@@ -243,7 +243,7 @@ impl Folder {
         statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
     }
 
-    /// Which file a name stands for, without opening it; `None` for what is no regular file, or is reached by a link.
+    /// The file behind a name, without opening it; `None` for a link, and for anything but a regular file.
     #[must_use]
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.above(Path::new(name)).ok()?;
@@ -278,7 +278,7 @@ impl Folder {
             .is_ok_and(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::Symlink)
     }
 
-    /// Opens what lies under a path of names, each of which is looked up in the folder before it.
+    /// Opens the entry at a path of names, each of which is looked up in the folder before it.
     fn open_beneath(&self, name: &OsStr) -> io::Result<File> {
         let (above, last) = self.above(Path::new(name))?;
         let above = above.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd);

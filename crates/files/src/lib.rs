@@ -73,7 +73,7 @@ pub fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> 
     Ok(first)
 }
 
-/// Reads a whole file that somebody names, of so many bytes at most; a pipe is read, too, and links are followed.
+/// Reads a whole file that somebody names, of a limited number of bytes; a pipe is read, too, and links are followed.
 ///
 /// # Errors
 /// When it can't be read, is a folder, or is larger.
@@ -94,7 +94,7 @@ pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, format!("it is no text: {}", error.utf8_error())))
 }
 
-/// Reads an open file, which may have so many bytes at most.
+/// Reads an open file of at most this number of bytes.
 ///
 /// # Errors
 /// When it can't be read, or is larger.
@@ -112,7 +112,7 @@ pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<V
 /// How long a pipe may stay without a writer.
 const PIPE_PATIENCE: Duration = Duration::from_secs(5);
 
-/// A reader that waits for what a pipe's writer has yet to write, but not for a writer that never comes.
+/// A reader that waits for the bytes of a pipe's writer, but not for a writer that never comes.
 ///
 /// # Errors
 /// When nobody writes within five seconds, or the pipe can't be read.

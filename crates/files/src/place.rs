@@ -1,4 +1,4 @@
-//! Places in a folder of results: the folder is as somebody named it, what is below it are names of ours.
+//! Places in a folder of results: somebody else named the folder, and we named everything below it.
 use super::{FileError, Folder, Replacement, error::escaped};
 use std::{
     ffi::OsStr,
@@ -98,7 +98,7 @@ impl Place {
         }
     }
 
-    /// The names of what lies here; none where there is no folder.
+    /// The names of the entries; none where there is no folder.
     ///
     /// # Errors
     /// When it can't be read, or is reached by a link.

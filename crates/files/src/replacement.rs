@@ -71,11 +71,11 @@ impl Replacement {
         self.folder.shown().join(&self.name)
     }
 
-    /// Lets the file appear under its name. What has the name already is replaced; a link is, too, and not what it
-    /// leads to.
+    /// Lets the file appear under its name. A file of that name is replaced; a link is, too, and not the file to which
+    /// it leads.
     ///
     /// # Errors
-    /// When it can't be renamed; what had the name is then as it was.
+    /// When it can't be renamed; a file of that name is then as it was.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         renameat(&self.folder, &self.unfinished, &self.folder, &self.name)?;

@@ -113,7 +113,7 @@ impl Grading<'_> {
             Some(Ok(staged)) => staged.build.clone(),
             _ => None,
         };
-        // What ran beside the scene that was the end does not count, or the number of jobs would.
+        // Scenes behind the end that ran beside it do not count: the grade must not depend on the number of jobs.
         let known: Vec<_> =
             results.iter().map(|(result, _)| Some((result.verdict, result.wall + result.judging))).collect();
         if let Some((end, why)) = patience::end(&plan.patience, options.fail_fast, &known) {

@@ -187,7 +187,7 @@ impl<N: Number + Modulus> Mul<Bounded2<N>> for Bounded<N> {
 mod tests {
     use super::*;
 
-    /// `(a + b) - a` with a large `a`: what is left of `b` may be off by a rounding of `a`, and the bound says so.
+    /// `(a + b) - a` with a large `a`: the rest of `b` may be off by a rounding of `a`, and the bound says so.
     #[test]
     fn cancelled_terms_keep_their_weight() {
         let (a, b) = (Bounded::exact(1e10), Bounded::exact(0.1));

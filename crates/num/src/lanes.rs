@@ -99,7 +99,7 @@ impl Default for Instructions {
 const FEW_PAIRS: usize = 8;
 
 impl Instructions {
-    /// The widest instructions, where so many pairs are looked at together that it pays to look for them: a virtual
+    /// The widest instructions, if there are enough pairs to make looking for them worth the time: a virtual
     /// machine may take longer to say what its processor can do than small scenes take to simulate.
     #[must_use]
     pub fn for_pairs(pairs: usize) -> Self {

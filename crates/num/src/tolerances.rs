@@ -1,4 +1,4 @@
-//! Every tolerance of the crate: unit, meaning, and what changing it breaks.
+//! Every tolerance of the crate: unit, meaning, and the effect of changing it.
 
 /// Leading coefficients below this are dropped before a polynomial is solved or logged (absolute, strict;
 /// root-finder.md 15.1). Changing it changes every trace.
@@ -85,7 +85,7 @@ pub const FAIR_NORM_UNITS: f64 = 16.0;
 /// values say less of how much of the tolerances a program uses, smaller ones have more looked at closely.
 pub const FAIR_CLEAR: f64 = 0.25;
 
-/// Fair: what a root finder may be off by at the time of impact, in units of the polynomials' error bounds there.
+/// Fair: the tolerance of a root finder at the time of impact, in units of the polynomials' error bounds there.
 /// Covers deflation and other solvers than the course's.
 pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 
@@ -102,9 +102,8 @@ pub const FAIR_MOMENT: f64 = 8.0;
 pub const FAIR_LOSS: f64 = 4.0;
 
 /// Fair: factors whose binary exponents lie farther from the mean of their kind than this many times its standard
-/// deviation are outliers, which vouch for no polynomial that is gone: so is what fewer than one polynomial in ten
-/// tells beside all others. Larger values let few polynomials vouch for many, smaller ones accuse programs with several
-/// factors.
+/// deviation are outliers, which vouch for no missing polynomial. A factor that fewer than one polynomial in ten shows
+/// is one, too. Larger values let few polynomials vouch for many, smaller ones accuse programs with several factors.
 pub const FAIR_OUTLIER: f64 = 3.0;
 
 /// Fair: states may be this many times as large, or as close together, as any in the reference's own run; beyond that
@@ -114,8 +113,8 @@ pub const FAIR_REACH: f64 = (1_u64 << 20) as f64;
 /// Fair: how often a step's own sensitivity to roundings of its inputs a state may be off.
 pub const FAIR_SENSITIVITY: f64 = 8.0;
 
-/// Known mistakes: a re-simulated coefficient may differ by this share of itself ... Larger values of this and the next
-/// four let small mistakes pass for none; smaller ones call other arithmetic wrong.
+/// Known mistakes: a re-simulated coefficient may differ by this share of itself ... Larger values of this constant and
+/// the next four miss small mistakes; smaller values take other arithmetic for a mistake.
 pub const KNOWN_COEFFICIENT: f64 = 1e-10;
 
 /// Known mistakes: ... and by this share of its polynomial's largest one, since the terms of a coefficient may cancel.

@@ -10,7 +10,7 @@
 //!
 //! A grader starts this once for every trace, and most scenes are small: then the time goes into the pages of the
 //! program that a run touches. So this is a crate of its own, compiled at the full level, and uses nothing that few
-//! runs need: who calls it brings along what draws pictures and what has words for everything ([`Outside`]).
+//! runs need: its caller supplies the drawing of pictures and the words of messages ([`Outside`]).
 #![forbid(unsafe_code)]
 
 mod arguments;
@@ -76,7 +76,7 @@ pub trait Outside {
     /// What to print, when a folder is missing.
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String>;
 
-    /// The step of a computation without result, and what happened there.
+    /// The step of a computation without result, and the reason.
     fn step_error(&self, error: &StepError) -> (u32, String);
 }
 
@@ -89,7 +89,7 @@ pub trait Pictures {
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<(), String>;
 }
 
-/// Runs the drop-in; `program` is the name that its messages show, `words` are what follows it.
+/// Runs the drop-in; `program` is the name that its messages show, `words` are the arguments.
 #[must_use]
 pub fn main(program: &[u8], words: &[OsString], outside: &dyn Outside) -> ExitCode {
     let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();

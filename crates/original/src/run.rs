@@ -185,7 +185,7 @@ fn simulate<W: Write>(
     }
 }
 
-/// Draws the states of a trace, as far as it can be read; what is wrong with it the grading says.
+/// Draws the states of a trace, as far as it can be read; the grading says what is wrong with it.
 fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(), String> {
     if !fs::metadata(name).is_ok_and(|data| data.is_file()) {
         return Err("pictures of a trace (-g, -m with -i) need a file, which can be read twice\n".to_owned());

@@ -39,7 +39,7 @@ pub(crate) enum Task<'a> {
 ///
 /// Grading: hand it to `judge` as its [`Progress`], then call [`Transcript::graded`]. Recording and plain runs: call
 /// `begins`, `step_begins` per step, then [`Transcript::completes`] and [`Transcript::closes`]. The first error of the
-/// stream is kept until [`Transcript::finish`]; what follows it is dropped.
+/// stream is kept until [`Transcript::finish`]; later text is dropped.
 #[derive(Debug)]
 pub(crate) struct Transcript<'a, W: Write> {
     stream: W,

@@ -165,7 +165,7 @@ impl Painter {
         shapes
     }
 
-    /// The picture's rectangle, widened by so many pixels.
+    /// The picture's rectangle, widened by this number of pixels.
     fn frame(&self, margin: f64) -> ClipRectangle {
         let size = self.size();
         ClipRectangle {

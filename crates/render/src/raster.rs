@@ -7,7 +7,7 @@ use crate::{
 };
 use tiny_skia::{FillRule, LineCap, LineJoin, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform};
 
-/// A letter's dot is so many pixels wide and high.
+/// The width and height of a letter's dot, in pixels.
 const DOT: u32 = 2;
 
 /// Lengths of dashes and gaps, in pixels.
@@ -43,7 +43,7 @@ impl Raster {
         self.pixels.data()
     }
 
-    /// Draws shapes in place of what was there.
+    /// Replaces the picture by these shapes.
     pub fn draw(&mut self, background: Colour, shapes: &[Shape]) {
         let [red, green, blue] = background.0;
         self.pixels.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
@@ -163,7 +163,7 @@ mod tests {
         ]
     }
 
-    /// Pixels are part of what the product promises: equal on two runs, and on two machines of a kind.
+    /// The product promises its pixels: equal on two runs, and on two machines of a kind.
     #[test]
     fn pixels_are_equal_on_every_run() {
         let mut raster = Raster::new(Size::new(64, 48).unwrap());

@@ -10,7 +10,7 @@ pub type Point = [f64; 2];
 pub enum Paint {
     /// Filled, or a plain stroke.
     Solid(Colour),
-    /// As solid, but so much of it shows: 0 to 1.
+    /// As solid, with this opacity: 0 to 1.
     Faint(Colour, f64),
     /// A dashed outline, or a dashed stroke.
     Dashed(Colour),

@@ -7,7 +7,7 @@ use crate::{
 };
 use std::fmt::Write;
 
-/// A picture as an SVG document; `title` is what readers of the screen are told.
+/// A picture as an SVG document; `title` is for screen readers.
 #[must_use]
 pub fn document(size: Size, background: Colour, title: &str, shapes: &[Shape]) -> String {
     let (width, height) = (size.width(), size.height());

@@ -9,7 +9,7 @@ const MARGIN: f64 = 1.1;
 /// Coordinates beyond this are left out when a view is fitted: their squares and sums are infinite.
 const FAR: f64 = 1e100;
 
-/// Bodies that leave the scene widen the view up to so many times what the start needs.
+/// The greatest factor by which bodies that leave the scene widen the view of the start.
 const WIDEST: f64 = 4.0;
 
 /// The smallest box around discs; empty at first.

@@ -2,7 +2,7 @@
 //! operations, about polynomials whose small leading coefficients are still there.
 //!
 //! The answers are the same as those for each polynomial alone, where all numbers are finite; lanes in which a question
-//! does not arise compute what nobody looks at.
+//! does not arise compute values that nobody uses.
 use super::super::{
     lanes::{Lanes, Mask, Simd},
     tolerances::{

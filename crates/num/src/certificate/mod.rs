@@ -8,7 +8,7 @@
 //! What suffices: the answer exceeds 1 if the computed positive set of *one* polynomial has no interval with `hi > 0`
 //! and `lo <= 1`, and if no search hangs. Combining several polynomials would decide next to nothing more in scenes.
 //!
-//! What is proved and what is measured:
+//! Proofs and measurements:
 //!
 //! * **Constants, `c z^m`, lines: exact.** The root finder's own few operations, or a bound on their rounding.
 //! * **Parabolas: proved.** The closed form's zeros are those of a polynomial whose coefficients differ by a few units

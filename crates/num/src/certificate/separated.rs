@@ -20,9 +20,9 @@ impl<const LENGTH: usize> Entries<LENGTH> {
         self.values[0].abs() > DISCRIMINANT_MARGIN * self.changes[0]
     }
 
-    /// One step of the division: less so many times the divisor that the leading one vanishes, and up by one place. All
-    /// places are computed, since those behind the last ones stay 0 and what has no branches is done for several at
-    /// once.
+    /// One step of the division: subtracts the multiple of the divisor at which the leading coefficient vanishes, and
+    /// moves up by one place. All places are computed, since those behind the last ones stay 0 and what has no branches
+    /// is done for several at once.
     #[inline(always)]
     fn less(&mut self, divisor: &Self, reciprocal: f64) {
         let Self { values, changes } = self;

@@ -107,7 +107,7 @@ impl LevelCounts {
     }
 }
 
-/// A decision and what is known about it.
+/// A decision, with its enclosure, margin and level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certified {
     /// The decision.
@@ -182,7 +182,7 @@ fn without_errors(problem: &Problem, search: &Search, units: f64) -> Certified {
     }
 }
 
-/// The decision by exact arithmetic; `upper_hits` and `lower_misses` say what is known already.
+/// The decision by exact arithmetic; `upper_hits` and `lower_misses` are the answers that are known already.
 fn by_integers(upper: &Problem, lower: &Problem, units: f64, upper_hits: bool, lower_misses: bool) -> Certified {
     let ExactAnswer::First { time: first, .. } = exact(upper) else {
         debug_assert!(!upper_hits, "the subdivision has proved a hit");

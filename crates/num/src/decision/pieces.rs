@@ -34,7 +34,7 @@ pub(crate) enum Answer {
     Unknown,
 }
 
-/// An answer and what belongs to it.
+/// An answer with its values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Search {
     /// The answer.

@@ -1,4 +1,5 @@
-//! The two extreme choices of a detection's coefficients, and what their signs and Bernstein coefficients exclude.
+//! The two extreme choices of a detection's coefficients, and the decisions that their signs and Bernstein coefficients
+//! exclude.
 //!
 //! Levels L0 and L1 of [`super::decide`]: they look at one polynomial at a time. Every comparison allows for the
 //! rounding of the computation itself, so what it says is proved (rounding as in Higham, *Accuracy and Stability of
@@ -28,7 +29,7 @@ pub(crate) struct Exactly {
     pub(crate) coefficients: [f64; MAX_COEFFICIENTS],
     /// How many there are.
     pub(crate) length: usize,
-    /// Sum of the original coefficients' bounds: what one unit changes at most within `[0, 1]`, divided by `u`.
+    /// Sum of the original coefficients' bounds: the greatest change by one unit within `[0, 1]`, divided by `u`.
     pub(crate) bound: f64,
 }
 

@@ -69,7 +69,7 @@ fn reduced(angle: f64, word: u32) -> Option<Reduced> {
     }
 }
 
-/// The sine of so many quarters of a turn more.
+/// The sine of an angle that is larger by this number of quarter turns.
 fn at_quarter(Reduced { quarters, angle, rest }: Reduced, more: u32) -> f64 {
     let quarter = quarters + more;
     let value = if quarter & 1 == 0 { sine(angle, rest) } else { cosine(angle, rest) };

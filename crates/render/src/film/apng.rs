@@ -11,7 +11,7 @@ pub struct Apng<'a> {
 }
 
 impl<'a> Apng<'a> {
-    /// Begins a film of exactly so many pictures, played for ever.
+    /// Begins a film of exactly this number of pictures, played for ever.
     ///
     /// # Errors
     /// When `out` can't be written, or there is no picture.

@@ -33,7 +33,7 @@ const RIGHT: f64 = WIDTH - 16.0;
 pub const RESIDUALS_AXIS: [f64; 2] = [LEFT, RIGHT];
 const TOP: f64 = 48.0;
 const BOTTOM: f64 = 220.0;
-/// Below the scale is the place of zeros, above it that of what is no number.
+/// Zeros are drawn below the scale, and values that are no numbers above it.
 const LANE: f64 = 14.0;
 const HEIGHT: f64 = 262.0;
 
@@ -101,7 +101,7 @@ impl ResidualPlot<'_> {
     }
 }
 
-/// The worst value among some steps, and its place: what is no number is worse than any number.
+/// The worst value among some steps, and its place: NaN is worse than any number.
 fn worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> {
     let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
     let places = range.start.min(values.len())..range.end.min(values.len());

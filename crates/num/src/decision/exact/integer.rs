@@ -1,4 +1,4 @@
-//! Polynomials with integer coefficients: what the exact decision needs of them.
+//! Polynomials with integer coefficients: the operations that the exact decision needs.
 //!
 //! Greatest common divisors use primitive pseudo-remainders (Knuth, *The Art of Computer Programming* 2, 4.6.1). They
 //! are nearly always constant, which one run modulo a prime shows for a fraction of the price.

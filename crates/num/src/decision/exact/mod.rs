@@ -41,7 +41,7 @@ pub enum ExactAnswer {
 /// * A set that ends at exactly 0 does not count, one that starts at exactly 1 does; `tau` is 0 if all are positive
 ///   right after 0.
 /// * No polynomials, an empty one, or one that vanishes identically: [`ExactAnswer::Never`].
-/// * `c t^m` is what it is; the original takes it as nowhere positive (root-finder.md 17.1).
+/// * `c t^m` keeps its sign; the original takes it as nowhere positive (root-finder.md 17.1).
 #[must_use]
 pub fn exact_first(polynomials: &[&[f64]]) -> ExactAnswer {
     if polynomials.iter().any(|list| list.iter().any(|value| !value.is_finite())) {
