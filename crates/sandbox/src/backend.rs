@@ -71,7 +71,7 @@ impl Supervisor {
         Ok(command)
     }
 
-    /// Starts it for a run, with what the run's walls ask for.
+    /// Starts it for a run, with the descriptors that the run's walls need.
     fn spawn_for(&self, order: &Order) -> Result<Asked, SandboxError> {
         let (name, command) = match order.walls.bubblewrap {
             true => ("in bubblewrap".into(), self.wrapped(MODE_RUN, Some(&wire::path(&order.folder)))),

@@ -1,4 +1,4 @@
-//! Bubblewrap (`bwrap`) in place of the supervisor's own namespaces, where it is installed and allowed what we are not.
+//! Bubblewrap (`bwrap`) in place of the supervisor's own namespaces, where it is installed and has rights that we lack.
 //!
 //! Some systems refuse namespaces to ordinary programs and trust `bwrap` with them. The whole supervisor then runs
 //! inside: with its own processes, without network, and with everything read-only but the working folder. Inside, it

@@ -72,8 +72,8 @@ pub(super) fn ended(order: &Order, report: &Report, stderr: &[u8]) -> Ended {
     Ended::Exited(code)
 }
 
-/// How a run ended whose trace is longer than allowed, or not. The reader's count decides, and not who came first: the
-/// program may have ended, been killed, or met another limit before the supervisor heard of it.
+/// The end of a run whose trace is longer than allowed, or not. The reader's count decides, and not the order of
+/// events: the program may have ended, been killed, or met another limit before the supervisor heard of it.
 pub(super) fn beyond_trace(ended: Ended, is_beyond: bool) -> Ended {
     match ended {
         Ended::Cancelled => Ended::Cancelled,

@@ -31,10 +31,10 @@ pub struct Limits {
     pub output_bytes: u64,
     /// Bytes through the trace pipe.
     pub trace_bytes: u64,
-    /// Bytes on disk in the working folder (blocks in use, so that holes do not count), what was there at the start
+    /// Bytes on disk in the working folder (blocks in use, so that holes do not count), those at the start
     /// included.
     pub folder_bytes: u64,
-    /// Files and folders in the working folder, what was there at the start included.
+    /// Files and folders in the working folder, those at the start included.
     pub folder_files: u64,
     /// Threads and processes at one time.
     pub processes: u32,
@@ -135,7 +135,7 @@ impl Job {
         self
     }
 
-    /// Makes `name` in the working folder a pipe to the grader: what the program writes there arrives at
+    /// Makes `name` in the working folder a pipe to the grader: bytes that the program writes there arrive at
     /// [`Running::trace`](crate::Running::trace) and never on disk. A program that removes or replaces the
     /// pipe has written nothing. Without this, the program writes an ordinary file, for [`collect`](super::collect).
     #[must_use]

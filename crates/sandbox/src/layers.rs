@@ -234,7 +234,7 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     ]
 }
 
-/// The same reports with one wall taken away, and with it what stands on it.
+/// The same reports with one wall taken away, and with it the walls that depend on it.
 pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport> {
     let mut reports = reports.to_vec();
     for report in &mut reports {

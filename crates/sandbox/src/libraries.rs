@@ -1,7 +1,7 @@
 //! Which of the system's libraries a program may read: those that the loader opens for it, and few more.
 //!
 //! Thousands of other files lie beside them that nobody has read for long. Whether one is in memory, and when it was
-//! last read, would be a store in which one run leaves what another finds. The search is the loader's (`ld.so(8)`), but
+//! last read, would be a store in which one run leaves data for another. The search is the loader's (`ld.so(8)`), but
 //! takes every file that it might choose. What a program names itself counts within the system's folders only.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -27,7 +27,7 @@ const CONVERSIONS: [&str; 8] = [
     "UTF-16.so",
     "UTF-32.so",
 ];
-/// The loader's list of where libraries lie, and what it loads into every program.
+/// The loader's list of libraries, and the files that it loads into every program.
 pub(super) const LOADERS: [&str; 2] = ["/etc/ld.so.cache", "/etc/ld.so.preload"];
 /// No program needs more, nor does an interpreter's own library hold more files.
 const MOST: usize = 5_000;
@@ -39,7 +39,7 @@ pub(super) struct Readable {
     pub(super) files: Vec<PathBuf>,
     /// Links by which the loader asks for some of them.
     pub(super) named: Vec<PathBuf>,
-    /// Libraries that are asked for and not there.
+    /// Libraries that the program needs and the system lacks.
     pub(super) missing: Vec<String>,
 }
 
@@ -99,14 +99,14 @@ struct Search<'a> {
     /// Where else to look.
     folders: BTreeSet<PathBuf>,
     found: BTreeSet<PathBuf>,
-    /// Links to what was found.
+    /// Links to the files that were found.
     links: BTreeSet<PathBuf>,
     names: BTreeSet<String>,
     missing: Vec<String>,
 }
 
 impl Search<'_> {
-    /// Finds what is asked for; the answer is what that asks for.
+    /// Finds these libraries; the answer is the libraries that they need in turn.
     fn follow(&mut self, dynamic: Dynamic) -> Vec<Dynamic> {
         self.folders.extend(dynamic.folders);
         let mut fresh = Vec::new();
@@ -123,7 +123,7 @@ impl Search<'_> {
         fresh.iter().filter_map(|path| elf::dynamic(path)).collect()
     }
 
-    /// Keeps what there is of these files, with real paths; the answer is what is new.
+    /// Keeps those of these files that exist, with real paths; the answer is the new ones.
     fn take(&mut self, places: Vec<PathBuf>) -> Vec<PathBuf> {
         let mut fresh = Vec::new();
         for place in places {

@@ -1,4 +1,4 @@
-//! What the machine has of memory, and what is in it, asked of the kernel.
+//! The machine's memory and its use, as the kernel tells them.
 
 #![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
 
@@ -19,7 +19,7 @@ fn asked() -> libc::sysinfo {
 
 /// Has the file read into memory, if it is not there already, and its time of access set.
 pub(super) fn load(path: &Path) {
-    // What is larger would push out what others need.
+    // A larger file would push out pages that others need.
     const LARGEST: u64 = 64 << 20;
     let Ok(mut file) = File::open(path) else { return };
     let Ok(metadata) = file.metadata() else { return };

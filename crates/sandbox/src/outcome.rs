@@ -121,7 +121,7 @@ pub fn signal_name(signal: i32) -> &'static str {
     }
 }
 
-/// Why a program never ran. The text says what is wrong and what to do.
+/// The reason why a program never ran. The text names the fault and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 pub enum StartProblem {
     /// There is no such file.
@@ -231,7 +231,7 @@ pub struct RunOutcome {
     pub wall: Duration,
     /// Peak of the resident memory in bytes.
     pub peak_memory: u64,
-    /// Bytes written: both streams, the trace pipe, and what the working folder holds beyond what was there before.
+    /// Bytes written: both streams, the trace pipe, and the growth of the working folder.
     pub bytes_written: u64,
     /// Standard output.
     pub stdout: Captured,
@@ -242,7 +242,7 @@ pub struct RunOutcome {
 }
 
 impl RunOutcome {
-    /// Of a program that nobody has run, as if it had ended well after it wrote so many bytes.
+    /// The outcome of a program that did not run, as if it had ended well after it wrote this number of bytes.
     #[must_use]
     pub fn without_run(bytes_written: u64) -> Self {
         Self {

@@ -61,7 +61,7 @@ pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
     files(&[Path::new(THIS)]).into_iter().any(|path| {
         let Ok(metadata) = path.metadata() else { return false };
         let sample = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(SAMPLE));
-        // What it is called matters less than what it does: the grader answers to other names, too.
+        // Its name matters less than its content: the grader answers to other names, too.
         let shown = sample && (metadata.dev(), metadata.ino()) == itself;
         metadata.len() == length && !shown && digest_of(&path).is_some_and(|own| own == *digest)
     })
@@ -84,7 +84,7 @@ pub(super) enum Allowed {
 
 /// The rules that allow everything at and beneath `path` except the files `own` (resolved paths).
 ///
-/// Links beneath a folder that is split are left out: what they lead to is allowed where it lies, or not at all.
+/// Links beneath a folder that is split are left out: their targets are allowed in their own places, or not at all.
 pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<Allowed> {
     let Ok(path) = path.canonicalize() else { return Vec::new() };
     let mut allowed = Vec::new();

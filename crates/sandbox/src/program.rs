@@ -112,7 +112,7 @@ fn script(line: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
 }
 
 fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
-    /// An interpreter may be a script itself; the kernel, too, follows so many.
+    /// The depth of interpreters that are scripts themselves; the kernel follows as many.
     const DEEPEST: u32 = 4;
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
     let hint = "; install it, or name another one";

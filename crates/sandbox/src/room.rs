@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Whether a folder of so many bytes may lie in memory: as many as there can be runs at one time, and as much again for
-/// the programs, must leave the machine and our own control groups room.
+/// Whether a folder of this number of bytes may lie in memory: as many as there can be runs at one time, and as much
+/// again for the programs, must leave the machine and our own control groups room.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
     static RUNS: OnceLock<u64> = OnceLock::new();
     let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));

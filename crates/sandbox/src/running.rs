@@ -199,7 +199,7 @@ impl Drop for Running {
             self.canceller.cancel();
             // The program must not wait for a reader that never comes.
             self.trace = None;
-            // Stopped by us: what it did no longer matters.
+            // Stopped by us: its further actions do not matter.
             let _ = self.conclude(*supervised);
         }
     }

@@ -51,7 +51,7 @@ pub(super) fn plain_name(raw: &[u8]) -> Option<&Path> {
     (!leads_on).then(|| Path::new(std::ffi::OsStr::from_bytes(raw)))
 }
 
-/// Which layers the supervisor must put up. A layer that is asked for and fails is an error, never skipped.
+/// The layers that the supervisor must put up. A requested layer that fails is an error, never skipped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Walls {
     pub(super) landlock: bool,

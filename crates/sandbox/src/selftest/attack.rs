@@ -1,4 +1,4 @@
-//! The head of an attack's source: what it proves and how it must end.
+//! The head of an attack's source: its promise, and its expected end.
 //!
 //! The first lines of the C file are comments of the form `// key: value`. `promise` and `expect` are required;
 //! `policy`, `wall` (milliseconds), `needs`, `leaves` and `pipe` are not.

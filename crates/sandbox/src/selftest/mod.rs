@@ -160,7 +160,7 @@ fn attacks() -> Vec<Attack> {
     attacks
 }
 
-/// Where and with what attacks are tried.
+/// The place and the tools of a selftest.
 struct Place<'a> {
     backend: &'a Backend,
     cc: &'a Path,
@@ -333,7 +333,7 @@ fn survivor(program: &Path) -> Option<i32> {
     })
 }
 
-/// The end of what the program said, for a broken promise.
+/// The end of the program's output, for a broken promise.
 fn words(outcome: &RunOutcome) -> String {
     let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes);

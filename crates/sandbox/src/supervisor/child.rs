@@ -1,6 +1,6 @@
 //! The child's way from the fork to the program: every wall goes up, in the order in which it still can.
 //!
-//! Nothing here returns to the supervisor's code. A step that fails is told to the supervisor through the status
+//! Nothing here returns to the supervisor's code. A step that fails reports to the supervisor through the status
 //! socket, which closes by itself when the program has started.
 
 use std::ffi::CString;
@@ -150,7 +150,7 @@ fn limits(order: &Order, own_user: bool) -> io::Result<()> {
     Ok(())
 }
 
-/// Filters that were compiled before there was a child, with what they are for.
+/// Filters that were compiled before there was a child, with their purpose.
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
 /// The purpose of the filters of a child with this number.

@@ -154,7 +154,7 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     Ok(filters)
 }
 
-/// Rules with the answer to what they match; calls without rules always match.
+/// Rules with the answer to matching calls; calls without rules always match.
 type Layer = (Rules, SeccompAction);
 
 /// The answer to each of these calls by layers; the first layer that matches decides.

@@ -1,4 +1,4 @@
-//! What processes hold beyond what their folder and their resident memory show: files without a name that are open,
+//! Holdings of processes that neither their folder nor their resident memory shows: files without a name that are open,
 //! mapped or executed, and memory behind mappings that is resident for nobody.
 
 use std::collections::BTreeSet;
@@ -53,7 +53,7 @@ pub(super) fn of(members: &[(i32, i32)], root: &Path, executed: bool, page_table
         }
     }
     let shown = as_shown(root);
-    // How much of a mapped file is on disk, only root may ask: what is mapped is taken for what is there.
+    // How much of a mapped file is on disk, only root may ask: so the mapped size counts in full.
     mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
     for mapping in mapped {
         let memory = mapping.shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));

@@ -1,12 +1,12 @@
 //! A supervisor for all runs of one submission, one after the other.
 //!
 //! What does not differ between them is made once: the start of this program, a user and a control group, a root folder
-//! with what every run may see, the network namespace that has no network, Landlock's places and the filters. For each
-//! run the keeper forks into new namespaces of processes, mounts and messages; that child is the run's supervisor and
-//! the first process of its world, with a copy of the prepared mounts, a working folder in memory and a `/proc` of its
-//! own. All that a run could leave goes away with these; the prepared root it sees read-only, and no filter lets it
-//! make a socket. The next run begins when the kernel has ended the last process of the one before. A keeper whose run
-//! did anything but end by itself serves no other (the grader sees to that).
+//! with the files that every run may see, the network namespace that has no network, Landlock's places and the filters.
+//! For each run the keeper forks into new namespaces of processes, mounts and messages; that child is the run's
+//! supervisor and the first process of its world, with a copy of the prepared mounts, a working folder in memory and a
+//! `/proc` of its own. All that a run could leave goes away with these; the prepared root it sees read-only, and no
+//! filter lets it make a socket. The next run begins when the kernel has ended the last process of the one before. A
+//! keeper whose run did anything but end by itself serves no other (the grader sees to that).
 //!
 //! The guardian outside holds user and control group until the keeper has ended; the keeper dies with it, and every run
 //! with the keeper.
@@ -87,7 +87,7 @@ enum Side {
     Keeper(Keeper),
 }
 
-/// Takes what runs have to themselves, and prepares their world in a child.
+/// Takes the resources that a run has to itself, and prepares its world in a child.
 fn settle(order: &Order) -> Result<Side, Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     sys::new_session().map_err(stage("start the supervisor's session"))?;

@@ -19,7 +19,7 @@ use crate::wire::{Failure, Order};
 pub(super) enum Side {
     /// Inside: go on.
     Inside,
-    /// Outside, and what was inside has ended with this code.
+    /// Outside, after the process inside has ended with this code.
     Outside(u8),
 }
 

@@ -1,12 +1,12 @@
-//! Ends what a lost supervisor may have left.
+//! Ends the processes that a lost supervisor may have left.
 
 use std::time::Duration;
 
 use super::processes::{of_session, of_user, stop_then_kill};
 use super::slot;
 
-/// Ends what a lost supervisor may have left: the processes of its child's session and those of the child's own user. A
-/// process namespace ends all of its processes by itself, and its sessions are not ours to name.
+/// Ends the processes that a lost supervisor may have left: those of its child's session and those of the child's own
+/// user. A process namespace ends all of its processes by itself, and its sessions are not ours to name.
 pub(crate) fn end(session: Option<i32>, user: Option<u32>) {
     const ROUNDS: u32 = 1000;
     // With the supervisor its hold on the user is gone, and another run may have it by now.

@@ -1,4 +1,4 @@
-//! What is there before a run begins: what it has to itself on this machine, and what was made ready for it.
+//! The state before a run begins: the resources that it has to itself on this machine, and the preparations for it.
 
 use std::io;
 use std::os::fd::BorrowedFd;
@@ -21,7 +21,7 @@ pub(super) struct Held {
 }
 
 impl Held {
-    /// Takes what the order asks for.
+    /// Takes the resources that the order asks for.
     pub(super) fn take(order: &Order) -> Result<Self, Failure> {
         let taken = |error: io::Error| Failure::new(format!("take a user of its own ({error})"), &error);
         let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;

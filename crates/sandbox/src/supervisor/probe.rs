@@ -1,4 +1,4 @@
-//! Tries every wall once, in a child that then ends, and reports what the kernel said.
+//! Tries every wall once, in a child that then ends, and reports the kernel's answers.
 
 use std::fs::{File, Permissions};
 use std::io::{self, Write};
@@ -103,7 +103,7 @@ fn try_execution() -> (Option<String>, bool) {
     }
 }
 
-/// Ends a child by its control group; the answer is what such a group limits, and whether it could end the child.
+/// Ends a child by its control group; the answer is the limits of such a group, and whether it could end the child.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let group = Group::make(&Order { memory: 1 << 30, processes: 64, ..Order::default() })?;
     let mut entrances = group.entrances()?;

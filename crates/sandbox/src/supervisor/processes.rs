@@ -40,7 +40,7 @@ impl Stat {
 pub(super) struct Usage {
     /// Processor time of those that live, and of their reaped children.
     pub(super) cpu: Duration,
-    /// Resident memory in bytes, and what of it was moved to a disk.
+    /// Resident memory in bytes, with the part that was moved to a disk.
     pub(super) memory: u64,
     /// Threads.
     pub(super) threads: u64,
@@ -125,7 +125,7 @@ pub(super) struct Left {
 /// of a process namespace in which there is nobody but the run.
 ///
 /// Everybody is stopped before anybody is killed: a fork bomb would otherwise use each place that becomes free.
-/// `reaped` is told of every process that was reaped.
+/// `reaped` is called for every process that was reaped.
 pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::Reaped)) -> Left {
     // Only a process that the kernel itself holds (state D) lasts so long.
     const PATIENCE: Duration = Duration::from_secs(20);

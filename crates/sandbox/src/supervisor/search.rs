@@ -2,7 +2,7 @@
 //!
 //! The kernel goes through a filter once for each call that exists when it is installed, and again for each call of the
 //! program whose answer depends on more than the number. The compiler's chain of comparisons is four instructions for a
-//! call; a search that halves what is left takes some twenty for any. What a run spends on its filters then follows
+//! call; a binary search takes some twenty for any. The cost of the filters then follows
 //! their length, because the kernel checks and translates them each time; so calls that are answered alike share one
 //! answer.
 
@@ -38,7 +38,7 @@ pub(super) fn filter(answers: &BTreeMap<u32, Answer>, otherwise: u32, mut frame:
     if frame.pop().is_none_or(|last| last.code != RETURN_CONSTANT) {
         return Err(io::Error::other("a filter that does not end with its answer"));
     }
-    // The number is the first word of what the kernel shows.
+    // The number is the first word of the kernel's description of a call.
     frame.push(sock_filter { code: LOAD_ABSOLUTE, jt: 0, jf: 0, k: 0 });
     let mut fragments = Vec::new();
     let leaves = leaves(answers, otherwise, &mut fragments);
@@ -184,7 +184,7 @@ impl Tail {
     }
 }
 
-/// Passes over so many instructions.
+/// Skips this number of instructions.
 fn jump(over: usize) -> sock_filter {
     sock_filter { code: JUMP, jt: 0, jf: 0, k: over as u32 }
 }

@@ -17,7 +17,7 @@ pub(super) struct Capture {
 }
 
 impl Capture {
-    /// Captures what comes through the pipe, up to `limit` bytes.
+    /// Captures the bytes from the pipe, up to `limit` of them.
     pub(super) fn new(pipe: PipeReader, limit: u64) -> io::Result<Self> {
         sys::set_blocking(pipe.as_fd(), false)?;
         Ok(Self { pipe: Some(pipe), limit, bytes: Vec::new(), truncated: false })
@@ -28,7 +28,7 @@ impl Capture {
         self.pipe.as_ref().map(AsFd::as_fd)
     }
 
-    /// Takes what is there. A stream over its limit is closed and marked; the rest is nobody's.
+    /// Takes the bytes that have arrived. A stream over its limit is closed and marked; the rest is dropped.
     pub(super) fn take(&mut self) {
         let Some(pipe) = &mut self.pipe else { return };
         // Memory that is touched for the first time costs more than another call, and most programs print little.

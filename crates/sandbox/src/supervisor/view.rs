@@ -1,4 +1,4 @@
-//! The only files in sight of a run: a root folder of its own with what the order names, under the usual paths.
+//! The only files in sight of a run: a root folder of its own with the files of the order, under the usual paths.
 //!
 //! The same places that Landlock allows (see `walls.rs`) appear here, read-only but for the working folder; nothing
 //! else of the host exists, not even by name. There is no writable place in memory (`/tmp`, `/dev/shm`), because what
@@ -59,7 +59,7 @@ pub(super) fn build(order: &Order) -> Result<(), Failure> {
     close_root()
 }
 
-/// The same without what is a run's own, its working folder and its processes: [`complete`] adds them to a copy.
+/// The same without a run's own parts, its working folder and its processes: [`complete`] adds them to a copy.
 ///
 /// # Errors
 ///
@@ -121,7 +121,7 @@ fn begin(order: &Order) -> Result<View, Failure> {
     }
     let folders = libraries::FOLDERS.map(PathBuf::from);
     for path in folders.into_iter().chain(order.named.iter().map(wire::path)) {
-        // Only the links on the way: what they lead to is among the executable files, or was exchanged meanwhile.
+        // Only the links on the way: their targets are among the executable files, or were exchanged meanwhile.
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
     for (name, number) in [("/dev/fd", ""), ("/dev/stdin", "/0"), ("/dev/stdout", "/1"), ("/dev/stderr", "/2")] {
@@ -155,7 +155,7 @@ fn hide(path: &Path) -> io::Result<()> {
     mounts::attach(nothing.as_fd(), &c_string(path)?)
 }
 
-/// Shows the run's processes, and to a submission nothing else: what else lies in `/proc` counts for the whole machine.
+/// Shows the run's processes, and to a submission nothing else: other entries of `/proc` count for the whole machine.
 fn add_processes(order: &Order) -> Result<(), Failure> {
     let shown = if order.tools { c"" } else { c"subset=pid" };
     mounts::mount(c"proc", c"/proc", shown).map_err(stage("mount /proc"))
@@ -170,7 +170,7 @@ fn close_root() -> Result<(), Failure> {
     mounts::restrict_at(c"/", READ_ONLY).map_err(stage("close the root folder"))
 }
 
-/// Puts a file system in memory at the path, with a copy of what lies in another folder.
+/// Puts a file system in memory at the path, with a copy of another folder's contents.
 fn lay_out(folder: &Path, from: &Path, order: &Order) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let options = CString::new(volatile::options(order)).map_err(io::Error::other)?;
@@ -199,8 +199,8 @@ struct View {
 }
 
 impl View {
-    /// Brings what lies at the path into sight under the same path. What the host lacks is left out, and so are its
-    /// processes: `/proc` is made anew.
+    /// Brings the file or folder at the path into sight under the same path. A path that the host lacks is left out,
+    /// and so are its processes: `/proc` is made anew.
     fn place(&mut self, path: &Path, access: Access) -> io::Result<()> {
         let Some(real) = self.resolve(path)? else { return Ok(()) };
         if real == Path::new("/") {

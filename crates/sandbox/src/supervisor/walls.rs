@@ -20,7 +20,7 @@ use crate::own::{self, Allowed};
 use crate::sys;
 use crate::wire::{self, Order};
 
-/// The newest rules we know and have tried; older kernels enforce what they can, [`LayerReport`] says what.
+/// The newest rules we know and have tried; older kernels enforce a part of them, which [`LayerReport`] names.
 ///
 /// [`LayerReport`]: crate::LayerReport
 const NEWEST: ABI = ABI::V6;
@@ -68,7 +68,7 @@ pub(super) fn in_sight(order: &Order) -> Vec<PathBuf> {
     libraries.into_iter().chain(fixed).chain(named).collect()
 }
 
-/// The places outside the working folder that the program may reach, open, with what it may do there.
+/// The places outside the working folder that the program may reach, open, with its rights there.
 pub(super) struct Places(Vec<(OwnedFd, BitFlags<AccessFs>)>);
 
 impl Places {
@@ -108,7 +108,7 @@ impl Places {
     }
 
     /// The same under numbers that no program may have, so that they do not count for the limit of a child. `None`
-    /// where this process itself may not have so many.
+    /// where this process itself may not have as many.
     pub(super) fn out_of_the_way(self) -> Option<Self> {
         const FIRST: u32 = 800;
         let moved =
@@ -154,8 +154,8 @@ pub(super) fn rules(order: &Order, places: &Places, folder: BorrowedFd<'_>) -> i
     ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(refused)
 }
 
-/// Adds what the process may read of its own entry in `/proc`, file by file, because the entry also shows sockets,
-/// mounts and groups of the host and which pages of a file are in memory. Only the child itself can do so.
+/// Adds the files of its own entry in `/proc` that the process may read, one by one, because the entry also shows
+/// sockets, mounts and groups of the host and which pages of a file are in memory. Only the child itself can do so.
 pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {
     let Ok(own) = at_place(Path::new("/proc/self")) else { return Ok(ruleset) };
     let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));
@@ -185,7 +185,7 @@ pub(super) fn nothing(scopes: bool) -> io::Result<RulesetCreated> {
     handled(scopes, NEWEST)
 }
 
-/// The rules of an older kernel, to try what they hold; 0 means the newest.
+/// The rules of an older kernel, to test them; 0 means the newest.
 fn version(number: u8) -> ABI {
     [NEWEST, ABI::V1, ABI::V2, ABI::V3, ABI::V4, ABI::V5].get(usize::from(number)).copied().unwrap_or(NEWEST)
 }
