@@ -1,6 +1,6 @@
 //! A mistake that is pinned to a copy of the sample program: whatever the copy is called and however it is started, it
 //! makes this mistake. So there is a wrong program that can be handed in like a student's: the sample itself, which is
-//! right unless it is told otherwise, is refused as a submission.
+//! right by default, is refused as a submission.
 //!
 //! The sample has a place for the mistake's id; the copy has it written there. Nothing has to be read when it runs,
 //! which the sandbox might not allow.

@@ -33,7 +33,7 @@ pub(super) fn choose_colour(colour: Colour) {
 /// Whether `--quiet` was given.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// From now on there are no reports on standard output, no bars and no warnings; errors are told all the same.
+/// From now on there are no reports on standard output, no bars and no warnings; errors are printed all the same.
 pub(super) fn be_quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
@@ -154,12 +154,13 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// A bar over so many steps.
+    /// A bar over this number of steps.
     pub(super) fn new(steps: u32) -> Self {
         Self { steps: u64::from(steps), begun: wants_bars().then(Instant::now), shown: None }
     }
 
-    /// A bar over so many runs of a program, each of which may take long: shown at once, with the time that has passed.
+    /// A bar over this number of runs of a program, each of which may take long: shown at once, with the time that has
+    /// passed.
     pub(super) fn of_runs(runs: u64) -> Self {
         let bar = |runs| {
             let bar = show_bars().add(ProgressBar::new(runs));

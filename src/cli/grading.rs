@@ -143,7 +143,7 @@ impl FromStr for Shard {
 /// The reader of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Audience {
-    /// Staff: every group. How much is told of each scene is the suite's choice of hints, or `--hints`.
+    /// Staff: every group. The suite's hints, or `--hints`, say how much of each scene is shown.
     Staff,
     /// The student: the groups that the suite shows students at once.
     Student,

@@ -26,7 +26,7 @@ pub const LONGEST: u64 = 64 << 20;
 /// Memory for wrong steps beyond the beginning, in bytes.
 const LATE: usize = 8 << 20;
 
-/// What is read beyond the place where judging stopped is read in pieces of this size.
+/// The size of pieces that are read beyond the place where judging stopped.
 const PIECE: usize = 64 * 1024;
 
 /// Keeps a trace while it is read and judged. It stays whole when judging panics.

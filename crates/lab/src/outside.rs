@@ -1,4 +1,4 @@
-//! What is told of programs whose mistake the catalogue does not have: the measure of explanations where they can't
+//! The explanations of programs whose mistake the catalogue does not have: the measure of explanations where they can't
 //! know.
 use crate::mutants::{Mutant, mutants};
 use fosssim_oracle::{
@@ -11,7 +11,7 @@ use fosssim_oracle::{
 };
 use rayon::prelude::*;
 
-/// How what is told of a mistake stands to it, from best to worst.
+/// The rating of an explanation of a mistake, from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rating {
     /// Where it is, and what it is.
@@ -31,7 +31,7 @@ pub struct Rated {
     pub id: &'static str,
     /// The mistake of the program, in words.
     pub what: &'static str,
-    /// How what is told stands to that.
+    /// The rating of the explanations.
     pub rating: Rating,
     /// The explanations, the likeliest first.
     pub told: Vec<Explanation>,
@@ -66,7 +66,7 @@ pub fn rated(wanted: impl Fn(usize) -> bool) -> Vec<Rated> {
     wanted.into_par_iter().map(rate).collect()
 }
 
-/// The best of what is told, unless something misleads.
+/// The rating of the best explanation, unless one misleads.
 fn overall(mutant: &Mutant, told: &[Explanation]) -> Rating {
     // That NaN is there is true of any mistake that makes it.
     let ratings = || told.iter().filter(|one| !one.is_not_finite()).map(|one| rating(mutant, one));

@@ -217,7 +217,7 @@ fn last_name(path: &Path) -> OsString {
 }
 
 /// The names of what lies at these paths, none twice: the last names; where several of these look the same, those that
-/// only look so are told exactly, those that are the same get their paths, and what looks the same then a number.
+/// only look so are shown exactly, equal ones get their paths, and names that still look the same get a number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();

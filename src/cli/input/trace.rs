@@ -70,7 +70,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         (reader, plain.filter(|_| !packed), Some(Identity::of(&metadata)))
     };
     let mut start = Vec::new();
-    // What can't be read is told where it is read again.
+    // The second reading reports bytes that can't be read.
     let _ = reader.by_ref().take(LOOKED_AT).read_to_end(&mut start);
     let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));

@@ -1,4 +1,4 @@
-//! What is told of programs whose mistake the catalogue does not have (`mutants`): a line on each, and the
+//! Prints the explanations of programs whose mistake the catalogue does not have (`mutants`): a line on each, and the
 //! figures that `docs/fair.md` names. Ends with status 1 when something misleads.
 //!
 //! usage: `outside-table [PART-OF-A-NAME]`

@@ -187,7 +187,7 @@ impl Wanted {
     }
 }
 
-/// A wrong program is worth so many pairs of properties.
+/// The worth of a wrong program, in pairs of properties.
 const PROGRAM: f64 = 6.0;
 
 /// The number of scenes of a round on which wrong programs run: those with the most pairs of properties, and as many

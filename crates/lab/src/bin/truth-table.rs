@@ -1,8 +1,8 @@
-//! Holds what is said of stages to the facts: programs with each mistake of the catalogue, with each mutant, and with
-//! pairs of mistakes, on all probe scenes. Prints what an independent reader of the traces denies, and how often each
-//! sort of sentence was said. Ends with status 1 when a sentence is false.
+//! Checks the sentences about stages against the facts: programs with each mistake of the catalogue, with each mutant,
+//! and with pairs of mistakes, on all probe scenes. Prints what an independent reader of the traces denies, and how
+//! often each sort of sentence was said. Ends with status 1 when a sentence is false.
 //!
-//! usage: `truth-table [EVERY]`: of the pairs of mistakes one of so many (50 unless told).
+//! usage: `truth-table [EVERY]`: of the pairs of mistakes every EVERY-th (50 by default).
 use std::{collections::BTreeMap, process::ExitCode};
 
 use fosssim_lab::{mutants::mutants, witness::checked};

@@ -94,7 +94,7 @@ fn said_of(program: &[&Row]) -> (Said, String) {
     (said, format!("{ids:?}: {said:?}: {:?}", told.iter().map(|one| (&one.key, &one.same_as)).collect::<Vec<_>>()))
 }
 
-/// Whether a program with the mistakes that are told leaves the same traces.
+/// Whether a program with the named mistakes leaves the same traces.
 fn does_the_same(program: &[&Row], told: &[Explanation]) -> bool {
     let stages = told.iter().filter(|one| one.key == Explanation::UNFINISHED).flat_map(|one| &one.same_as);
     let rows: Vec<&Row> = told.iter().map(|one| &one.key).chain(stages).filter_map(|key| student::find(key)).collect();
@@ -118,7 +118,7 @@ fn of_several_mistakes_some_are_named_and_no_other() {
     assert!(10 * all >= 8 * said.len(), "{all} all, {some} some, {nothing} nothing: {lines:#?}");
 }
 
-/// A mistake that nobody knows beside one of the catalogue: what is told is of one of the two.
+/// A mistake that nobody knows beside one of the catalogue: the explanation is about one of the two.
 #[test]
 fn beside_an_unknown_mistake_nothing_else_is_told() {
     let rows: Vec<&Row> =

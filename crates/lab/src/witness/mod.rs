@@ -1,5 +1,5 @@
-//! Holds what is said of stages to the facts: an independent reader of traces, which asks of each sentence whether some
-//! step is as it says. For tests and the lab.
+//! Checks the sentences about stages against the facts: an independent reader of traces, which asks of each sentence
+//! whether some step is as it says. For tests and the lab.
 mod says;
 mod step;
 
@@ -9,7 +9,7 @@ use fosssim_oracle::{
     student::{self, Student},
 };
 
-/// Whether what is said of stages is true of the trace; true of what says nothing of them.
+/// Whether a sentence about stages is true of the trace; also true for explanations of other things.
 #[must_use]
 pub fn is_true(scene: &Scene, trace: &[u8], told: &Explanation) -> bool {
     let About::Stage(fault) = &told.about else { return true };

@@ -13,7 +13,7 @@ use fosssim_oracle::diagnose::{
 /// A zone of the first round: its particles, and whether a half-plane is in it.
 type Zone<'a> = (&'a [usize], bool);
 
-/// Whether what is said is so in this step.
+/// Whether the sentence is true of this step.
 pub(super) fn is_so(scene: &Scene, step: &Step, fault: &StageFault) -> bool {
     let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
     match fault {

@@ -4,8 +4,8 @@ use super::{Check, first};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
 
-/// What to look at; nothing where the explanations say it themselves: a known mistake says where to look, a polynomial
-/// has its name.
+/// Places to look at; nothing where the explanations say it themselves: a known mistake says where to look, a
+/// polynomial has its name.
 pub(super) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first::first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {

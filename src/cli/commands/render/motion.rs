@@ -1,4 +1,4 @@
-//! The motion that is drawn: where all bodies are after each step that is asked for.
+//! The motion that is drawn: the places of all bodies after each requested step.
 //!
 //! A motion is read or simulated once, and kept as plain numbers in memory, or in a nameless temporary file when it is
 //! large; so the view can be fitted to all of it, and a trace may come from a pipe.

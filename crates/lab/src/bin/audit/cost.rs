@@ -36,7 +36,7 @@ struct Slowest {
     what: String,
 }
 
-/// Tries so many traces of each scene.
+/// Tries this number of traces of each scene.
 pub fn run(of_each: u64, seed: u64, corpus: Option<&Path>) -> ExitCode {
     let mut scenes = super::forged::scenes(corpus);
     if let Ok(part) = std::env::var("SCENE") {

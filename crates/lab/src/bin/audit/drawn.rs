@@ -27,7 +27,7 @@ const VARIANTS: [&str; 4] = ["quintic-right", "normalised-per-pair", "rearranged
 /// The number of differing lines that are shown, around the first place.
 const SHOWN: usize = 20;
 
-/// Compares so many traces.
+/// Compares this number of traces.
 pub fn run(traces: u64, seed: u64) -> ExitCode {
     let (next, accepted) = (AtomicU64::new(0), AtomicU64::new(0));
     let differing = Mutex::new(Vec::new());

@@ -18,7 +18,7 @@ use std::{
 /// The greatest number of faults that are shown.
 const SHOWN: usize = 40;
 
-/// Tries so many of each kind on each scene, those of a corpus's folder, if there is one, among them.
+/// Tries this number of each kind on each scene, those of a corpus's folder, if there is one, among them.
 pub fn run(of_each: u64, seed: u64, corpus: Option<&Path>) -> ExitCode {
     let scenes = scenes(corpus);
     let (next, faults) = (AtomicUsize::new(0), Mutex::new(Vec::new()));

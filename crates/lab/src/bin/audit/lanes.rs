@@ -25,7 +25,7 @@ struct Compared {
     first: Option<(u64, String)>,
 }
 
-/// Compares steps until so many pairs have been looked at.
+/// Compares steps until this number of pairs has been compared.
 pub fn run(pairs: u64, seed: u64) -> ExitCode {
     let (next, calls) = (AtomicU64::new(0), AtomicU64::new(0));
     let total = Mutex::new(Compared::default());

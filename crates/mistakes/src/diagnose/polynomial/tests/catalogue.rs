@@ -8,7 +8,7 @@ use fosssim_model::{
 };
 use fosssim_num::vector::{Vec2, at};
 
-/// What the scenes are like.
+/// The style of the scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Style {
     /// Everything moves, and nothing is like anything else.
