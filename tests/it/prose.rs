@@ -1,4 +1,5 @@
-//! Documents that people read: their links lead somewhere, and their sentences are short.
+//! Documents and comments that people read: links lead somewhere, sentences are short, and nouns stand for things.
+use crate::layers::rust_files;
 use std::path::{Path, PathBuf};
 
 /// A sentence of more words is read twice.
@@ -69,6 +70,32 @@ fn sentences_end_before_they_must_be_read_twice() {
             sentences(&text).iter().filter(|words| words.len() > MOST_WORDS).map(|words| words.join(" ")).collect();
         assert!(long.is_empty(), "{}: {long:#?}", document.display());
     }
+}
+
+/// Words in place of a noun, with which a sentence must be read twice.
+const STAND_INS: [&str; 2] = ["whoever", "so many"];
+
+#[test]
+fn nouns_stand_for_people_and_numbers() {
+    let mut found = Vec::new();
+    let mut look = |path: &Path, text: &str| {
+        let text = text.to_lowercase();
+        found.extend(
+            STAND_INS.iter().filter(|word| text.contains(**word)).map(|word| format!("{}: {word}", path.display())),
+        );
+    };
+    let is_old = |path: &Path| LONGER.iter().chain(&["CHANGELOG.md"]).any(|name| path.ends_with(name));
+    for document in documents().iter().filter(|path| !is_old(path)) {
+        look(document, &paragraphs(&text(document)));
+    }
+    let mut sources = Vec::new();
+    ["src", "crates"].iter().for_each(|folder| rust_files(&root().join(folder), &mut sources));
+    for source in sources.iter().filter(|path| !path.starts_with(root().join("crates/server"))) {
+        let text = text(source);
+        let comments: Vec<&str> = text.lines().filter(|line| line.trim_start().starts_with("//")).collect();
+        look(source, &comments.join("\n"));
+    }
+    assert!(found.is_empty(), "{found:#?}");
 }
 
 #[test]

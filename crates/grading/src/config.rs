@@ -253,7 +253,7 @@ impl Checker<'_> {
     }
 }
 
-/// A group may have so many points.
+/// The greatest number of points of a group.
 pub const MOST_POINTS: Range<f64> = 0.0..1e6;
 
 const MIB: f64 = 1024.0 * 1024.0;

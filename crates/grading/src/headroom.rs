@@ -19,14 +19,14 @@ use fosssim_num::tolerances::PARITY_COEFFICIENT;
 /// The largest power of two that lengths are multiplied by.
 pub const MOST_DOUBLINGS: u32 = 20;
 
-/// A scene that fails the reference's own trace after so many doublings or fewer can't be graded fairly by the
+/// A scene that fails the reference's own trace after this number of doublings or fewer can't be graded fairly by the
 /// original's rules: a correct program that rounds otherwise is off by more than the last place.
 pub const FAIR_DOUBLINGS: u32 = 1;
 
 /// Where the original's rules fail the reference's own trace.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstFailure {
-    /// Lengths have been doubled so many times; 0 is the scene as it is.
+    /// The number of times that lengths were doubled; 0 is the scene as it is.
     pub doublings: u32,
     /// How many findings there are.
     pub findings: u64,

@@ -45,7 +45,7 @@ pub struct Located {
     pub failing: Failing,
     /// The contents of all these scenes, the most general first; the scenes can't tell them apart.
     pub contents: Vec<Content>,
-    /// In so many scenes it fails; all of them contain it.
+    /// The number of scenes in which it fails; all of them contain it.
     pub failed: usize,
     /// The number of scenes that contain it.
     pub with: usize,
@@ -158,7 +158,7 @@ pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
     })
 }
 
-/// How probable it is that so many scenes, drawn at random from `all`, all lie among these `with`.
+/// The probability that this number of scenes, drawn at random from `all`, all lie among these `with`.
 fn chance(failed: usize, with: usize, all: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let share = |one: usize| (with - one) as f64 / (all - one) as f64;

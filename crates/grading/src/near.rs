@@ -17,7 +17,7 @@ pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
     near.min_by_key(|(slips, _)| *slips).map(|(_, candidate)| candidate)
 }
 
-/// The names that are nearest to what was typed, at most so many, the nearest first. A name is compared as a whole and
+/// The names nearest to a typed word, at most `most` of them, the nearest first. A name is compared as a whole and
 /// by its last part, since its group may be what was mistyped or left out.
 #[must_use]
 pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {

@@ -13,7 +13,7 @@ use std::{collections::BTreeMap, io, path::Path};
 /// A suite of more bytes is none.
 pub const LARGEST_SUITE: u64 = 1 << 20;
 
-/// A suite may have so many scenes, of so many bytes together.
+/// The greatest number of scenes of a suite, and of bytes in all of them.
 pub const MOST_SCENES: usize = 10_000;
 /// See [`MOST_SCENES`].
 pub const MOST_SCENE_BYTES: u64 = 256 << 20;

@@ -26,7 +26,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A submission's folder may hold so many bytes and files, nested so deep; more is no homework.
+/// The greatest size, number of files and depth of a submission's folder; more is no homework.
 const LARGEST_FOLDER: u64 = 1 << 30;
 const MOST_FILES: u64 = 20_000;
 /// The greatest size of a build's folder, sources included.

@@ -13,7 +13,7 @@ use fosssim_model::{
 /// The work that every trace may ask for, however simple its scene is: about a tenth of a second's.
 pub(crate) const FLOOR: u64 = 1_000_000;
 
-/// Beyond that, so many times the scene's own run by the original's rules ...
+/// Beyond that, this multiple of the scene's own run by the original's rules ...
 const PARITY: u64 = 10;
 /// ... and where the fair rules may repeat steps: at most 26 times, of which the trace of a wrong program needs 11.
 const FAIR: u64 = 40;

@@ -17,7 +17,7 @@ use fosssim_model::{
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 use std::io::Read;
 
-/// After a step that differs so many steps at most go the long way at once.
+/// The greatest number of steps that go the long way at once after a step that differs.
 const LONGEST_PAUSE: u32 = 63;
 
 /// Looks for such steps.

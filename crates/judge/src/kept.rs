@@ -37,7 +37,7 @@ pub struct Keeper<'a> {
 }
 
 impl<'a> Keeper<'a> {
-    /// For a trace of this scene; of its beginning so many bytes are kept at most, and nothing at all with 0.
+    /// For a trace of this scene; at most `most` bytes of its beginning are kept, and nothing at all with 0.
     #[must_use]
     pub fn new(scene: &'a Scene, most: usize) -> Self {
         Self { scene, store: Mutex::new(Store::new(Layout::of(scene), most)) }
@@ -353,7 +353,7 @@ impl KeptTrace<'_> {
         &self.store.late
     }
 
-    /// The first bytes, at most so many.
+    /// The first bytes, at most this number.
     #[must_use]
     pub fn bytes(&self, most: usize) -> Vec<u8> {
         let mut bytes = Vec::new();

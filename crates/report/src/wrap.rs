@@ -6,7 +6,7 @@
 //! ours.
 use unicode_width::UnicodeWidthChar;
 
-/// The last column of a line keeps its indentation when at least so many columns are left to it.
+/// The last column of a line keeps its indentation when at least this number of columns is left to it.
 const ROOM: usize = 30;
 
 /// The text with no line wider than `width`, as far as words allow.
@@ -66,7 +66,7 @@ fn broken(result: &mut String, line: &str, width: usize) {
     }
 }
 
-/// What stands before each further line: so many blanks, and the mark of a program's output.
+/// The start of each further line: a number of blanks, and the mark of a program's output.
 fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
     let lead = line.len() - body.len();
     if body.starts_with("| ") {

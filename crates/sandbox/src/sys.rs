@@ -541,7 +541,7 @@ pub(super) fn send_descriptors<const N: usize>(
     let mut space = ControlSpace([0; 64]);
     let mut part = libc::iovec { iov_base: (&raw mut byte).cast(), iov_len: 1 };
     // SAFETY: an all-zero header is valid; its pointers are set to values that outlive the call, the control space is
-    // larger than CMSG_SPACE of so many descriptors, so that the first header and its data lie within it.
+    // larger than CMSG_SPACE of this number of descriptors, so that the first header and its data lie within it.
     unsafe {
         let mut message: libc::msghdr = std::mem::zeroed();
         message.msg_iov = &raw mut part;

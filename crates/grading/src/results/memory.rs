@@ -15,7 +15,7 @@ pub struct MemoryResults {
 }
 
 impl MemoryResults {
-    /// A place for the results of so many keys: what comes later can't be kept, as on a disk that is full.
+    /// A place for the results of a limited number of keys: later ones can't be kept, as on a disk that is full.
     #[must_use]
     pub fn with_room(room: usize) -> Self {
         Self { room: Some(room), ..Self::default() }

@@ -288,7 +288,7 @@ pub fn decides(motion: &BoundedPairMotion, expected: &Expected) -> Option<bool> 
     }
 }
 
-/// Inputs of so many bits make a parabola's coefficients, of fourth degree in them, and its discriminant exact.
+/// Inputs of this number of bits make a parabola's coefficients, of fourth degree in them, and its discriminant exact.
 const EXACT_BITS: u32 = 6;
 
 /// Whether round-off may flip the decision.

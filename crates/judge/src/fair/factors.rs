@@ -37,7 +37,7 @@ impl Factors {
         self.squares += exponent * exponent;
     }
 
-    /// Adds so many factors of 1.
+    /// Adds this number of factors of 1.
     pub(super) fn take_ones(&mut self, count: u64) {
         if count > 0 {
             (self.least, self.greatest) = (self.least.min(1.0), self.greatest.max(1.0));

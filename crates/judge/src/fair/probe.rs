@@ -58,7 +58,7 @@ fn widen(own: &mut [f64], base: &[f64], other: &[f64]) {
 }
 
 impl Deviation {
-    /// None, of so many coordinates.
+    /// No sensitivity, for this number of coordinates.
     fn zeros(coordinates: usize) -> Self {
         Self { positions: vec![0.0; coordinates], velocities: vec![0.0; coordinates] }
     }

@@ -84,7 +84,7 @@ pub(crate) struct StepJudgement {
 }
 
 impl StepJudgement {
-    /// Of a step whose records are the reference's bit for bit, with so many polynomials in the end record.
+    /// Of a step whose records are the reference's bit for bit, with this number of polynomials in the end record.
     pub fn identical(context: &Context<'_>, step: u32, polynomials: usize) -> Self {
         let frame = u64::from(step) * u64::from(context.records_per_step);
         let passes = polynomials.checked_div(context.per_pass).unwrap_or(0);

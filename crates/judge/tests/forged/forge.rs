@@ -20,7 +20,7 @@ use fosssim_num::{bounded::Bounded, polynomial::Polynomial};
 /// Products of such coefficients overflow.
 const OVERFLOWS: f64 = 1e100;
 
-/// In so many steps one polynomial in ten may be a single one.
+/// The number of steps in which one polynomial in ten may be a single one.
 const FEW: usize = 40;
 
 /// Numbers that look random and are the same on every run.
@@ -219,7 +219,7 @@ enum Target {
     Step {
         step: usize,
     },
-    /// About one of so many.
+    /// About one of this number.
     Some {
         of: usize,
         seed: u64,
@@ -272,7 +272,7 @@ enum Change {
     DropTrailing(usize),
     Negate,
     Zeros,
-    /// In the place of each another one of the same step, so many further on.
+    /// In the place of each another one of the same step, this number of places further on.
     Exchange(usize),
     /// One coefficient becomes this.
     Value(f64),

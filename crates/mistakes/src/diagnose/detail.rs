@@ -56,9 +56,9 @@ pub enum PolynomialDetail {
         /// The one that belongs there.
         belongs: Subject,
     },
-    /// Of the coefficients only so many are there, the last ones.
+    /// Only this number of coefficients is there, the last ones.
     LastOnly(usize),
-    /// Of the coefficients only so many are there, the first ones.
+    /// Only this number of coefficients is there, the first ones.
     FirstOnly(usize),
     /// Every displacement carries this factor.
     Displacements(f64),
@@ -183,7 +183,7 @@ pub enum StageDetail {
     OfZones {
         /// The number.
         count: usize,
-        /// Of so many that could be looked at.
+        /// The number that could be compared.
         of: usize,
     },
     /// Velocities of zones that have to stop, over those before.

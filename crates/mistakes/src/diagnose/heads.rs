@@ -365,7 +365,7 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
     }
 }
 
-/// Among so many traces one that looks as if a stage were empty is no evidence.
+/// Among this number of traces, one that looks as if a stage were empty is no evidence.
 const MANY: usize = 8;
 
 /// Whether enough of what is left names this further mistake: a trace that nothing explains yet, or two others, where

@@ -23,7 +23,7 @@ use fosssim_model::{
 };
 use fosssim_num::polynomial::Polynomial;
 
-/// Of each kind of pair so many wrong and so many right detections are kept.
+/// The greatest number of wrong and of right detections kept of each kind of pair.
 const MOST_WRONG: usize = 400;
 const MOST_RIGHT: usize = 200;
 

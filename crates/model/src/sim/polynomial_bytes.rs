@@ -39,8 +39,8 @@ impl Searched<'_> {
 /// Bytes of the largest polynomial that a detection logs.
 const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 
-/// Small lists double; larger ones grow by so many bytes at most: a hostile trace may make a step's list take hundreds
-/// of megabytes, but not twice as many.
+/// Small lists double; larger ones grow by this number of bytes at most: a hostile trace may make a step's list take
+/// hundreds of megabytes, but not twice as many.
 const MOST_GROWTH: usize = 16 << 20;
 
 impl PolynomialBytes {

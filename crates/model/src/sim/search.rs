@@ -63,10 +63,10 @@ impl std::ops::Sub for SearchCounts {
     }
 }
 
-/// A root search takes as long as so many detection calls without one, besides its steps.
+/// The cost of a root search in detection calls without one, besides its steps.
 const SEARCH_WORK: u64 = 16;
 
-/// Where products are subnormal, processors take so many times longer for them (Intel's optimization manual: an assist
+/// The factor by which processors are slower where products are subnormal (Intel's optimization manual: an assist
 /// of some 150 cycles for an operation of 4; measured by `audit cost`).
 pub(crate) const SUBNORMAL_WORK: u64 = 32;
 

@@ -19,7 +19,7 @@ crate::drops_leading!();
 /// Bytes of memory that a decoded polynomial takes besides its coefficients.
 const POLYNOMIAL_MEMORY: usize = size_of::<usize>();
 
-/// Room is made for so many polynomials at a time.
+/// The number of polynomials for which room is made at a time.
 const TOGETHER: usize = 64;
 
 /// Bytes of memory that a decoded impulse takes.

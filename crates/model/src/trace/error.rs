@@ -109,7 +109,7 @@ pub enum Malformation {
         list: List,
         /// The count.
         count: i32,
-        /// Fewest bytes of so many entries.
+        /// The fewest bytes of this number of entries.
         needs: u64,
         /// Bytes left after the count.
         left: u64,

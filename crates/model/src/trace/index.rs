@@ -13,7 +13,7 @@ const ENTRIES: usize = 1 << 20;
 pub struct Indexed<R> {
     reader: Reader<R>,
     offsets: Vec<u64>,
-    /// Every so many records one is in the table.
+    /// The distance of records that are in the table.
     stride: u64,
     records: u64,
     end: u64,

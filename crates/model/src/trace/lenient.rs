@@ -5,7 +5,7 @@
 //! nonsense counts: [`Unreadable::Memory`] is the answer instead.
 //!
 //! Memory is bounded by what a record of the scene can hold ([`record_memory`]). Polynomials beyond that are counted
-//! and not kept: the reference never logs so many, so their number alone is the finding.
+//! and not kept: the reference never logs as many, so their number alone is the finding.
 use super::{
     decode,
     error::{List, Malformation, TraceError},
@@ -33,7 +33,7 @@ const FLOOR: usize = 32 * 1024 * 1024;
 /// Memory of the longest polynomial that a detection logs, in bytes.
 const POLYNOMIAL_MEMORY: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::<usize>();
 
-/// Of a polynomial with more coefficients so many are kept; any number above [`MAX_COEFFICIENTS`] is as wrong.
+/// The number of coefficients that are kept of a longer polynomial; any number above [`MAX_COEFFICIENTS`] is as wrong.
 const LONGEST_POLYNOMIAL: usize = 4096;
 
 /// Memory that the lists of one record of this scene's traces may take, in bytes: what the polynomials of all detection
@@ -67,7 +67,7 @@ const STORABLE_IMPULSES: usize = 1 << 26;
 /// As many polynomials fit there (24 bytes each without their coefficients, in an array that doubles).
 const STORABLE_POLYNOMIALS: u64 = 1 << 27;
 
-/// And a polynomial of so many coefficients.
+/// And a polynomial of this number of coefficients.
 const STORABLE_COEFFICIENTS: usize = 1 << 28;
 
 /// A record as the original reads it. Buffers are reused from record to record.
@@ -136,7 +136,7 @@ pub enum Unreadable {
     Io,
 }
 
-/// Records of a step that are compared number by number, without being decoded, have so many bytes at most.
+/// The greatest size in bytes of records that are compared number by number, without being decoded.
 const MOST_LIKENED: usize = 4 << 20;
 
 /// Reads records as the original does.
@@ -175,7 +175,7 @@ impl<R: Read> Lenient<R> {
         self
     }
 
-    /// Replaces `frame` by the next record, whether or not the scene has so many.
+    /// Replaces `frame` by the next record, whether or not the scene has as many.
     ///
     /// # Errors
     /// [`ReadStop`]; `frame` is unspecified then.
@@ -258,7 +258,7 @@ impl<R: Read> Lenient<R> {
         true
     }
 
-    /// Moves so many bytes into the buffer; false where they are not there.
+    /// Moves this number of bytes into the buffer; false where they are not there.
     fn copy(&mut self, bytes: usize, buffer: &mut Vec<u8>) -> bool {
         let end = buffer.len() + bytes;
         while buffer.len() < end {
@@ -272,7 +272,7 @@ impl<R: Read> Lenient<R> {
         true
     }
 
-    /// Moves so many ordinary polynomials into the buffer; false where there are others.
+    /// Moves this number of ordinary polynomials into the buffer; false where there are others.
     fn copy_polynomials(&mut self, mut count: usize, buffer: &mut Vec<u8>) -> bool {
         while count > 0 {
             let (bytes, polynomials) = decode::pass_over(self.source.window(), count as u64);

@@ -360,7 +360,7 @@ impl<R: Read> Reader<R> {
         Ok(())
     }
 
-    /// The failure that the end of the stream inside a polynomial list is: the count's own, when not even so many empty
+    /// The failure that the end of the stream inside a polynomial list is: the count's own, when not even as many empty
     /// polynomials would have had room behind it (`begin`), else `failure`. So the answer does not depend on whether
     /// the length was known.
     fn cut(&mut self, begin: u64, count: i32, failure: Failure) -> Failure {

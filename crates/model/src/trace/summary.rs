@@ -17,13 +17,13 @@ use crate::{
 use sha2::{Digest, Sha256};
 use std::{fmt, io::Read};
 
-/// At most so many collisions are listed.
+/// The greatest number of collisions that are listed.
 const COLLISIONS: usize = 40;
-/// At most so many polynomials of a step are listed.
+/// The greatest number of polynomials of a step that are listed.
 const POLYNOMIALS: usize = 24;
-/// At most so many coefficients of a polynomial are listed.
+/// The greatest number of coefficients of a polynomial that are listed.
 const COEFFICIENTS: usize = 8;
-/// Steps are digested in at most so many groups.
+/// The greatest number of groups in which steps are digested.
 const GROUPS: u32 = 16;
 
 /// The contents of a trace. Its `Display` is the text that a snapshot test keeps.
@@ -37,11 +37,10 @@ const GROUPS: u32 = 16;
 ///
 /// let xml = br#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/>
 ///     <collision type="continuous-time" COR="1"/>
-///     <particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/><halfplane px="0" py="0" nx="0" ny="1"/></scene>"#;
-/// let scene = original::read(xml).expect("a scene").scene;
-/// let mut simulation = Simulation::new(&scene, RootSearch::default());
-/// let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
-/// for _ in 0..scene.steps() {
+/// <particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/><halfplane px="0" py="0" nx="0"
+/// ny="1"/></scene>"#; let scene = original::read(xml).expect("a scene").scene; let mut simulation =
+/// Simulation::new(&scene, RootSearch::default()); let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene),
+/// simulation.state()); for _ in 0..scene.steps() {
 ///     simulation.step(&mut recorder)?;
 /// }
 /// let (trace, _) = recorder.finish()?;

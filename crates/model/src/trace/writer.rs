@@ -178,7 +178,7 @@ fn write_all(stream: &mut impl Write, mut parts: &mut [IoSlice<'_>]) -> io::Resu
 mod tests {
     use super::*;
 
-    /// A stream with room for so many bytes.
+    /// A stream with room for this number of bytes.
     struct Full(usize);
 
     impl Write for Full {

@@ -6,7 +6,7 @@ use fosssim_judge::{PairWords, study::Curve};
 use fosssim_num::tolerances::PARITY_MAXIMUM;
 use fosssim_render::terminal;
 
-/// The plots that fit into so many columns; empty where there is nothing to see.
+/// The plots that fit into this number of columns; empty where there is nothing to see.
 #[must_use]
 pub fn plots(evidence: &Evidence, columns: usize) -> String {
     // In front stands the scale, behind it the tolerance.

@@ -16,7 +16,7 @@ pub(crate) struct Share {
     pub(crate) run: usize,
 }
 
-/// The class, with at most so many scenes and mistakes.
+/// The class, with at most this number of scenes and mistakes.
 #[must_use]
 pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), head(grades));

@@ -14,7 +14,7 @@ pub const EXACT: usize = 540_000;
 /// More raw bytes than this are not even tried.
 const TRIED: usize = 12 * EXACT;
 
-/// Of a rounded motion so many numbers are exact all the same: those around steps that are looked at closely.
+/// The number of exact numbers in a rounded motion: those around steps that are looked at closely.
 const KEPT: usize = 16_000;
 
 /// A unit is this part of what the bodies cross.

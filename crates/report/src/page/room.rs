@@ -1,7 +1,7 @@
 //! Which parts of each scene's card fit on a page.
 use super::{Card, script};
 
-/// A page is to stay below so many bytes: it is mailed, and opened on old machines.
+/// The greatest size of a page in bytes: it is mailed, and opened on old machines.
 pub const BUDGET: usize = 2_950_000;
 
 /// The bytes of a page for the output of programs, of all scenes together.

@@ -23,7 +23,7 @@ use look::Look;
 /// take more memory.
 const TOGETHER: usize = 4096;
 
-/// Where nearly all calls of a kind are open, it is not looked at so many times.
+/// A kind of which nearly all calls are open is skipped this number of times.
 const PAUSE: u32 = 15;
 
 /// What is known of a call beforehand.

@@ -23,7 +23,7 @@ use decisions::Own;
 use fosssim_model::sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone};
 use fosssim_num::polynomial::Polynomial;
 
-/// Room for so many decisions is made at first, at most.
+/// The greatest number of decisions for which room is made at first.
 const DECISIONS: usize = 1 << 14;
 
 /// Follows one step; filled in by the simulation, read by [`super::step`].
@@ -128,7 +128,7 @@ impl<'a> Follower<'a> {
         self
     }
 
-    /// The time of impact of so many logged polynomials from one on; none where the root finder does not end.
+    /// The time of impact of several logged polynomials from one on; none where the root finder does not end.
     fn logged_time(&self, index: usize, count: usize) -> Option<f64> {
         let mut logged = [Polynomial::default(); PairKind::MOST_POLYNOMIALS];
         for (number, polynomial) in logged[..count].iter_mut().enumerate() {

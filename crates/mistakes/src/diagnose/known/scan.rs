@@ -20,7 +20,7 @@ use std::{collections::BTreeMap, io::Read};
 /// Steps that are kept, wrong and right.
 const MOST_WRONG: usize = 200;
 const MOST_RIGHT: usize = 40;
-/// Of the steps that look alike, the first ones are kept, and then one out of so many.
+/// Of the steps that look alike, the first ones are kept, and then one out of this number.
 const FIRST_ALIKE: u32 = 8;
 const ALIKE: u32 = 16;
 /// Right steps that look alike.

@@ -17,7 +17,7 @@ use fosssim_model::{
 };
 use std::{cell::Cell, collections::BTreeSet};
 
-/// Besides empty stages, so many mistakes are looked for.
+/// The greatest number of mistakes in a set, besides empty stages.
 const MOST: usize = 3;
 /// Wrong steps on which rows are compared, one of each sort.
 const PROBES: usize = 8;

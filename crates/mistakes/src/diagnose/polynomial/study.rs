@@ -16,10 +16,10 @@ fosssim_model::drops_leading!();
 /// The greatest number of samples; more of them add nothing but time.
 const MOST_CASES: usize = 1200;
 
-/// A guess is tried on so many wrong samples before it is tried on all.
+/// The number of wrong samples on which a guess is tried before it is tried on all.
 const PROBES: usize = 12;
 
-/// One right sample in so many may speak against a guess, for round-off.
+/// One right sample in this number may speak against a guess, for round-off.
 const SPARED: usize = 50;
 
 /// Ratios of coefficients to what they should be are alike up to this: rounding of coefficients that cancel to a
@@ -144,7 +144,7 @@ impl<'a> Study<'a> {
         self.is_supported(wrong, right).then_some(wrong + right)
     }
 
-    /// Whether so many wrong and right samples are enough. What reproduces all wrong ones may be done under a
+    /// Whether these numbers of wrong and right samples are enough. What reproduces all wrong ones may be done under a
     /// condition, so that right samples don't speak against it.
     pub fn is_supported(&self, wrong: usize, right: usize) -> bool {
         let all_right = self.cases.len() - self.wrong;

@@ -9,7 +9,7 @@ use crate::assignments::t2m2::{Reading, formulas::Formula};
 use crate::diagnose::{self, CoefficientGuess, PolynomialDetail, Weight};
 use fosssim_num::bounded::Bounded;
 
-/// A fit looks at so many wrong samples, and half as many right ones.
+/// The number of wrong samples of a fit, which uses half as many right ones.
 const MOST_ROWS: usize = 240;
 
 /// With fewer samples that have the coefficient, those that lack it are looked at, too.

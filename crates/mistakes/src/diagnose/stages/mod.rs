@@ -24,7 +24,7 @@ use fosssim_model::scene::{Collision, Scene};
 /// The greatest number of steps that are compared.
 const MOST_STEPS: usize = 120;
 
-/// And so many polynomials; about a microsecond each.
+/// And the greatest number of polynomials; about a microsecond each.
 const WORK: usize = 200_000;
 
 /// Ratios that are this close are the same.

@@ -52,7 +52,7 @@ fn hangs_on_round_off(scene: &Scene, facts: &Facts) -> bool {
     differs && facts.detects(scene, pass, &middle.state.positions, |_| true)
 }
 
-/// The index of the first polynomial behind so many passes of the geometric part.
+/// The index of the first polynomial behind this number of passes of the geometric part.
 fn behind(facts: &Facts, passes: usize) -> usize {
     facts.middles().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }

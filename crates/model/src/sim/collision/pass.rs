@@ -390,7 +390,7 @@ struct Way<'a, O, R> {
     over: usize,
 }
 
-/// Edges are looked at in blocks of so many.
+/// The number of edges in a block.
 const LANES: usize = 2;
 
 /// A value of each edge in a block; a last block of one edge holds it twice.

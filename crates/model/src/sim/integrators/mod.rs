@@ -38,8 +38,8 @@ struct Effort {
 }
 
 impl Effort {
-    /// Counts an iteration with so many unknowns: elimination takes n^3 / 3 operations, of which a detection call does
-    /// some hundred. Whether more is allowed.
+    /// Counts an iteration with this number of unknowns: elimination takes n^3 / 3 operations, of which a detection
+    /// call does some hundred. Whether more is allowed.
     fn iterate(&mut self, unknowns: usize) -> bool {
         self.done += 1 + (unknowns as u64).pow(3) / 64;
         self.done <= self.most

@@ -14,7 +14,7 @@ use fosssim_grading::{Grade, SceneGrade, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
 
-/// Program output is shown up to so many lines.
+/// The greatest number of lines shown of a program's output.
 const SHOWN_LINES: usize = 10;
 
 /// How much is shown.
