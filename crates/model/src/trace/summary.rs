@@ -37,10 +37,12 @@ const GROUPS: u32 = 16;
 ///
 /// let xml = br#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/>
 ///     <collision type="continuous-time" COR="1"/>
-/// <particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/><halfplane px="0" py="0" nx="0"
-/// ny="1"/></scene>"#; let scene = original::read(xml).expect("a scene").scene; let mut simulation =
-/// Simulation::new(&scene, RootSearch::default()); let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene),
-/// simulation.state()); for _ in 0..scene.steps() {
+///     <particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/>
+///     <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#;
+/// let scene = original::read(xml).expect("a scene").scene;
+/// let mut simulation = Simulation::new(&scene, RootSearch::default());
+/// let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+/// for _ in 0..scene.steps() {
 ///     simulation.step(&mut recorder)?;
 /// }
 /// let (trace, _) = recorder.finish()?;
