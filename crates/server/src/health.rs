@@ -17,7 +17,6 @@ const LONGEST_ASIDE: Duration = Duration::from_secs(60);
 const BROKEN: i64 = 5;
 
 /// How long after its last sign of life a worker counts as alive, in milliseconds.
-#[must_use]
 pub fn recent(policy: &Policy) -> i64 {
     i64::try_from(2 * policy.lease.as_millis()).unwrap_or(i64::MAX)
 }
@@ -165,17 +164,18 @@ pub(crate) async fn pause_broken(
     if failed.int("workers")? < 2 && alive.int("n")? > 1 {
         return Ok(false);
     }
-    transaction
-        .execute(
-            "UPDATE job SET lane = 'paused' WHERE lane = 'grading' AND state = 'waiting' AND payload LIKE ?
-                AND submission IN (SELECT id FROM submission WHERE assignment = ?)",
-            values![&suite, assignment],
-        )
-        .await?;
     let newly = transaction
         .execute(
             "UPDATE assignment SET paused_at = {now}, paused_fault = ? WHERE id = ? AND paused_at IS NULL",
             values![fault, assignment],
+        )
+        .await?;
+    transaction
+        .execute(
+            "WITH found AS (SELECT id FROM job WHERE lane = 'grading' AND state = 'waiting' AND payload LIKE ?
+                AND submission IN (SELECT id FROM submission WHERE assignment = ?) ORDER BY id {for update})
+             UPDATE job SET lane = 'paused' WHERE id IN (SELECT id FROM found)",
+            values![&suite, assignment],
         )
         .await?;
     Ok(newly > 0)
@@ -188,7 +188,6 @@ fn suite_of(task: &str) -> Option<String> {
 }
 
 /// A message without the folders of the machine that it comes from: of an absolute path the last name is left.
-#[must_use]
 pub fn without_paths(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text;

@@ -1,6 +1,6 @@
 //! What became of jobs: results, grades and the history of both, written in one transaction with the end of the job.
 use crate::{
-    db::{DbError, Transaction},
+    db::{Database, DbError, Transaction},
     health,
     lti::score,
     queue::{self, Buried, Completion, Failure, Lease, Policy, Tick},
@@ -43,7 +43,6 @@ pub async fn fail(
         return Ok(failure);
     }
     let row = about(transaction, lease.job).await?;
-    health::failed(transaction, &row.worker, fault).await?;
     if failure == Failure::Buried {
         bury(transaction, lease.job, lease.attempt, fault).await?;
     } else {
@@ -53,20 +52,34 @@ pub async fn fail(
         && health::pause_broken(transaction, policy, assignment, &row.task, fault).await?
     {
         let text = format!("nothing can be graded by this suite, so its submissions wait for staff: {fault}");
-        let of_all = About { submission: None, ..row };
+        let of_all = About { submission: None, task: String::new(), worker: String::new(), ..row };
         note(transaction, &of_all, "assignment paused", &text).await?;
     }
+    // Last, as when a job is finished: whoever holds a worker's row waits for no job.
+    health::failed(transaction, &row.worker, fault).await?;
     Ok(failure)
 }
 
-/// Looks for silent workers, and writes the judge errors of jobs that were tried too often.
+/// Looks for silent workers, and writes the judge errors of jobs that were tried too often. In a transaction of its own:
+/// it locks jobs of others, and with these it must not wait for anything that their workers hold.
 ///
 /// # Errors
 /// What the database says.
-pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick, DbError> {
-    let tick = queue::tick(transaction, policy).await?;
-    bury_all(transaction, &tick.buried).await?;
-    Ok(tick)
+pub async fn tick(database: &Database, policy: &Policy) -> Result<(), DbError> {
+    let mut transaction = database.begin().await?;
+    let tick = queue::tick(&mut transaction, policy).await?;
+    bury_all(&mut transaction, &tick.buried).await?;
+    transaction.commit().await?;
+    if tick.outage {
+        tracing::warn!("nobody looked after the queue for a while, so all leases begin anew");
+    }
+    if tick.retried > 0 {
+        tracing::warn!(jobs = tick.retried, "jobs of workers that went silent wait again");
+    }
+    for job in &tick.buried {
+        tracing::error!(job = job.job, worker = job.worker, fault = job.fault, "a job was tried too often");
+    }
+    Ok(())
 }
 
 /// Gives up on a worker that is known to be dead.

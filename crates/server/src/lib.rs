@@ -22,4 +22,5 @@ pub mod store;
 pub mod suspect;
 pub mod task;
 pub mod web;
+pub mod wire;
 pub mod worker;

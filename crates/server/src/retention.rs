@@ -74,8 +74,9 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
         let mut transaction = database.begin().await?;
         submissions += transaction
             .execute(
-                "UPDATE submission SET removed_at = {now}
-                 WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each}) AND removed_at IS NULL
+                "WITH found AS (SELECT id FROM submission
+                    WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each}) ORDER BY id {for update})
+                 UPDATE submission SET removed_at = {now} WHERE id IN (SELECT id FROM found) AND removed_at IS NULL
                     AND NOT EXISTS (SELECT 1 FROM job
                         WHERE job.submission = submission.id AND job.state IN ('waiting', 'running'))
                     AND NOT EXISTS (SELECT 1 FROM campaign

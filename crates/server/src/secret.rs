@@ -4,7 +4,6 @@
 ///
 /// # Panics
 /// When the system has no random numbers, without which no secret is one.
-#[must_use]
 pub fn random_hex() -> String {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).expect("random numbers from the system");
@@ -12,13 +11,11 @@ pub fn random_hex() -> String {
 }
 
 /// Eight random bits, for what only should not be equal.
-#[must_use]
 pub(crate) fn random_byte() -> u8 {
     getrandom::u32().map_or(0, |word| word.to_le_bytes()[0])
 }
 
 /// Bytes in hexadecimal.
-#[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

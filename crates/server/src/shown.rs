@@ -116,7 +116,6 @@ fn of_grade(grade: impl io::Read) -> Option<Shown> {
 
 impl Shown {
     /// What the database keeps; nothing where nothing is withheld.
-    #[must_use]
     pub fn read(text: &str) -> Option<Self> {
         match text {
             "" => None,
@@ -125,19 +124,16 @@ impl Shown {
     }
 
     /// The points, and of how many.
-    #[must_use]
     pub fn points(self) -> (Option<String>, Option<String>) {
         (self.points, self.max_points)
     }
 
     /// The verdict in short, and the points.
-    #[must_use]
     pub fn line(self) -> (String, Option<String>) {
         (self.code, self.points)
     }
 
     /// Whether a scene is among those that are not accepted, and not withheld.
-    #[must_use]
     pub fn tells_of(&self, scene: &str) -> bool {
         self.wrong.iter().any(|wrong| wrong == scene)
     }

@@ -34,7 +34,6 @@ pub struct Storage {
 
 impl Storage {
     /// Storage that refuses uploads below so many free bytes.
-    #[must_use]
     pub fn new(database: Database, store: Store, incoming: PathBuf, low_water: u64) -> Self {
         Self { database, store, incoming, low_water, last: Mutex::default() }
     }
@@ -80,7 +79,6 @@ impl Storage {
     }
 
     /// Free bytes of the data folder's disk, and its size, where it says so.
-    #[must_use]
     pub fn disk(&self) -> Option<(u64, u64)> {
         let disk = statvfs(&self.incoming).ok()?;
         Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_blocks.saturating_mul(disk.f_frsize)))

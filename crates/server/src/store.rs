@@ -83,19 +83,16 @@ impl From<io::Error> for StoreError {
 
 impl Digest {
     /// The digest of bytes.
-    #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         Self(hex(&Sha256::digest(bytes)))
     }
 
     /// As text.
-    #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
     /// Its beginning, for people.
-    #[must_use]
     pub fn short(&self) -> &str {
         &self.0[..12]
     }

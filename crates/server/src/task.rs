@@ -51,7 +51,6 @@ pub enum Form {
 
 impl Form {
     /// Its name in tables and messages.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Program => "program",
@@ -127,7 +126,6 @@ pub struct WrongScene {
 
 impl<F> Outcome<F> {
     /// The same with other files.
-    #[must_use]
     pub fn with_files<G>(self, files: Vec<G>) -> Outcome<G> {
         Outcome {
             verdict: self.verdict,
@@ -148,7 +146,6 @@ impl<F> Outcome<F> {
 
 impl Outcome {
     /// The outcome of a job that was tried too often: our fault, and nobody's zero. Why is staff's to read, in the job.
-    #[must_use]
     pub fn judge_error() -> Self {
         Self {
             verdict: "judge error".to_owned(),
@@ -168,7 +165,6 @@ impl Outcome {
 }
 
 /// A number of points with two digits at most, for people.
-#[must_use]
 pub fn rounded(number: &str) -> String {
     let Ok(value) = number.parse::<f64>() else { return number.to_owned() };
     let text = format!("{value:.2}");

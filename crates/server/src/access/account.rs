@@ -1,5 +1,5 @@
 //! Somebody's account.
-use crate::db::{DbError, Row};
+use crate::db::from_row;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -17,13 +17,4 @@ pub struct Account {
     pub is_admin: bool,
 }
 
-impl Account {
-    pub(super) fn read(row: &Row) -> Result<Self, DbError> {
-        Ok(Self {
-            id: row.int("id")?,
-            login: row.text("login")?,
-            name: row.text("name")?,
-            is_admin: row.flag("is_admin")?,
-        })
-    }
-}
+from_row! { Account { id, login, name, is_admin } }

@@ -3,11 +3,10 @@ use super::{
     House, NewSecret, TokenInfo,
     account::Account,
     identity::{self, Way},
-    person::token_info,
-    view::{self, Course, Deed, Event, Queue},
+    view::{self, Course, Entry, Event, Queue},
 };
 use crate::{
-    db::{DbError, Row, Transaction},
+    db::{DbError, FromRow, Transaction},
     problem::Problem,
     values,
 };
@@ -20,20 +19,23 @@ pub struct Admin {
 
 impl Admin {
     /// Who it is.
-    #[must_use]
     pub fn account(&self) -> &Account {
         &self.account
     }
 
     /// The house.
-    #[must_use]
     pub fn house(&self) -> &House {
         &self.house
     }
 
-    async fn note(&self, transaction: &mut Transaction, kind: &'static str, text: &str) -> Result<(), DbError> {
-        let deed = Deed { kind, actor: self.account.id, course: None, assignment: None, submission: None, text };
-        view::note(transaction, &deed).await
+    /// Writes into the audit log.
+    pub(super) async fn note(
+        &self,
+        transaction: &mut Transaction,
+        kind: &'static str,
+        text: &str,
+    ) -> Result<(), DbError> {
+        view::note(transaction, &Entry::new(kind, self.account.id, text)).await
     }
 
     /// Makes a course.
@@ -64,10 +66,8 @@ impl Admin {
     /// When the database does not answer.
     pub async fn accounts(&self) -> Result<Vec<Account>, Problem> {
         let mut transaction = self.house.0.database.read().await?;
-        let rows = transaction
-            .rows("SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL ORDER BY login", values![])
-            .await?;
-        Ok(rows.iter().map(Account::read).collect::<Result<_, DbError>>()?)
+        let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL ORDER BY login";
+        Ok(transaction.all(statement, values![]).await?)
     }
 
     /// Makes an account, or changes whether it may do everything, and returns a link that signs in once. One that was
@@ -85,7 +85,7 @@ impl Admin {
         let was = transaction
             .row("SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}", values![login])
             .await?;
-        let was = was.as_ref().map(Account::read).transpose()?;
+        let was = was.as_ref().map(Account::from_row).transpose()?;
         let row = transaction
             .one(
                 "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
@@ -134,13 +134,9 @@ impl Admin {
     /// When the database does not answer.
     pub async fn worker_tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
         let mut transaction = self.house.0.database.read().await?;
-        let rows = transaction
-            .rows(
-                "SELECT id, name, created_at FROM token WHERE account IS NULL AND revoked_at IS NULL ORDER BY id",
-                values![],
-            )
-            .await?;
-        Ok(rows.iter().map(token_info).collect::<Result<_, DbError>>()?)
+        let statement =
+            "SELECT id, name, created_at FROM token WHERE account IS NULL AND revoked_at IS NULL ORDER BY id";
+        Ok(transaction.all(statement, values![]).await?)
     }
 
     /// Makes a token for workers.
@@ -151,8 +147,8 @@ impl Admin {
         identity::check_slug("a worker's name", name)?;
         let mut transaction = self.house.0.database.begin().await?;
         let (id, secret) = identity::new_token(&mut transaction, None, name, Some(self.account.id), Way::Own).await?;
-        let row: Row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
-        let info = token_info(&row)?;
+        let row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
+        let info = TokenInfo::from_row(&row)?;
         self.note(&mut transaction, "worker token", &format!("{name} ({id})")).await?;
         transaction.commit().await?;
         Ok((info, secret))
@@ -193,15 +189,9 @@ impl Admin {
     /// When the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.house.0.database.read().await?;
-        let rows = transaction
-            .rows(
-                "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
-                 LEFT JOIN account ON account.id = event.actor
-                 WHERE event.id < ? ORDER BY event.id DESC LIMIT 200",
-                values![before.unwrap_or(i64::MAX)],
-            )
-            .await?;
-        Ok(rows.iter().map(view::read_event).collect::<Result<_, DbError>>()?)
+        let statement = "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
+            LEFT JOIN account ON account.id = event.actor WHERE event.id < ? ORDER BY event.id DESC LIMIT 200";
+        Ok(transaction.all(statement, values![before.unwrap_or(i64::MAX)]).await?)
     }
 }
 

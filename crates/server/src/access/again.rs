@@ -30,9 +30,9 @@ impl Staff {
             return Err(Problem::conflict("it is being graded", "wait for its grade"));
         }
         let jobs = enqueue_replaced(&mut transaction, &assignment, id..=id).await?;
-        let mut deed = self.deed("graded again", Some(assignment.id), "one submission");
-        deed.submission = Some(id);
-        view::note(&mut transaction, &deed).await?;
+        let mut entry = self.entry("graded again", Some(assignment.id), "one submission");
+        entry.submission = Some(id);
+        view::note(&mut transaction, &entry).await?;
         self.rung(transaction).await?;
         Ok(jobs)
     }
@@ -65,7 +65,7 @@ impl Staff {
             found += enqueue_replaced(&mut transaction, &assignment, 0..=i64::MAX).await?;
             if found > 0 {
                 let text = format!("{found} submissions on which the grader failed");
-                view::note(&mut transaction, &self.deed("graded again", Some(assignment.id), &text)).await?;
+                self.note(&mut transaction, "graded again", Some(assignment.id), &text).await?;
             }
             self.rung(transaction).await?;
             jobs += found;

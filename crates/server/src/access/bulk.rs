@@ -73,17 +73,18 @@ pub(super) async fn resume(transaction: &mut Transaction, assignment: &Assignmen
     if paused.is_none() {
         return Ok(0);
     }
-    let mut values: Vec<Value> = pieces(assignment)?.into_iter().map(Value::from).collect();
-    values.push(assignment.id.into());
+    let mut values: Vec<Value> = vec![assignment.id.into()];
+    values.extend(pieces(assignment)?.into_iter().map(Value::from));
     let jobs = transaction
         .execute(
             concat!(
-                "UPDATE job SET lane = 'grading', failures = 0, failed_by = NULL, run_after = {now}, payload =
+                "WITH paused AS (SELECT id FROM job WHERE lane = 'paused' AND state = 'waiting'
+                    AND submission IN (SELECT id FROM submission WHERE assignment = ?) ORDER BY id {for update})
+                 UPDATE job SET lane = 'grading', failures = 0, failed_by = NULL, run_after = {now}, payload =
                     CASE WHEN campaign IS NOT NULL THEN payload ELSE (SELECT ",
                 payload!(),
                 " FROM submission WHERE submission.id = job.submission) END
-                 WHERE lane = 'paused' AND state = 'waiting'
-                    AND submission IN (SELECT id FROM submission WHERE assignment = ?)"
+                 WHERE id IN (SELECT id FROM paused)"
             ),
             &values,
         )

@@ -3,7 +3,7 @@
 use super::{
     Settings,
     bulk::{payload, pieces},
-    view::{self, Assignment},
+    view::{self, Assignment, Entry},
 };
 use crate::{
     db::{Database, DbError, Row, Transaction, Value},
@@ -109,6 +109,7 @@ async fn step(database: &Database, wanted: Option<i64>) -> Result<Step, Problem>
     match row.text("doing")?.as_str() {
         "begin" => begin(&mut transaction, &campaign).await?,
         "apply" => apply(&mut transaction, &campaign).await?,
+        "undo" => undo(&mut transaction, &campaign).await?,
         _ => discard(&mut transaction, &campaign).await?,
     }
     Bell::ring(&mut transaction).await?;
@@ -168,16 +169,23 @@ async fn begin(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
     Ok(advance(transaction, campaign.id, last, count).await?)
 }
 
-/// Makes results count.
-async fn apply(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), Problem> {
-    let row = transaction
+/// The next batch of a regrade's results.
+async fn results(transaction: &mut Transaction, campaign: &Campaign) -> Result<Row, DbError> {
+    transaction
         .one(
             "SELECT max(id) AS last, count(*) AS n FROM (SELECT id FROM result
                 WHERE campaign = ? AND id > ? ORDER BY id LIMIT ?) AS batch",
             values![campaign.id, campaign.cursor, BATCH],
         )
-        .await?;
-    let Some((last, count)) = batch(&row)? else { return Ok(applied(transaction, campaign).await?) };
+        .await
+}
+
+/// Makes results count.
+async fn apply(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), Problem> {
+    let row = results(transaction, campaign).await?;
+    let Some((last, count)) = batch(&row)? else {
+        return Ok(decided(transaction, campaign, "applied", "applied").await?);
+    };
     transaction
         .execute(
             "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
@@ -222,29 +230,93 @@ async fn apply(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
     Ok(advance(transaction, campaign.id, last, count).await?)
 }
 
-async fn applied(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), DbError> {
+async fn decided(
+    transaction: &mut Transaction,
+    campaign: &Campaign,
+    state: &'static str,
+    words: &str,
+) -> Result<(), DbError> {
     transaction
-        .execute("UPDATE campaign SET state = 'applied', decided_at = {now} WHERE id = ?", values![campaign.id])
+        .execute("UPDATE campaign SET state = ?, decided_at = {now} WHERE id = ?", values![state, campaign.id])
         .await?;
     finish(transaction, campaign.id).await?;
-    let text = format!("regrade {} applied", campaign.id);
-    let deed = view::Deed {
-        kind: "regrade",
-        actor: campaign.by,
-        course: Some(campaign.course),
-        assignment: Some(campaign.assignment.id),
-        submission: None,
-        text: &text,
+    let text = format!("regrade {} {words}", campaign.id);
+    let (course, assignment) = (Some(campaign.course), Some(campaign.assignment.id));
+    view::note(transaction, &Entry { course, assignment, ..Entry::new("regrade", campaign.by, &text) }).await
+}
+
+/// Of grades that a regrade changed, and that nothing changed since.
+macro_rules! undo {
+    ($what:literal, $which:literal) => {
+        concat!(
+            $what,
+            "grade_change AS applied JOIN grade AS now_is ON now_is.submission = applied.submission
+                AND now_is.result = applied.new_result
+             WHERE applied.campaign = ? AND applied.new_result > ? AND applied.new_result <= ? AND ",
+            $which
+        )
     };
-    view::note(transaction, &deed).await
+}
+
+/// Makes what counted before a regrade's results count again, where nothing else does by now.
+async fn undo(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), Problem> {
+    let row = results(transaction, campaign).await?;
+    let Some((last, count)) = batch(&row)? else { return Ok(undone(transaction, campaign).await?) };
+    let reason = format!("regrade {} was taken back", campaign.id);
+    transaction
+        .execute(
+            undo!(
+                "INSERT INTO grade_change (submission, old_result, new_result, changed_by, reason, changed_at)
+                 SELECT applied.submission, applied.new_result, applied.old_result, CAST(? AS {int}), CAST(? AS TEXT),
+                    {now} FROM ",
+                "applied.old_result IS NOT NULL"
+            ),
+            values![campaign.by, reason, campaign.id, campaign.cursor, last],
+        )
+        .await?;
+    transaction
+        .execute(
+            undo!(
+                "DELETE FROM grade WHERE submission IN (SELECT applied.submission FROM ",
+                "applied.old_result IS NULL)"
+            ),
+            values![campaign.id, campaign.cursor, last],
+        )
+        .await?;
+    transaction
+        .execute(
+            undo!(
+                "INSERT INTO grade (submission, result, set_at) SELECT applied.submission, applied.old_result, {now} FROM ",
+                "applied.old_result IS NOT NULL
+                 ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at"
+            ),
+            values![campaign.id, campaign.cursor, last],
+        )
+        .await?;
+    score::changed_by(transaction, campaign.id, campaign.cursor, last).await?;
+    Ok(advance(transaction, campaign.id, last, count).await?)
+}
+
+async fn undone(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), DbError> {
+    // Unless somebody set others meanwhile.
+    transaction
+        .execute(
+            "UPDATE assignment SET settings = (SELECT settings_before FROM campaign WHERE id = ?)
+             WHERE id = ? AND settings = (SELECT settings FROM campaign WHERE id = ? AND settings_before IS NOT NULL)",
+            values![campaign.id, campaign.assignment.id, campaign.id],
+        )
+        .await?;
+    decided(transaction, campaign, "discarded", "taken back").await
 }
 
 /// Takes what is left of a regrade out of the queue.
 async fn discard(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), DbError> {
     let cancelled = transaction
         .execute(
-            "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
-             WHERE id IN (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running') LIMIT ?)",
+            "WITH left_over AS (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running')
+                ORDER BY id LIMIT ? {for update})
+             UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+             WHERE id IN (SELECT id FROM left_over)",
             values![campaign.id, BATCH],
         )
         .await?;

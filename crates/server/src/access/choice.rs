@@ -2,10 +2,10 @@
 use super::{
     Member, Person, identity,
     launch::{self, Pending},
-    view::{self, Assignment, Course, Deed},
+    view::{self, Assignment, Course, Entry},
 };
 use crate::{
-    db::{DbError, Row, Transaction},
+    db::{DbError, FromRow, Transaction, from_row},
     lti::{self, Role},
     problem::Problem,
     values,
@@ -60,6 +60,8 @@ struct Place {
     title: String,
 }
 
+from_row! { Place { id, course, slug, title } }
+
 impl Person {
     /// What there is to choose.
     ///
@@ -73,16 +75,14 @@ impl Person {
             let title = context.title.clone().or(context.label.clone()).unwrap_or_else(|| context.id.clone());
             let title: String = title.chars().filter(|c| !c.is_control()).take(200).collect();
             let slug = slug_of(context.label.as_deref().unwrap_or(&title));
-            let rows = transaction
-                .rows(
+            let courses = transaction
+                .all(
                     "SELECT course.slug, course.title FROM course
                      JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
                      ORDER BY course.slug",
                     values![self.account.id],
                 )
                 .await?;
-            let read = |row: &Row| Ok(Course { slug: row.text("slug")?, title: row.text("title")? });
-            let courses = rows.iter().map(read).collect::<Result<_, DbError>>()?;
             return Ok(Choice::Course {
                 platform: pending.platform.name,
                 title: title.trim().to_owned(),
@@ -159,15 +159,8 @@ impl Person {
             )
             .await?;
         let text = format!("{} of {} is this course", arrival.context.id, pending.platform.name);
-        let deed = Deed {
-            kind: "platform",
-            actor: self.account.id,
-            course: Some(course),
-            assignment: None,
-            submission: None,
-            text: &text,
-        };
-        view::note(&mut transaction, &deed).await?;
+        let entry = Entry { course: Some(course), ..Entry::new("platform", self.account.id, &text) };
+        view::note(&mut transaction, &entry).await?;
         transaction.commit().await?;
         Ok(())
     }
@@ -215,15 +208,9 @@ impl Person {
         let assignment = view::read_assignment(&row)?;
         let arrival = &pending.arrival;
         let text = format!("a link of {} leads to {}", pending.platform.name, assignment.slug);
-        let deed = Deed {
-            kind: "platform",
-            actor: self.account.id,
-            course: Some(place.course),
-            assignment: Some(assignment.id),
-            submission: None,
-            text: &text,
-        };
-        view::note(&mut transaction, &deed).await?;
+        let (course, assignment_id) = (Some(place.course), Some(assignment.id));
+        let entry = Entry::new("platform", self.account.id, &text);
+        view::note(&mut transaction, &Entry { course, assignment: assignment_id, ..entry }).await?;
         let Some(wanted) = &arrival.deep_linking else {
             let resource = arrival.resource.as_ref().ok_or_else(Problem::fault)?;
             let link = launch::make_link(&mut transaction, place.id, &resource.id, assignment.id).await?;
@@ -254,13 +241,7 @@ async fn place(transaction: &mut Transaction, pending: &Pending) -> Result<Optio
             values![pending.platform.id, &arrival.deployment, &arrival.context.id],
         )
         .await?;
-    let Some(row) = row else { return Ok(None) };
-    Ok(Some(Place {
-        id: row.int("id")?,
-        course: row.int("course")?,
-        slug: row.text("slug")?,
-        title: row.text("title")?,
-    }))
+    row.as_ref().map(Place::from_row).transpose()
 }
 
 /// A name for addresses, to begin with.

@@ -128,12 +128,15 @@ async fn count(database: &Database, policy: &Policy) -> Result<(Metrics, Vec<&'s
     let recent = health::recent(policy);
     let row = transaction
         .one(
-            "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots, count(aside_since) AS aside
+            "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots, count(aside_since) AS aside,
+                count(CASE WHEN aside_since IS NULL AND EXISTS (SELECT 1 FROM job
+                    WHERE job.state = 'running' AND job.worker = worker.name) THEN 1 END) AS working
              FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ?",
             values![recent, recent],
         )
         .await?;
     (metrics.workers, metrics.slots, metrics.aside) = (row.int("n")?, row.int("slots")?, row.int("aside")?);
+    metrics.working = row.int("working")?;
     Ok((metrics, grown))
 }
 

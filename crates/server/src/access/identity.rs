@@ -1,6 +1,6 @@
 //! Tokens, sessions and links that sign in. Each is 256 random bits; the database has the digest only.
 use crate::{
-    db::{DbError, Transaction},
+    db::{DbError, FromRow, Transaction},
     problem::Problem,
     secret::{hex, random_hex},
     values,
@@ -36,7 +36,6 @@ impl NewSecret {
     }
 
     /// The secret itself, for the one it belongs to.
-    #[must_use]
     pub fn reveal(&self) -> &str {
         &self.0
     }
@@ -58,7 +57,6 @@ pub struct Session(pub(super) NewSecret);
 
 impl Session {
     /// What the cookie holds.
-    #[must_use]
     pub fn secret(&self) -> &str {
         self.0.reveal()
     }
@@ -106,7 +104,7 @@ pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str)
         )
         .await?;
     match row {
-        Some(row) => Ok((Account::read(&row)?, row.int("token")?)),
+        Some(row) => Ok((Account::from_row(&row)?, row.int("token")?)),
         None => Err(Problem::unknown_secret("token")),
     }
 }
@@ -136,7 +134,7 @@ pub(super) async fn account_of_session(
         is_recent: now - row.int("created_at")? < RECENT,
         is_stale: now - row.int("seen_at")? > SEEN_EVERY,
     };
-    Ok(Some((Account::read(&row)?, seen)))
+    Ok(Some((Account::from_row(&row)?, seen)))
 }
 
 /// Lets a session last from now on.
@@ -154,7 +152,9 @@ pub(super) async fn session_seen(transaction: &mut Transaction, session: &str) -
 pub(super) async fn begin_session(transaction: &mut Transaction, account: i64, way: Way) -> Result<Session, DbError> {
     let secret = NewSecret::new("");
     let token = if let Way::Token(token) = way { Some(token) } else { None };
-    transaction.execute("DELETE FROM session WHERE expires_at < {now}", values![]).await?;
+    let expired =
+        "DELETE FROM session WHERE digest IN (SELECT digest FROM session WHERE expires_at < {now} {skip locked})";
+    transaction.execute(expired, values![]).await?;
     transaction
         .execute(
             "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)

@@ -2,10 +2,10 @@
 //! theirs changes.
 use super::{
     Person, identity,
-    view::{self, Course, Deed},
+    view::{self, Course, Entry},
 };
 use crate::{
-    db::{DbError, Row, Transaction},
+    db::{DbError, FromRow, Row, Transaction},
     problem::Problem,
     values,
 };
@@ -106,15 +106,8 @@ impl Person {
 
     async fn note_answer(&self, transaction: &mut Transaction, kept: &Kept, answer: &str) -> Result<(), DbError> {
         let text = format!("{} {answer}: {}", self.account.login, kept.invitation.role);
-        let deed = Deed {
-            kind: "member",
-            actor: self.account.id,
-            course: Some(kept.course),
-            assignment: None,
-            submission: None,
-            text: &text,
-        };
-        view::note(transaction, &deed).await
+        let entry = Entry { course: Some(kept.course), ..Entry::new("member", self.account.id, &text) };
+        view::note(transaction, &entry).await
     }
 
     async fn by_secret(&self, transaction: &mut Transaction, secret: &str) -> Result<Kept, Problem> {
@@ -135,7 +128,7 @@ impl Person {
             )
             .await?;
         let read = |row: &Row| {
-            let course = Course { slug: row.text("slug")?, title: row.text("title")? };
+            let course = Course::from_row(row)?;
             let invitation = Invitation { course, role: row.text("role")?, by: row.text("login")? };
             Ok((row.text("digest")?, Kept { course: row.int("course")?, invitation }))
         };

@@ -70,7 +70,6 @@ impl House {
     }
 
     /// The address that platforms send people to.
-    #[must_use]
     pub fn launch_address(&self) -> String {
         format!("{}/lti/launch", self.public())
     }
@@ -134,7 +133,9 @@ impl Visitor {
             address.query_pairs_mut().append_pair("lti_message_hint", hint);
         }
         let mut transaction = self.house.0.database.begin().await?;
-        transaction.execute("DELETE FROM platform_login WHERE expires_at < {now}", values![]).await?;
+        let expired = "DELETE FROM platform_login
+            WHERE state IN (SELECT state FROM platform_login WHERE expires_at < {now} {skip locked})";
+        transaction.execute(expired, values![]).await?;
         transaction
             .execute(
                 "INSERT INTO platform_login (state, nonce, browser, platform, expires_at) VALUES (?, ?, ?, ?, {now} + ?)",
@@ -311,7 +312,9 @@ async fn choose(
 ) -> Result<Launched, Problem> {
     let secret = NewSecret::new("");
     let text = serde_json::to_string(arrival).map_err(|_| Problem::fault())?;
-    transaction.execute("DELETE FROM platform_choice WHERE expires_at < {now}", values![]).await?;
+    let expired = "DELETE FROM platform_choice
+        WHERE digest IN (SELECT digest FROM platform_choice WHERE expires_at < {now} {skip locked})";
+    transaction.execute(expired, values![]).await?;
     transaction
         .execute(
             "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)",

@@ -42,7 +42,6 @@ pub struct Transfer {
 
 impl Limits {
     /// Limits of these sizes.
-    #[must_use]
     pub fn new(transfers: usize, student: u64, course: u64, server: u64) -> Self {
         Self { transfers, student, course, server, ..Self::default() }
     }

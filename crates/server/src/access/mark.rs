@@ -5,7 +5,7 @@ use super::{
 };
 use crate::{
     calendar,
-    db::{DbError, Row, Transaction},
+    db::{DbError, Row, Transaction, from_row},
     lti::score,
     problem::Problem,
     values,
@@ -37,6 +37,8 @@ pub struct Request {
     /// What they ask.
     pub text: String,
 }
+
+from_row! { Request { submission, login, text = "request" } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
     let length = text.chars().count();
@@ -79,9 +81,9 @@ impl Staff {
             Some(points) => format!("{points} points: {comment}"),
             None => format!("the grader's points: {comment}"),
         };
-        let mut deed = self.deed("marked", None, &text);
-        deed.submission = Some(id);
-        view::note(&mut transaction, &deed).await?;
+        let mut entry = self.entry("marked", None, &text);
+        entry.submission = Some(id);
+        view::note(&mut transaction, &entry).await?;
         score::changed(&mut transaction, id).await?;
         transaction.commit().await?;
         self.member().house.0.bell.strike();
@@ -95,8 +97,8 @@ impl Staff {
     pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
         let mut transaction = self.member().house.0.database.read().await?;
         let assignment = self.member().find_assignment(&mut transaction, slug).await?;
-        let rows = transaction
-            .rows(
+        let requests = transaction
+            .all(
                 "SELECT mark.submission, mark.request, account.login FROM mark
                  JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
                  WHERE submission.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)
@@ -104,10 +106,7 @@ impl Staff {
                 values![assignment.id],
             )
             .await?;
-        let read = |row: &Row| {
-            Ok(Request { submission: row.int("submission")?, login: row.text("login")?, text: row.text("request")? })
-        };
-        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+        Ok(requests)
     }
 
     /// All that a student handed in to an assignment.
@@ -171,7 +170,7 @@ impl Staff {
         }
         let until = due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::minute(due)));
         let text = format!("{login} hands in {until}");
-        view::note(&mut transaction, &self.deed("extension", Some(assignment.id), &text)).await?;
+        self.note(&mut transaction, "extension", Some(assignment.id), &text).await?;
         transaction.commit().await?;
         Ok(())
     }

@@ -31,31 +31,26 @@ pub struct Member {
 
 impl Member {
     /// Who it is.
-    #[must_use]
     pub fn account(&self) -> &Account {
         &self.account
     }
 
     /// The course.
-    #[must_use]
     pub fn course(&self) -> Course {
         Course { slug: self.slug.clone(), title: self.title.clone() }
     }
 
     /// Whether they are of its staff.
-    #[must_use]
     pub fn is_staff(&self) -> bool {
         self.is_staff
     }
 
     /// Whether the course is put away.
-    #[must_use]
     pub fn is_archived(&self) -> bool {
         self.is_archived
     }
 
     /// The house.
-    #[must_use]
     pub fn house(&self) -> &House {
         &self.house
     }

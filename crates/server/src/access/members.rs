@@ -2,10 +2,10 @@
 use super::{
     NewSecret, Staff,
     identity::{self, Way},
-    invitation, view,
+    invitation,
 };
 use crate::{
-    db::{DbError, Row, Transaction},
+    db::{DbError, Transaction, from_row},
     problem::Problem,
     values,
 };
@@ -34,6 +34,8 @@ pub struct Added {
     pub invitation: Option<NewSecret>,
 }
 
+from_row! { MemberInfo { login, name, role, is_invited } }
+
 impl Staff {
     /// The course's members, and who is invited.
     ///
@@ -41,9 +43,9 @@ impl Staff {
     /// When the database does not answer.
     pub async fn members(&self) -> Result<Vec<MemberInfo>, Problem> {
         let mut transaction = self.0.house.0.database.read().await?;
-        let rows = transaction
-            .rows(
-                "SELECT account.login, account.name, member.role, CAST(0 AS {int}) AS invited FROM member
+        let members = transaction
+            .all(
+                "SELECT account.login, account.name, member.role, CAST(0 AS {int}) AS is_invited FROM member
                  JOIN account ON account.id = member.account WHERE member.course = ?
                  UNION ALL SELECT account.login, invitation.name, invitation.role, CAST(1 AS {int}) FROM invitation
                  JOIN account ON account.id = invitation.account WHERE invitation.course = ?
@@ -51,15 +53,7 @@ impl Staff {
                 values![self.0.course, self.0.course],
             )
             .await?;
-        let read = |row: &Row| {
-            Ok(MemberInfo {
-                login: row.text("login")?,
-                name: row.text("name")?,
-                role: row.text("role")?,
-                is_invited: row.flag("invited")?,
-            })
-        };
-        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+        Ok(members)
     }
 
     /// Makes somebody a member, or changes what they are; makes the account when there is none, and a link for it that
@@ -88,21 +82,22 @@ impl Staff {
         role: &str,
     ) -> Result<Added, Problem> {
         let (course, by) = (self.0.course, &self.0.account);
-        let found =
-            transaction.row("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
         let mut added = Added::default();
-        let Some(found) = found else {
-            let account = transaction
-                .one(
-                    "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now}) RETURNING id",
-                    values![login, name, course],
-                )
-                .await?
-                .int("id")?;
+        let made = transaction
+            .row(
+                "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
+                 ON CONFLICT (login) DO NOTHING RETURNING id",
+                values![login, name, course],
+            )
+            .await?;
+        if let Some(made) = made {
+            let account = made.int("id")?;
             added.link = Some(identity::new_link(transaction, account, Some(by.id), self.way()).await?);
             self.enter(transaction, account, login, role).await?;
             return Ok(added);
-        };
+        }
+        let found =
+            transaction.one("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
         let (account, managed_by) = (found.int("id")?, found.maybe_int("managed_by")?);
         let was = transaction
             .row("SELECT role FROM member WHERE course = ? AND account = ?", values![course, account])
@@ -134,7 +129,7 @@ impl Staff {
 
     async fn enter(&self, transaction: &mut Transaction, account: i64, login: &str, role: &str) -> Result<(), DbError> {
         invitation::enrol(transaction, self.0.course, account, role).await?;
-        view::note(transaction, &self.deed("member", None, &format!("{login} is {role}"))).await
+        self.note(transaction, "member", None, &format!("{login} is {role}")).await
     }
 
     /// Takes somebody out of the course, or an invitation back; what they handed in stays.
@@ -158,7 +153,7 @@ impl Staff {
         if removed == 0 {
             return Err(Problem::not_found("member"));
         }
-        view::note(&mut transaction, &self.deed("member", None, &format!("{login} is out"))).await?;
+        self.note(&mut transaction, "member", None, &format!("{login} is out")).await?;
         transaction.commit().await?;
         Ok(())
     }
@@ -186,7 +181,7 @@ impl Staff {
             return Err(Problem::not_allowed(detail));
         }
         let link = identity::new_link(&mut transaction, row.int("id")?, Some(self.0.account.id), self.way()).await?;
-        view::note(&mut transaction, &self.deed("link", None, &format!("a new link for {login}"))).await?;
+        self.note(&mut transaction, "link", None, &format!("a new link for {login}")).await?;
         transaction.commit().await?;
         Ok(link)
     }
@@ -209,7 +204,7 @@ impl Staff {
                 values![self.0.course, account, name, role, secret.digest(), self.0.account.id],
             )
             .await?;
-        view::note(transaction, &self.deed("member", None, &format!("{login} is invited as {role}"))).await?;
+        self.note(transaction, "member", None, &format!("{login} is invited as {role}")).await?;
         Ok(secret)
     }
 }

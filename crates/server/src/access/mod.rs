@@ -54,8 +54,8 @@ pub use password::Passwords;
 pub use person::{CourseOf, Person, TokenInfo};
 pub use platform::{RosterRead, ScoreInfo};
 pub use regrade::{Change, Doing, Regrade, RegradeState};
-pub use remote::{Claimed, Remote};
-pub use request::{Renewed, Secrets, SignedIn, browser_cookie, cookie_name};
+pub use remote::Remote;
+pub use request::Secrets;
 pub use settings::Settings;
 pub(crate) use settings::{moment, moment_schema};
 pub use staff::{Staff, Standing};
@@ -125,61 +125,51 @@ pub use throttle::Throttle;
 
 impl House {
     /// A house from its parts.
-    #[must_use]
     pub fn new(parts: Parts) -> Self {
         Self(Arc::new(parts))
     }
 
     /// The address that people know the service by.
-    #[must_use]
     pub fn public(&self) -> &str {
         &self.0.public
     }
 
     /// A link that signs in once, as people open it.
-    #[must_use]
     pub fn welcome_address(&self, secret: &NewSecret) -> String {
         format!("{}/welcome/{}", self.public(), secret.reveal())
     }
 
     /// A link to an invitation.
-    #[must_use]
     pub fn invitation_address(&self, secret: &NewSecret) -> String {
         format!("{}/invitation/{}", self.public(), secret.reveal())
     }
 
     /// What the server counts about itself.
-    #[must_use]
     pub fn instruments(&self) -> &Instruments {
         &self.0.instruments
     }
 
     /// The suites that come with the grader.
-    #[must_use]
     pub fn suites(&self) -> &Suites {
         &self.0.suites
     }
 
     /// The grader, where there is one.
-    #[must_use]
     pub fn grader(&self) -> Option<&std::path::Path> {
         self.0.grader.as_deref()
     }
 
     /// Whether people come by HTTPS.
-    #[must_use]
     pub fn is_secure(&self) -> bool {
         self.0.public.starts_with("https://")
     }
 
     /// How long a body may pause.
-    #[must_use]
     pub fn patience(&self) -> Duration {
         self.0.patience
     }
 
     /// Where uploads wait until they are stored.
-    #[must_use]
     pub fn incoming(&self) -> &std::path::Path {
         &self.0.incoming
     }
@@ -193,7 +183,6 @@ impl House {
     }
 
     /// Whether learning platforms may be reached, and people come from them, without HTTPS.
-    #[must_use]
     pub fn is_lti_over_http(&self) -> bool {
         self.0.lti.over_http()
     }
@@ -204,7 +193,6 @@ impl House {
     }
 
     /// Hears whatever happens.
-    #[must_use]
     pub fn ear(&self) -> Ear {
         self.0.bell.ear()
     }

@@ -140,7 +140,6 @@ impl House {
     }
 
     /// Whether people may sign in with a password.
-    #[must_use]
     pub fn takes_passwords(&self) -> bool {
         self.0.passwords.is_some()
     }

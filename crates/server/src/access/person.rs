@@ -6,7 +6,7 @@ use super::{
     view::Course,
 };
 use crate::{
-    db::{DbError, Row},
+    db::{DbError, FromRow, Row, from_row},
     problem::Problem,
     values,
 };
@@ -48,13 +48,11 @@ pub struct Person {
 
 impl Person {
     /// Who it is.
-    #[must_use]
     pub fn account(&self) -> &Account {
         &self.account
     }
 
     /// The house.
-    #[must_use]
     pub fn house(&self) -> &House {
         &self.house
     }
@@ -91,9 +89,8 @@ impl Person {
             )
             .await?;
         let read = |row: &Row| {
-            let course = Course { slug: row.text("slug")?, title: row.text("title")? };
             let is_archived = row.maybe_int("archived_at")?.is_some();
-            Ok(CourseOf { course, role: row.text("role")?, is_archived })
+            Ok(CourseOf { course: Course::from_row(row)?, role: row.text("role")?, is_archived })
         };
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }
@@ -104,13 +101,8 @@ impl Person {
     /// When the database does not answer.
     pub async fn tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
         let mut transaction = self.house.0.database.read().await?;
-        let rows = transaction
-            .rows(
-                "SELECT id, name, created_at FROM token WHERE account = ? AND revoked_at IS NULL ORDER BY id",
-                values![self.account.id],
-            )
-            .await?;
-        Ok(rows.iter().map(token_info).collect::<Result<_, DbError>>()?)
+        let statement = "SELECT id, name, created_at FROM token WHERE account = ? AND revoked_at IS NULL ORDER BY id";
+        Ok(transaction.all(statement, values![self.account.id]).await?)
     }
 
     /// Makes a token.
@@ -130,7 +122,7 @@ impl Person {
         let (id, secret) =
             identity::new_token(&mut transaction, Some(self.account.id), name, Some(self.account.id), way).await?;
         let row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
-        let info = token_info(&row)?;
+        let info = TokenInfo::from_row(&row)?;
         transaction.commit().await?;
         Ok((info, secret))
     }
@@ -152,6 +144,6 @@ impl Person {
     }
 }
 
-pub(super) fn token_info(row: &Row) -> Result<TokenInfo, DbError> {
-    Ok(TokenInfo { id: row.int("id")?, name: row.text("name")?, created_at: row.int("created_at")? })
+from_row! {
+    TokenInfo { id, name, created_at }
 }

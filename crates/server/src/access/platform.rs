@@ -2,7 +2,6 @@
 use super::{
     Admin, House, Staff,
     launch::{Newcomer, enrol, find_or_make},
-    view::{self, Deed},
 };
 use crate::{
     db::{DbError, Row, Transaction},
@@ -96,11 +95,6 @@ async fn write(transaction: &mut Transaction, name: &str, wish: &PlatformWish) -
 }
 
 impl Admin {
-    fn about<'a>(&self, text: &'a str) -> Deed<'a> {
-        let actor = self.account.id;
-        Deed { kind: "platform", actor, course: None, assignment: None, submission: None, text }
-    }
-
     /// All platforms.
     ///
     /// # Errors
@@ -123,7 +117,7 @@ impl Admin {
         let mut transaction = self.house.0.database.begin().await?;
         let platform = write(&mut transaction, name, wish).await?;
         let text = format!("{name}: {}, client {}", wish.issuer, wish.client_id);
-        view::note(&mut transaction, &self.about(&text)).await?;
+        self.note(&mut transaction, "platform", &text).await?;
         transaction.commit().await?;
         Ok(platform)
     }
@@ -140,7 +134,7 @@ impl Admin {
         if shut == 0 {
             return Err(Problem::not_found("platform"));
         }
-        view::note(&mut transaction, &self.about(&format!("{name} is shut"))).await?;
+        self.note(&mut transaction, "platform", &format!("{name} is shut")).await?;
         transaction.commit().await?;
         Ok(())
     }
@@ -152,7 +146,7 @@ impl Admin {
     pub async fn new_platform_key(&self) -> Result<(), Problem> {
         lti::new_key(&self.house.0.database).await?;
         let mut transaction = self.house.0.database.begin().await?;
-        view::note(&mut transaction, &self.about("a new key for learning platforms")).await?;
+        self.note(&mut transaction, "platform", "a new key for learning platforms").await?;
         transaction.commit().await?;
         Ok(())
     }
@@ -249,7 +243,7 @@ impl Staff {
         }
         let members = present.len();
         let text = format!("{members} members by {}, {left} left", platform.name);
-        view::note(&mut transaction, &self.deed("roster", None, &text)).await?;
+        self.note(&mut transaction, "roster", None, &text).await?;
         transaction.commit().await?;
         Ok(RosterRead { members, left })
     }
@@ -296,7 +290,7 @@ impl Staff {
         let mut transaction = self.begin().await?;
         let count = score::send_all(&mut transaction, assignment.id, true).await?;
         let text = format!("{count} scores of {slug} are sent again");
-        view::note(&mut transaction, &self.deed("scores", Some(assignment.id), &text)).await?;
+        self.note(&mut transaction, "scores", Some(assignment.id), &text).await?;
         transaction.commit().await?;
         self.member().house.0.bell.strike();
         Ok(count)

@@ -1,10 +1,7 @@
 //! A regrade: new results beside the old ones, at low priority, until somebody of the staff applies or discards them.
 //! Until then no grade changes. The work is done in the background ([`campaign`]): of a class of thousands nobody waits
 //! for an answer.
-use super::{
-    Settings, Staff, campaign,
-    view::{self, Assignment},
-};
+use super::{Settings, Staff, campaign, view::Assignment};
 use crate::{
     db::{DbError, Row, Transaction},
     problem::Problem,
@@ -69,7 +66,8 @@ pub struct Regrade {
 /// Work on a regrade that goes on after the answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Doing {
-    /// `begin` (submissions are put into the queue), `apply` (results begin to count) or `discard`.
+    /// `begin` (submissions are put into the queue), `apply` (results begin to count), `undo` (what counted before counts
+    /// again) or `discard`.
     pub what: String,
     /// For how many submissions it is done.
     pub done: i64,
@@ -127,7 +125,7 @@ impl Staff {
             .await?;
         let (campaign, count) = (campaign.int("id")?, campaign.int("total")?);
         let text = format!("regrade {campaign} of {count} submissions: {reason}");
-        view::note(&mut transaction, &self.deed("regrade", Some(assignment.id), &text)).await?;
+        self.note(&mut transaction, "regrade", Some(assignment.id), &text).await?;
         transaction.commit().await?;
         self.hurry(campaign).await;
         self.show_regrade(slug, campaign, None).await
@@ -209,6 +207,12 @@ impl Staff {
         }
         // From now on submissions are graded by these settings; the grades of others change one after the other.
         transaction
+            .execute(
+                "UPDATE campaign SET settings_before = (SELECT settings FROM assignment WHERE id = ?) WHERE id = ?",
+                values![assignment.id, id],
+            )
+            .await?;
+        transaction
             .execute("UPDATE assignment SET settings = ? WHERE id = ?", values![row.text("settings")?, assignment.id])
             .await?;
         transaction
@@ -223,44 +227,50 @@ impl Staff {
         self.show_regrade(slug, id, None).await
     }
 
-    /// Gives a regrade up: its waiting jobs are cancelled, and nothing changes.
+    /// Gives a regrade up: its waiting jobs are cancelled, and nothing changes. While it is being applied, what counted
+    /// before counts again.
     ///
     /// # Errors
     /// When it is decided already.
     pub async fn discard_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.member().assignment(slug).await?;
         let mut transaction = self.begin().await?;
-        self.lock_open(&mut transaction, &assignment, id).await?;
-        transaction
-            .execute(
+        let doing = self.lock_open(&mut transaction, &assignment, id).await?;
+        let statement = match doing.as_deref() {
+            Some("apply") => "UPDATE campaign SET doing = 'undo', decided_by = ?, cursor = 0, done = 0 WHERE id = ?",
+            _ => {
                 "UPDATE campaign SET state = 'discarded', decided_by = ?, decided_at = {now}, doing = 'discard'
-                 WHERE id = ?",
-                values![self.member().account.id, id],
-            )
-            .await?;
+                 WHERE id = ?"
+            }
+        };
+        transaction.execute(statement, values![self.member().account.id, id]).await?;
         let text = format!("regrade {id} discarded");
-        view::note(&mut transaction, &self.deed("regrade", Some(assignment.id), &text)).await?;
+        self.note(&mut transaction, "regrade", Some(assignment.id), &text).await?;
         transaction.commit().await?;
         self.hurry(id).await;
         self.show_regrade(slug, id, None).await
     }
 
-    async fn lock_open(&self, transaction: &mut Transaction, assignment: &Assignment, id: i64) -> Result<(), Problem> {
+    /// Locks a regrade that nobody has decided on, and says what is being done for it.
+    async fn lock_open(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        id: i64,
+    ) -> Result<Option<String>, Problem> {
         let row = transaction
             .row(
                 "SELECT state, doing FROM campaign WHERE id = ? AND assignment = ? {for update}",
                 values![id, assignment.id],
             )
             .await?;
-        if let Some(row) = &row
-            && row.maybe_text("doing")?.as_deref() == Some("apply")
-        {
-            return Err(Problem::conflict("this regrade is being applied", "wait until it is"));
-        }
-        match row.map(|row| row.text("state")).transpose()?.as_deref() {
-            None => Err(Problem::not_found("regrade")),
-            Some("open") => Ok(()),
-            Some(state) => Err(Problem::conflict(format!("this regrade is {state}"), "begin a new one")),
+        let row = row.ok_or_else(|| Problem::not_found("regrade"))?;
+        match (row.text("state")?.as_str(), row.maybe_text("doing")?) {
+            ("open", Some(doing)) if doing == "undo" => {
+                Err(Problem::conflict("this regrade is being taken back", "wait until it is"))
+            }
+            ("open", doing) => Ok(doing),
+            (state, _) => Err(Problem::conflict(format!("this regrade is {state}"), "begin a new one")),
         }
     }
 }

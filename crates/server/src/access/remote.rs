@@ -7,30 +7,16 @@ use crate::{
     store::{Artefact, Digest, Opened},
     task::{Outcome, Suite, Task},
     values,
+    wire::Claimed,
     worker::{Answer, Desk, DeskError, LocalDesk, REPORTS},
 };
-use serde::{Deserialize, Serialize};
 use std::path::Path;
-use utoipa::ToSchema;
 
 /// A worker with a token.
 pub struct Remote {
     house: House,
     token: i64,
     worker: String,
-}
-
-/// A job for a worker.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct Claimed {
-    /// What to show from now on.
-    pub lease: Lease,
-    /// How often to renew it, in milliseconds.
-    pub renew_every: u64,
-    /// What to do.
-    pub task: Task,
-    /// Whether nothing else may run beside it.
-    pub alone: bool,
 }
 
 /// The largest report.
@@ -44,6 +30,7 @@ impl From<DeskError> for Problem {
                 Self::unavailable("the database or the store does not answer")
             }
             DeskError::Refused(error) => Self::invalid(error),
+            DeskError::Dismissed => Self::unknown_secret("worker token"),
         }
     }
 }
@@ -76,13 +63,11 @@ impl Remote {
     }
 
     /// The house.
-    #[must_use]
     pub fn house(&self) -> &House {
         &self.house
     }
 
     /// How often it is to say that it is alive, in milliseconds.
-    #[must_use]
     pub fn tick_every(&self) -> u64 {
         u64::try_from(self.house.0.policy.tick_every().as_millis()).unwrap_or(u64::MAX)
     }

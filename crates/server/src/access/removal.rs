@@ -3,7 +3,7 @@
 //! a job that runs meanwhile finds its lease gone, and ends without effect.
 use super::{
     Admin, Staff,
-    view::{self, Deed},
+    view::{self, Entry},
 };
 use crate::{
     db::{DbError, Transaction},
@@ -12,59 +12,56 @@ use crate::{
     values,
 };
 
-/// Takes the jobs of submissions out of the queue. What is finished in this moment is waited for: its result is there
-/// then, to be removed.
-macro_rules! cancel_jobs {
-    ($transaction:expr, $value:expr, $which:literal) => {
-        $transaction
-            .execute(
-                concat!(
-                    "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
-                     WHERE state IN ('waiting', 'running') AND submission IN (SELECT id FROM submission WHERE ",
-                    $which,
-                    ")"
-                ),
-                values![$value],
-            )
-            .await?
-    };
+/// What is kept of submissions, in the order in which it goes.
+const PARTS: [&str; 11] = [
+    "DELETE FROM wrong_scene WHERE result IN (SELECT result.id FROM result JOIN {each}
+        ON result.submission = CAST(wanted.value AS {int}))",
+    "DELETE FROM result_file WHERE result IN (SELECT result.id FROM result JOIN {each}
+        ON result.submission = CAST(wanted.value AS {int}))",
+    "DELETE FROM mark WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM grade_change WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM grade WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM result WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM job_file WHERE job IN (SELECT job.id FROM job JOIN {each}
+        ON job.submission = CAST(wanted.value AS {int}))",
+    "DELETE FROM job WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM upload_key WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM event WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+];
+
+const OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ?";
+const OF_COURSE: &str = "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
+const OF_PERSON: &str = "SELECT id FROM submission WHERE account = ?";
+
+/// Takes the jobs of submissions, which a statement finds, out of the queue; the submissions' numbers as JSON. What is
+/// finished in this moment is waited for: its result is there then, to be removed.
+async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<String, DbError> {
+    let rows = transaction.rows(which, values![value]).await?;
+    let ids = rows.iter().map(|row| row.int("id")).collect::<Result<Vec<_>, _>>()?;
+    let ids = serde_json::to_string(&ids).unwrap_or_default();
+    transaction
+        .execute(
+            "WITH going AS (SELECT id FROM job WHERE state IN ('waiting', 'running')
+                AND submission IN (SELECT CAST(wanted.value AS {int}) FROM {each}) ORDER BY id {for update})
+             UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+             WHERE id IN (SELECT id FROM going)",
+            values![&ids],
+        )
+        .await?;
+    Ok(ids)
 }
 
-/// Removes what is kept of submissions.
-macro_rules! remove_submissions {
-    ($transaction:expr, $value:expr, $which:literal) => {
-        cancel_jobs!($transaction, $value, $which);
-        for statement in [
-            concat!(
-                "DELETE FROM wrong_scene WHERE result IN (SELECT id FROM result WHERE submission IN
-                (SELECT id FROM submission WHERE ",
-                $which,
-                "))"
-            ),
-            concat!(
-                "DELETE FROM result_file WHERE result IN (SELECT id FROM result WHERE submission IN
-                (SELECT id FROM submission WHERE ",
-                $which,
-                "))"
-            ),
-            concat!("DELETE FROM mark WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
-            concat!("DELETE FROM grade_change WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
-            concat!("DELETE FROM grade WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
-            concat!("DELETE FROM result WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
-            concat!(
-                "DELETE FROM job_file WHERE job IN (SELECT id FROM job WHERE submission IN
-                (SELECT id FROM submission WHERE ",
-                $which,
-                "))"
-            ),
-            concat!("DELETE FROM job WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
-            concat!("DELETE FROM upload_key WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
-            concat!("DELETE FROM event WHERE submission IN (SELECT id FROM submission WHERE ", $which, ")"),
-            concat!("DELETE FROM submission WHERE ", $which),
-        ] {
-            $transaction.execute(statement, values![$value]).await?;
-        }
-    };
+/// Removes what is kept of submissions that a statement finds. Whoever writes about one of them is waited for.
+async fn remove_submissions(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<(), DbError> {
+    let ids = cancel_jobs(transaction, which, value).await?;
+    let locked = "SELECT id FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})
+                  ORDER BY id {for removal}";
+    transaction.rows(locked, values![&ids]).await?;
+    for statement in PARTS {
+        transaction.execute(statement, values![&ids]).await?;
+    }
+    Ok(())
 }
 
 async fn run(transaction: &mut Transaction, statements: &[&'static str], id: i64) -> Result<(), DbError> {
@@ -90,8 +87,8 @@ impl Staff {
             .await?;
         let Some(found) = found else { return Err(Problem::not_found("submission")) };
         score::changed(&mut transaction, id).await?;
-        remove_submissions!(transaction, id, "id = ?");
-        view::note(&mut transaction, &self.deed("removed", Some(found.int("id")?), "a submission")).await?;
+        remove_submissions(&mut transaction, "SELECT id FROM submission WHERE id = ?", id).await?;
+        self.note(&mut transaction, "removed", Some(found.int("id")?), "a submission").await?;
         transaction.commit().await?;
         self.member().house.0.bell.strike();
         Ok(())
@@ -104,10 +101,10 @@ impl Staff {
     pub async fn remove_assignment(&self, slug: &str) -> Result<(), Problem> {
         let mut transaction = self.begin().await?;
         let assignment = self.member().find_assignment(&mut transaction, slug).await?;
-        cancel_jobs!(transaction, assignment.id, "assignment = ?");
+        cancel_jobs(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
         // From here on nobody hands in.
         transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
-        remove_submissions!(transaction, assignment.id, "assignment = ?");
+        remove_submissions(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
         let rest = [
             "DELETE FROM platform_score WHERE link IN (SELECT id FROM platform_link WHERE assignment = ?)",
             "DELETE FROM platform_link WHERE assignment = ?",
@@ -118,18 +115,13 @@ impl Staff {
             "DELETE FROM assignment WHERE id = ?",
         ];
         run(&mut transaction, &rest, assignment.id).await?;
-        view::note(&mut transaction, &self.deed("removed", None, &format!("the assignment {slug}"))).await?;
+        self.note(&mut transaction, "removed", None, &format!("the assignment {slug}")).await?;
         transaction.commit().await?;
         Ok(())
     }
 }
 
 impl Admin {
-    fn removed<'a>(&self, text: &'a str) -> Deed<'a> {
-        let actor = self.account().id;
-        Deed { kind: "removed", actor, course: None, assignment: None, submission: None, text }
-    }
-
     async fn course(&self, transaction: &mut Transaction, slug: &str) -> Result<i64, Problem> {
         let row = transaction.row("SELECT id FROM course WHERE slug = ?", values![slug]).await?;
         Ok(row.ok_or_else(|| Problem::not_found("course"))?.int("id")?)
@@ -149,8 +141,8 @@ impl Admin {
             )
             .await?;
         let text = format!("{slug} is {}", if archived { "archived" } else { "open again" });
-        let deed = Deed { kind: "course", course: Some(course), ..self.removed(&text) };
-        view::note(&mut transaction, &deed).await?;
+        let entry = Entry { course: Some(course), ..Entry::new("course", self.account().id, &text) };
+        view::note(&mut transaction, &entry).await?;
         transaction.commit().await?;
         Ok(())
     }
@@ -162,10 +154,10 @@ impl Admin {
     pub async fn remove_course(&self, slug: &str) -> Result<(), Problem> {
         let mut transaction = self.house().0.database.begin().await?;
         let course = self.course(&mut transaction, slug).await?;
-        cancel_jobs!(transaction, course, "assignment IN (SELECT id FROM assignment WHERE course = ?)");
+        cancel_jobs(&mut transaction, OF_COURSE, course).await?;
         transaction.rows("SELECT id FROM course WHERE id = ? {for removal}", values![course]).await?;
         transaction.rows("SELECT id FROM assignment WHERE course = ? {for removal}", values![course]).await?;
-        remove_submissions!(transaction, course, "assignment IN (SELECT id FROM assignment WHERE course = ?)");
+        remove_submissions(&mut transaction, OF_COURSE, course).await?;
         let rest = [
             "DELETE FROM platform_score WHERE link IN (SELECT platform_link.id FROM platform_link
                 JOIN platform_course ON platform_course.id = platform_link.platform_course WHERE course = ?)",
@@ -184,7 +176,7 @@ impl Admin {
             "DELETE FROM course WHERE id = ?",
         ];
         run(&mut transaction, &rest, course).await?;
-        view::note(&mut transaction, &self.removed("a course with all that belonged to it")).await?;
+        self.note(&mut transaction, "removed", "a course with all that belonged to it").await?;
         transaction.commit().await?;
         Ok(())
     }
@@ -202,9 +194,9 @@ impl Admin {
         let row = transaction.row("SELECT id FROM account WHERE login = ?", values![login]).await?;
         let Some(row) = row else { return Err(Problem::not_found("account")) };
         let account = row.int("id")?;
-        cancel_jobs!(transaction, account, "account = ?");
+        cancel_jobs(&mut transaction, OF_PERSON, account).await?;
         transaction.rows("SELECT id FROM account WHERE id = ? {for removal}", values![account]).await?;
-        remove_submissions!(transaction, account, "account = ?");
+        remove_submissions(&mut transaction, OF_PERSON, account).await?;
         let rest = [
             "DELETE FROM platform_score WHERE account = ?",
             "DELETE FROM platform_choice WHERE account = ?",
@@ -236,7 +228,7 @@ impl Admin {
             let text = without_name(&row.text("text")?, login, &nobody);
             transaction.execute("UPDATE event SET text = ? WHERE id = ?", values![text, row.int("id")?]).await?;
         }
-        view::note(&mut transaction, &self.removed("a person with all that was kept of them")).await?;
+        self.note(&mut transaction, "removed", "a person with all that was kept of them").await?;
         transaction.commit().await?;
         Ok(())
     }

@@ -1,89 +1,27 @@
-//! Who asks, told from a request.
+//! Who asks, told from the secrets that a request shows.
 use super::{
     Admin, House, Member, Person, Remote, Staff, Visitor,
     account::Account,
     identity::{self, Seen},
 };
-use crate::{net::ClientAddress, problem::Problem, values};
-use axum::{
-    extract::{FromRequestParts, RawPathParams},
-    http::{HeaderMap, header, request::Parts},
-};
-use std::{
-    net::IpAddr,
-    sync::{Arc, OnceLock},
-    time::Instant,
-};
+use crate::{problem::Problem, values};
+use std::{net::IpAddr, time::Instant};
 
-/// Where a request's session is noted when it lasts longer from now on: the browser is to keep its cookie as long.
-#[derive(Debug, Clone, Default)]
-pub struct Renewed(Arc<OnceLock<String>>);
-
-impl Renewed {
-    /// What the cookie holds, if it is to be sent again.
-    #[must_use]
-    pub fn session(&self) -> Option<&str> {
-        self.0.get().map(String::as_str)
-    }
-}
-
-/// Where a request comes from.
-fn address(parts: &Parts) -> Option<IpAddr> {
-    parts.extensions.get::<ClientAddress>().map(|ClientAddress(address)| *address)
-}
-
-/// Stands in a request once it is known who asks: whoever reads its body may then read more of it.
-#[derive(Clone, Copy)]
-pub struct SignedIn;
-
-/// What a request shows.
+/// What a request shows of who asks.
 #[derive(Clone, Default)]
 pub struct Secrets {
-    /// From `Authorization: Bearer`.
+    /// A token.
     pub bearer: Option<String>,
-    /// From the session's cookie.
+    /// The secret of a browser's session.
     pub session: Option<String>,
-    /// From the cookie of a browser that comes from a learning platform.
+    /// The word of a browser that comes from a learning platform.
     pub browser: Option<String>,
-}
-
-/// The session's cookie: by HTTPS one that no other host and no script can set or read.
-#[must_use]
-pub fn cookie_name(secure: bool) -> &'static str {
-    if secure { "__Host-fosssim" } else { "fosssim" }
-}
-
-/// The cookie of a browser while it comes from a learning platform.
-#[must_use]
-pub fn browser_cookie(secure: bool) -> &'static str {
-    if secure { "__Host-fosssim-lti" } else { "fosssim-lti" }
-}
-
-impl Secrets {
-    /// The secrets in a request's headers.
-    #[must_use]
-    pub fn of(headers: &HeaderMap, secure: bool) -> Self {
-        let text = |name| headers.get(name).and_then(|value: &header::HeaderValue| value.to_str().ok());
-        let bearer = text(header::AUTHORIZATION)
-            .and_then(|value| value.split_once(' '))
-            .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
-            .map(|(_, token)| token.trim().to_owned());
-        let cookie = |wanted: &str| {
-            headers
-                .get_all(header::COOKIE)
-                .iter()
-                .filter_map(|value| value.to_str().ok())
-                .flat_map(|value| value.split(';'))
-                .filter_map(|pair| pair.trim().split_once('='))
-                .find(|(name, _)| *name == wanted)
-                .map(|(_, value)| value.to_owned())
-        };
-        Self { bearer, session: cookie(cookie_name(secure)), browser: cookie(browser_cookie(secure)) }
-    }
+    /// Where the request comes from.
+    pub address: Option<IpAddr>,
 }
 
 impl House {
-    /// Who shows these secrets.
+    /// Whose these secrets are.
     async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<Seen>), Problem> {
         let (account, seen) = match secrets {
             Secrets { bearer: Some(token), .. } => {
@@ -110,113 +48,93 @@ impl House {
         }
         Ok((account, seen))
     }
-}
 
-impl FromRequestParts<House> for Visitor {
-    type Rejection = Problem;
+    /// Anybody.
+    pub fn visitor(&self, secrets: Secrets) -> Visitor {
+        let Secrets { session, browser, address, .. } = secrets;
+        Visitor { house: self.clone(), session, browser, address }
+    }
 
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let secrets = Secrets::of(&parts.headers, house.is_secure());
-        let address = address(parts);
-        Ok(Self { house: house.clone(), session: secrets.session, browser: secrets.browser, address })
+    /// Somebody who is signed in.
+    ///
+    /// # Errors
+    /// When nobody is, or they ask too often.
+    pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
+        let (account, session) = self.account(secrets).await?;
+        Ok(Person { account, session, address: secrets.address, house: self.clone() })
+    }
+
+    /// A worker by its token; what it is called is its own to say.
+    ///
+    /// # Errors
+    /// When the token is none of a worker's, or not any more.
+    pub async fn remote(&self, token: &str, name: &str) -> Result<Remote, Problem> {
+        let mut transaction = self.0.database.read().await?;
+        let row = transaction
+            .row(
+                "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL",
+                values![identity::digest(token)],
+            )
+            .await?;
+        let Some(row) = row else { return Err(Problem::unknown_secret("worker token")) };
+        Ok(Remote::new(self.clone(), row.int("id")?, &row.text("name")?, name))
     }
 }
 
-impl FromRequestParts<House> for Person {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let secrets = Secrets::of(&parts.headers, house.is_secure());
-        let (account, session) = house.account(&secrets).await?;
-        parts.extensions.insert(SignedIn);
-        if let (Some(true), Some(secret), Some(renewed)) =
-            (session.as_ref().map(|seen| seen.is_stale), secrets.session, parts.extensions.get::<Renewed>())
-        {
-            // Another part of the same request may have noted it.
-            drop(renewed.0.set(secret));
-        }
-        Ok(Self { account, session, address: address(parts), house: house.clone() })
+impl Person {
+    /// Whether their session lasts longer from now on: the browser is to keep its cookie as long.
+    pub fn is_renewed(&self) -> bool {
+        self.session.as_ref().is_some_and(|session| session.is_stale)
     }
-}
 
-impl FromRequestParts<House> for Member {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let person = Person::from_request_parts(parts, house).await?;
-        let params = RawPathParams::from_request_parts(parts, house).await;
-        let slug = params
-            .ok()
-            .and_then(|params| params.iter().find(|(name, _)| *name == "course").map(|(_, slug)| slug.to_owned()));
-        let Some(slug) = slug else { return Err(Problem::not_found("course")) };
-        let mut transaction = house.0.database.read().await?;
+    /// The same person in a course.
+    ///
+    /// # Errors
+    /// When they are not in it, or there is no such course: who is not of it does not learn that it exists.
+    pub async fn member_of(self, slug: &str) -> Result<Member, Problem> {
+        let mut transaction = self.house.0.database.read().await?;
         let row = transaction
             .row(
                 "SELECT course.id, course.slug, course.title, course.archived_at, member.role FROM course
                  LEFT JOIN member ON member.course = course.id AND member.account = ?
                  WHERE course.slug = ?",
-                values![person.account.id, slug],
+                values![self.account.id, slug],
             )
             .await?;
         let Some(row) = row else { return Err(Problem::not_found("course")) };
         let role = row.maybe_text("role")?;
-        // Whoever is not of the course does not learn that it exists.
-        if role.is_none() && !person.account.is_admin {
+        if role.is_none() && !self.account.is_admin {
             return Err(Problem::not_found("course"));
         }
-        Ok(Self {
-            is_staff: person.account.is_admin || role.as_deref() == Some("staff"),
+        Ok(Member {
+            is_staff: self.account.is_admin || role.as_deref() == Some("staff"),
             is_archived: row.maybe_int("archived_at")?.is_some(),
             course: row.int("id")?,
             slug: row.text("slug")?,
             title: row.text("title")?,
-            account: person.account,
-            house: person.house,
+            account: self.account,
+            house: self.house,
         })
     }
-}
 
-impl FromRequestParts<House> for Staff {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let member = Member::from_request_parts(parts, house).await?;
-        if !member.is_staff {
-            return Err(Problem::not_allowed("this is for the course's staff"));
+    /// The same person as an administrator.
+    ///
+    /// # Errors
+    /// When they are none.
+    pub fn admin(self) -> Result<Admin, Problem> {
+        match self.account.is_admin {
+            true => Ok(Admin { account: self.account, house: self.house }),
+            false => Err(Problem::not_allowed("this is for administrators")),
         }
-        Ok(Self(member))
     }
 }
 
-impl FromRequestParts<House> for Admin {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let person = Person::from_request_parts(parts, house).await?;
-        if !person.account.is_admin {
-            return Err(Problem::not_allowed("this is for administrators"));
-        }
-        Ok(Self { account: person.account, house: person.house })
-    }
-}
-
-impl FromRequestParts<House> for Remote {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let Some(token) = Secrets::of(&parts.headers, house.is_secure()).bearer else {
-            return Err(Problem::not_signed_in());
-        };
-        let mut transaction = house.0.database.read().await?;
-        let row = transaction
-            .row(
-                "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL",
-                values![identity::digest(&token)],
-            )
-            .await?;
-        let Some(row) = row else { return Err(Problem::unknown_secret("worker token")) };
-        parts.extensions.insert(SignedIn);
-        let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
-        Ok(Self::new(house.clone(), row.int("id")?, &row.text("name")?, name))
+impl Member {
+    /// The same person as one of the course's staff.
+    ///
+    /// # Errors
+    /// When they are not.
+    pub fn staff(self) -> Result<Staff, Problem> {
+        if self.is_staff { Ok(Staff(self)) } else { Err(Problem::not_allowed("this is for the course's staff")) }
     }
 }

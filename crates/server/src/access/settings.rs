@@ -116,7 +116,6 @@ impl Settings {
     }
 
     /// As the database keeps them.
-    #[must_use]
     pub fn text(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
@@ -168,13 +167,11 @@ impl Settings {
     }
 
     /// Whether a form of this name may be handed in.
-    #[must_use]
     pub fn has_form(&self, form: &str) -> bool {
         self.forms.iter().any(|name| name == form)
     }
 
     /// Whether this may be handed in.
-    #[must_use]
     pub fn takes(&self, form: Form) -> bool {
         self.has_form(form.name())
     }

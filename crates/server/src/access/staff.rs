@@ -1,7 +1,7 @@
 //! The staff of a course.
 use super::{
     Member, Settings, bulk, identity,
-    view::{self, Assignment, Deed, Event, Queue, Submission},
+    view::{self, Assignment, Entry, Event, Queue, Submission},
 };
 use crate::{
     db::{DbError, Transaction},
@@ -33,13 +33,23 @@ pub struct Standing {
 
 impl Staff {
     /// The same person as a member.
-    #[must_use]
     pub fn member(&self) -> &Member {
         &self.0
     }
 
-    pub(super) fn deed<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Deed<'a> {
-        Deed { kind, actor: self.0.account.id, course: Some(self.0.course), assignment, submission: None, text }
+    pub(super) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
+        Entry { course: Some(self.0.course), assignment, ..Entry::new(kind, self.0.account.id, text) }
+    }
+
+    /// Writes into the course's audit log.
+    pub(super) async fn note(
+        &self,
+        transaction: &mut Transaction,
+        kind: &'static str,
+        assignment: Option<i64>,
+        text: &str,
+    ) -> Result<(), DbError> {
+        view::note(transaction, &self.entry(kind, assignment, text)).await
     }
 
     /// Makes an assignment, or changes it.
@@ -79,7 +89,7 @@ impl Staff {
         // What waits because nothing could be graded is tried by the new settings.
         bulk::resume(&mut transaction, &assignment).await?;
         let text = format!("{slug} ({title}), {}: {}", if visible { "visible" } else { "hidden" }, settings.text());
-        view::note(&mut transaction, &self.deed("assignment", Some(assignment.id), &text)).await?;
+        self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
         transaction.commit().await?;
         Ok(assignment)
     }
@@ -99,7 +109,7 @@ impl Staff {
             )
             .await?;
         let text = format!("hidden groups of {slug} are {}", if published { "published" } else { "withheld" });
-        view::note(&mut transaction, &self.deed("assignment", Some(assignment.id), &text)).await?;
+        self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
         score::send_all(&mut transaction, assignment.id, false).await?;
         transaction.commit().await?;
         self.0.house.0.bell.strike();
@@ -176,15 +186,15 @@ impl Staff {
     /// When the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.0.house.0.database.read().await?;
-        let rows = transaction
-            .rows(
+        let events = transaction
+            .all(
                 "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
                  LEFT JOIN account ON account.id = event.actor
                  WHERE event.course = ? AND event.id < ? ORDER BY event.id DESC LIMIT 200",
                 values![self.0.course, before.unwrap_or(i64::MAX)],
             )
             .await?;
-        Ok(rows.iter().map(view::read_event).collect::<Result<_, DbError>>()?)
+        Ok(events)
     }
 
     /// The queue and the workers.

@@ -1,7 +1,7 @@
 //! Handing in: the submission, its job and the event are written in one transaction, after its bytes are safely stored.
 use super::{
     Member, mark,
-    view::{self, Assignment, Deed, Submission},
+    view::{self, Assignment, Entry, Submission},
 };
 use crate::{
     db::Transaction,
@@ -225,15 +225,13 @@ impl Member {
                 )
                 .await?;
         }
-        let deed = Deed {
-            kind: "submitted",
-            actor: self.account.id,
+        let entry = Entry {
             course: Some(self.course),
             assignment: Some(assignment.id),
             submission: Some(submission),
-            text: upload.name,
+            ..Entry::new("submitted", self.account.id, upload.name)
         };
-        view::note(transaction, &deed).await?;
+        view::note(transaction, &entry).await?;
         Ok(submission)
     }
 }

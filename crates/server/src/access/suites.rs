@@ -71,13 +71,11 @@ impl Suites {
     }
 
     /// Their names; none where the grader can't be asked.
-    #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
     /// Which names there are, in words.
-    #[must_use]
     pub fn words(&self) -> String {
         match self.names.as_slice() {
             [] => "a name that `fosssim-oracle suite list` shows".to_owned(),

@@ -1,5 +1,5 @@
 //! Where the reference may be wrong: what staff is told, and decides.
-use super::{Member, Staff, view};
+use super::{Member, Staff};
 use crate::{
     db::{DbError, Row},
     problem::Problem,
@@ -93,7 +93,7 @@ impl Staff {
             true => format!("students are told that the reference may be wrong in {scene}"),
             false => format!("the reference is right in {scene}"),
         };
-        view::note(&mut transaction, &self.deed("suspicion", Some(assignment.id), &text)).await?;
+        self.note(&mut transaction, "suspicion", Some(assignment.id), &text).await?;
         transaction.commit().await?;
         Ok(())
     }

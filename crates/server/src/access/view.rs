@@ -1,7 +1,7 @@
 //! What the service shows: the same to the API, to pages and to exports.
 use super::{House, Settings};
 use crate::{
-    db::{DbError, Row, Transaction, Value},
+    db::{DbError, FromRow, Row, Transaction, Value, from_row},
     health,
     problem::Problem,
     queue::{self, Lane},
@@ -234,6 +234,13 @@ pub struct QueueWorker {
     pub fault_at: Option<i64>,
 }
 
+from_row! {
+    Course { slug, title }
+    Mark { points = "mark_points", comment, by = "marker", marked_at, request, requested_at }
+    Event { id, happened_at, kind, actor = "login", submission, text }
+    QueueWorker { name, version, slots, running, seen_at, aside_since, faults, fault, fault_at }
+}
+
 /// The columns of submissions; what follows says which.
 macro_rules! submissions {
     ($rest:literal) => {
@@ -283,17 +290,7 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
             created_at: row.int("graded_at")?,
         }),
     };
-    let mark = match row.maybe_text("comment")? {
-        None => None,
-        Some(comment) => Some(Mark {
-            points: row.maybe_text("mark_points")?,
-            comment,
-            by: row.maybe_text("marker")?,
-            marked_at: row.maybe_int("marked_at")?,
-            request: row.maybe_text("request")?,
-            requested_at: row.maybe_int("requested_at")?,
-        }),
-    };
+    let mark = row.maybe_text("comment")?.map(|_| Mark::from_row(row)).transpose()?;
     let mut submission = Submission {
         id: row.int("id")?,
         number: row.int("number")?,
@@ -467,17 +464,6 @@ fn by_what(task: &str) -> String {
     format!("suite {suite}, rules {rules}, upload {}", task.submission.artefact.digest.short())
 }
 
-pub(super) fn read_event(row: &Row) -> Result<Event, DbError> {
-    Ok(Event {
-        id: row.int("id")?,
-        happened_at: row.int("happened_at")?,
-        kind: row.text("kind")?,
-        actor: row.maybe_text("login")?,
-        submission: row.maybe_int("submission")?,
-        text: row.text("text")?,
-    })
-}
-
 pub(super) fn read_assignment(row: &Row) -> Result<Assignment, Problem> {
     Ok(Assignment {
         id: row.int("id")?,
@@ -489,8 +475,8 @@ pub(super) fn read_assignment(row: &Row) -> Result<Assignment, Problem> {
     })
 }
 
-/// Something that somebody did.
-pub(super) struct Deed<'a> {
+/// An entry of the audit log.
+pub(super) struct Entry<'a> {
     pub(super) kind: &'static str,
     pub(super) actor: i64,
     pub(super) course: Option<i64>,
@@ -499,13 +485,20 @@ pub(super) struct Deed<'a> {
     pub(super) text: &'a str,
 }
 
+impl<'a> Entry<'a> {
+    /// One about nothing but what its words say.
+    pub(super) fn new(kind: &'static str, actor: i64, text: &'a str) -> Self {
+        Self { kind, actor, course: None, assignment: None, submission: None, text }
+    }
+}
+
 /// Writes it into the audit log.
-pub(super) async fn note(transaction: &mut Transaction, deed: &Deed<'_>) -> Result<(), DbError> {
+pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Result<(), DbError> {
     transaction
         .execute(
             "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
              VALUES ({now}, ?, ?, ?, ?, ?, ?)",
-            values![deed.kind, deed.actor, deed.course, deed.assignment, deed.submission, deed.text],
+            values![entry.kind, entry.actor, entry.course, entry.assignment, entry.submission, entry.text],
         )
         .await?;
     Ok(())
@@ -526,33 +519,20 @@ pub(super) async fn queue(transaction: &mut Transaction, house: &House) -> Resul
         )
         .await?;
     let recent = health::recent(&house.0.policy);
-    let rows = transaction
-        .rows(
+    let workers = transaction
+        .all(
             "SELECT name, version, slots, seen_at, aside_since, faults, fault, fault_at,
                 (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
              FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ? ORDER BY name LIMIT 1000",
             values![recent, recent],
         )
         .await?;
-    let read = |row: &Row| {
-        Ok(QueueWorker {
-            name: row.text("name")?,
-            version: row.text("version")?,
-            slots: row.int("slots")?,
-            running: row.int("running")?,
-            seen_at: row.int("seen_at")?,
-            aside_since: row.maybe_int("aside_since")?,
-            faults: row.int("faults")?,
-            fault: row.maybe_text("fault")?,
-            fault_at: row.maybe_int("fault_at")?,
-        })
-    };
     Ok(Queue {
         waiting: counts.int("waiting")?,
         regrades: counts.int("regrades")?,
         running: counts.int("running")?,
         buried: counts.int("buried")?,
         paused: counts.int("paused")?,
-        workers: rows.iter().map(read).collect::<Result<_, DbError>>()?,
+        workers,
     })
 }

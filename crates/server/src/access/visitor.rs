@@ -29,6 +29,8 @@ pub struct Metrics {
     pub slots: i64,
     /// Workers that take no jobs, because they can't grade.
     pub aside: i64,
+    /// Workers that grade something.
+    pub working: i64,
     /// Jobs of assignments by whose suite nothing can be graded; they wait for staff.
     pub paused: i64,
     /// Events by kind, of those kinds that somebody should look at.
@@ -41,13 +43,11 @@ pub struct Metrics {
 
 impl Visitor {
     /// The house.
-    #[must_use]
     pub fn house(&self) -> &House {
         &self.house
     }
 
     /// What this browser showed of itself when it came from a learning platform.
-    #[must_use]
     pub fn browser(&self) -> Option<&str> {
         self.browser.as_deref()
     }

@@ -28,7 +28,6 @@ pub(super) fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
 }
 
 /// What a file is that is none of what can be handed in, by how it begins.
-#[must_use]
 pub fn described(start: &[u8]) -> String {
     let known: [(&[u8], &str); 12] = [
         (b"MZ", "a program for Windows"),

@@ -10,6 +10,8 @@ mod heartbeat;
 mod logging;
 mod replay;
 mod serve;
+#[cfg(feature = "otel")]
+mod traces;
 mod upgrade;
 mod worker;
 
@@ -19,7 +21,6 @@ use std::process::ExitCode;
 use tokio_util::sync::CancellationToken;
 
 /// Runs the command that the program's arguments ask for.
-#[must_use]
 pub fn main() -> ExitCode {
     let words: Vec<std::ffi::OsString> = std::env::args_os().collect();
     let arguments = match config::parse(&words) {
@@ -39,7 +40,7 @@ pub fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<u8> {
-    logging::begin(arguments.log_format);
+    let _traces = logging::begin(arguments.log_format);
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async {
         match &arguments.command {

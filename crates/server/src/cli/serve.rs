@@ -9,6 +9,7 @@ use crate::{
     access::{self, Counts, House, Limits, Parts, Passwords, Suites, Throttle},
     db::{self, Address, Database},
     instruments::Instruments,
+    ledger,
     lti::{self, Lti, PlatformWish},
     net,
     queue::Bell,
@@ -89,7 +90,12 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     if let Some(file) = &arguments.platforms {
         register_platforms(&house, file).await?;
     }
-    tokio::spawn(lti::send_scores(database.clone(), bell.clone(), policy, lti, stop.clone()));
+    let looking = database.clone();
+    let look = move || {
+        let database = looking.clone();
+        async move { ledger::tick(&database, &policy).await }
+    };
+    tokio::spawn(lti::send_scores(database.clone(), bell.clone(), policy, lti, look, stop.clone()));
     let keep = (arguments.keep_days > 0).then(|| Duration::from_secs(u64::from(arguments.keep_days) * DAY));
     tokio::spawn(give_up(database.clone(), store.clone(), keep));
     let slots = match arguments.workers {

@@ -83,9 +83,10 @@ async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: Can
     tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
     tracing::info!(worker = name, server, slots = slots(arguments.slots), grader = %grader.display(), "working");
     let options = Options { slots: slots(arguments.slots), folder: folder.clone() };
-    worker::work(desk, Program::new(grader, arguments.work.threads.get()), options, stop).await;
+    let worked = worker::work(desk, Program::new(grader, arguments.work.threads.get()), options, stop).await;
     drop(std::fs::remove_dir_all(folder));
     drop(alive);
+    worked.with_context(|| server.to_owned())?;
     tracing::info!(worker = name, "stopped");
     Ok(())
 }
@@ -96,7 +97,7 @@ async fn greet(desk: &RemoteDesk, server: &str, stop: &CancellationToken) -> Res
     loop {
         match desk.tick(0, None).await {
             Ok(()) => return Ok(true),
-            Err(DeskError::Refused(error)) => bail!("{server}: {error}"),
+            Err(error @ (DeskError::Refused(_) | DeskError::Dismissed)) => bail!("{server}: {error}"),
             Err(error) => tracing::warn!(%error, server, "the server does not answer yet"),
         }
         tokio::select! {
@@ -173,7 +174,7 @@ impl Local {
             }
         };
         tokio::select! {
-            () = worker::work(desk, Program::new(self.grader.clone(), work.threads.get()), options, stop) => {}
+            worked = worker::work(desk, Program::new(self.grader.clone(), work.threads.get()), options, stop) => worked?,
             () = watching => {}
         }
         drop(std::fs::remove_dir_all(folder));

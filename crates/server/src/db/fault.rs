@@ -20,7 +20,6 @@ pub enum DbError {
 
 impl DbError {
     /// Whether the same may succeed a moment later.
-    #[must_use]
     pub fn is_transient(&self) -> bool {
         matches!(self, Self::Unavailable(_) | Self::Busy(_))
     }

@@ -19,7 +19,8 @@ pub use migrate::{LATEST, MigrateError, changes_after, migrate, version};
 pub(crate) use pooler::is_pooled;
 pub use transaction::Transaction;
 use transaction::Turn;
-pub use value::{Row, Value};
+pub(crate) use value::from_row;
+pub use value::{Column, FromRow, Row, Value};
 
 use sqlx::{
     ConnectOptions, Connection,
@@ -182,7 +183,6 @@ impl Database {
     }
 
     /// Which database it is.
-    #[must_use]
     pub fn dialect(&self) -> Dialect {
         match self.engine {
             Engine::Sqlite { .. } => Dialect::Sqlite,
@@ -247,7 +247,6 @@ impl Database {
     }
 
     /// How its connections are used.
-    #[must_use]
     pub fn pools(&self) -> Vec<Pool> {
         match &self.engine {
             Engine::Sqlite { writer, readers } => vec![pool("writer", writer), pool("readers", readers)],
@@ -256,7 +255,6 @@ impl Database {
     }
 
     /// How many transactions wait for a connection, and how many were given up because none was free in time.
-    #[must_use]
     pub fn waits(&self) -> (i64, u64) {
         (self.waits.waiting.load(Ordering::Relaxed), self.waits.timeouts.load(Ordering::Relaxed))
     }

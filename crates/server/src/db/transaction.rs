@@ -1,5 +1,5 @@
 //! A transaction, the only way to run statements.
-use super::{DbError, Dialect, Row, Value, statement, value};
+use super::{DbError, Dialect, FromRow, Row, Value, statement, value};
 use sqlx::{AssertSqlSafe, Postgres, Sqlite};
 use tokio::sync::OwnedSemaphorePermit;
 
@@ -41,7 +41,6 @@ impl Transaction {
     }
 
     /// Which database it is.
-    #[must_use]
     pub fn dialect(&self) -> Dialect {
         match self.0 {
             Inner::Sqlite(_) => Dialect::Sqlite,
@@ -77,6 +76,14 @@ impl Transaction {
                 rows.into_iter().map(|row| Row(value::Inner::Postgres(row))).collect()
             }
         })
+    }
+
+    /// Runs a statement and reads its rows.
+    ///
+    /// # Errors
+    /// What the database says, or what is wrong with a row.
+    pub async fn all<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<T>, DbError> {
+        self.rows(statement, values).await?.iter().map(T::from_row).collect()
     }
 
     /// Runs a statement that has one row or none.

@@ -99,3 +99,53 @@ impl Row {
         Ok(self.int(column)? != 0)
     }
 }
+
+/// What a column may hold.
+pub trait Column: Sized {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// When it holds something else.
+    fn read(row: &Row, column: &str) -> Result<Self, DbError>;
+}
+
+macro_rules! columns {
+    ($($type:ty => $read:ident;)*) => {
+        $(impl Column for $type {
+            fn read(row: &Row, column: &str) -> Result<Self, DbError> {
+                row.$read(column)
+            }
+        })*
+    };
+}
+
+columns! {
+    i64 => int;
+    Option<i64> => maybe_int;
+    String => text;
+    Option<String> => maybe_text;
+    bool => flag;
+}
+
+/// What a whole row is read as.
+pub trait FromRow: Sized {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// When a column is not there, or holds something else.
+    fn from_row(row: &Row) -> Result<Self, DbError>;
+}
+
+/// Types whose fields are called as their columns, or as is said.
+macro_rules! from_row {
+    ($($type:ty { $($field:ident $(= $column:literal)?),* $(,)? })*) => {
+        $(impl $crate::db::FromRow for $type {
+            fn from_row(row: &$crate::db::Row) -> Result<Self, $crate::db::DbError> {
+                Ok(Self { $($field: $crate::db::from_row!(@ row $field $($column)?)),* })
+            }
+        })*
+    };
+    (@ $row:ident $field:ident) => { $crate::db::Column::read($row, stringify!($field))? };
+    (@ $row:ident $field:ident $column:literal) => { $crate::db::Column::read($row, $column)? };
+}
+pub(crate) use from_row;

@@ -54,7 +54,6 @@ pub enum Role {
 
 impl Role {
     /// As it stands in a course's list of members.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Student => "student",

@@ -36,13 +36,11 @@ pub struct Lti {
 
 impl Lti {
     /// With `over_http` platforms may be reached without TLS: for trials on one machine.
-    #[must_use]
     pub fn new(over_http: bool) -> Self {
         Self { client: Client::new(over_http), trust: Trust::default() }
     }
 
     /// Whether platforms may be reached, and the service used by them, without TLS.
-    #[must_use]
     pub fn over_http(&self) -> bool {
         self.client.over_http()
     }

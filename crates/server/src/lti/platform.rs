@@ -126,7 +126,6 @@ impl Platform {
     }
 
     /// The origins that may show a page of this service in a frame.
-    #[must_use]
     pub fn origins(&self, over_http: bool) -> String {
         let scheme = if over_http { "http://" } else { "https://" };
         let mut places: Vec<String> = self.places(over_http).iter().map(|place| format!("{scheme}{place}")).collect();

@@ -7,7 +7,6 @@ use super::{
 use crate::{
     calendar,
     db::{Database, DbError},
-    ledger,
     queue::{self, Bell, Claim, Claimant, Completion, Failure, Lane, Policy},
 };
 use serde::Deserialize;
@@ -45,13 +44,21 @@ const LOOK_AGAIN: Duration = Duration::from_millis(250);
 const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", is_idle: true, token: None };
 
 /// Sends scores until `stop` is cancelled. What was sent and not noted then is sent once more, and changes nothing.
-pub async fn run(database: Database, bell: Bell, policy: Policy, lti: Arc<Lti>, stop: CancellationToken) {
+/// `look` finds jobs of servers that went silent; it is called before each claim.
+pub async fn run<F: Future<Output = Result<(), DbError>>>(
+    database: Database,
+    bell: Bell,
+    policy: Policy,
+    lti: Arc<Lti>,
+    look: impl Fn() -> F,
+    stop: CancellationToken,
+) {
     let room = Arc::new(Semaphore::new(AT_ONE_TIME));
     let mut ear = bell.ear();
     while !stop.is_cancelled() {
         tokio::select! {
             () = stop.cancelled() => return,
-            taken = take(&database, &policy, &room) => match taken {
+            taken = take(&database, &policy, &room, &look) => match taken {
                 Ok(Some((claim, place))) => {
                     let (database, lti) = (database.clone(), lti.clone());
                     tokio::spawn(async move {
@@ -74,18 +81,19 @@ pub async fn run(database: Database, bell: Bell, policy: Policy, lti: Arc<Lti>, 
 }
 
 /// The next job, and a place to do it in.
-async fn take(
+async fn take<F: Future<Output = Result<(), DbError>>>(
     database: &Database,
     policy: &Policy,
     room: &Arc<Semaphore>,
+    look: impl Fn() -> F,
 ) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
     // A server without platforms never writes for them.
     if !queue::is_due(&mut database.read().await?, policy, Lane::Passback).await? {
         return Ok(None);
     }
     let place = room.clone().acquire_owned().await.map_err(|error| DbError::Other(error.to_string()))?;
+    look().await?;
     let mut transaction = database.begin().await?;
-    ledger::tick(&mut transaction, policy).await?;
     let claim = queue::claim(&mut transaction, policy, Lane::Passback, CLAIMANT).await?;
     transaction.commit().await?;
     Ok(claim.map(|claim| (claim, place)))

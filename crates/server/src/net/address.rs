@@ -26,7 +26,6 @@ impl FromStr for Networks {
 
 impl Networks {
     /// Whether an address lies in one of them.
-    #[must_use]
     pub fn contains(&self, address: IpAddr) -> bool {
         self.0.iter().any(|network| network.contains(&address))
     }

@@ -43,7 +43,6 @@ impl Bell {
     }
 
     /// Somebody who will hear every stroke from now on.
-    #[must_use]
     pub fn ear(&self) -> Ear {
         Ear(self.strokes.subscribe())
     }

@@ -41,7 +41,6 @@ pub enum Lane {
 
 impl Lane {
     /// Its name in the table.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Grading => "grading",
@@ -88,13 +87,11 @@ impl Default for Policy {
 
 impl Policy {
     /// How often a worker renews its leases: two renewals may get lost.
-    #[must_use]
     pub fn renew_every(&self) -> Duration {
         self.lease / 4
     }
 
     /// How often somebody looks for leases that ran out.
-    #[must_use]
     pub fn tick_every(&self) -> Duration {
         self.lease / 8
     }
@@ -166,7 +163,6 @@ pub struct Claim {
 
 impl Claim {
     /// Whether the job is to run alone in its worker.
-    #[must_use]
     pub fn is_suspected(&self) -> bool {
         self.failures + self.deaths >= SUSPECTED_AFTER
     }

@@ -54,7 +54,9 @@ pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick
     if now < beat || now - beat > millis(policy.outage()) {
         transaction
             .execute(
-                "UPDATE job SET lease_until = {now} + ?, started_at = {now} WHERE state = 'running'",
+                "WITH held AS (SELECT id FROM job WHERE state = 'running' ORDER BY id {for update})
+                 UPDATE job SET lease_until = {now} + ?, started_at = {now}
+                 WHERE id IN (SELECT id FROM held) AND state = 'running'",
                 values![millis(policy.lease)],
             )
             .await?;
@@ -74,8 +76,9 @@ pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick
 async fn set_back(transaction: &mut Transaction, by: i64) -> Result<(), DbError> {
     transaction
         .execute(
-            "UPDATE job SET rank = rank - ?, run_after = CASE WHEN run_after > {now} THEN {now} ELSE run_after END
-             WHERE state = 'waiting'",
+            "WITH held AS (SELECT id FROM job WHERE state = 'waiting' ORDER BY id {for update})
+             UPDATE job SET rank = rank - ?, run_after = CASE WHEN run_after > {now} THEN {now} ELSE run_after END
+             WHERE id IN (SELECT id FROM held) AND state = 'waiting'",
             values![by],
         )
         .await?;

@@ -1,6 +1,6 @@
 //! The description of the API (OpenAPI 3.1): what the handlers say of themselves, completed by what holds for all.
+use super::who::cookie_name;
 use crate::{
-    access::cookie_name,
     problem::Problem,
     schema::{Digest, FileName, Slug},
     task::OutputFile,
@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use utoipa::{
     OpenApi as _,
     openapi::{
-        OpenApi, RefOr, Required,
-        path::{Operation, Parameter, ParameterIn, PathItem},
+        ContentBuilder, OpenApi, RefOr, Required, ResponseBuilder,
+        path::{Operation, Parameter, ParameterBuilder, ParameterIn, PathItem},
         schema::{KnownFormat, Object, ObjectBuilder, Ref, Schema, SchemaFormat, Type},
         security::{ApiKey, ApiKeyValue, HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme},
     },
@@ -59,8 +59,9 @@ pub(super) fn complete(api: &mut OpenApi) {
         components.security_schemes.insert(name.to_owned(), scheme.into());
     }
     open_what_is_extended(&mut components.schemas);
-    for item in api.paths.paths.values_mut() {
+    for (path, item) in &mut api.paths.paths {
         for operation in operations(item) {
+            name_parts(path, operation);
             complete_operation(operation);
         }
     }
@@ -108,6 +109,20 @@ fn schemes() -> [(&'static str, SecurityScheme); 3] {
 
 fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
     [&mut item.get, &mut item.put, &mut item.post, &mut item.delete, &mut item.patch].into_iter().flatten()
+}
+
+/// The parts of an address are parameters, and whatever is asked may be refused.
+fn name_parts(path: &str, operation: &mut Operation) {
+    let names = path.split('{').skip(1).filter_map(|part| part.split('}').next());
+    let parts = names.map(|name| {
+        ParameterBuilder::new().name(name).parameter_in(ParameterIn::Path).required(Required::True).build().into()
+    });
+    let declared = operation.parameters.take().unwrap_or_default();
+    let all: Vec<RefOr<Parameter>> = parts.chain(declared).collect();
+    operation.parameters = Some(all).filter(|all| !all.is_empty());
+    let problem = ContentBuilder::new().schema(Some(Ref::from_schema_name("Problem"))).build();
+    let refused = ResponseBuilder::new().content("application/problem+json", problem);
+    operation.responses.responses.entry("default".to_owned()).or_insert(refused.build().into());
 }
 
 fn complete_operation(operation: &mut Operation) {

@@ -1,8 +1,6 @@
 //! What holds for every request: where it may come from, what answers say to browsers, and what is logged.
-use crate::{
-    access::{House, Renewed, Secrets, cookie_name},
-    problem::Problem,
-};
+use super::who;
+use crate::{access::House, problem::Problem};
 use axum::{
     extract::{MatchedPath, Request, State},
     http::{HeaderMap, HeaderName, HeaderValue, Method, header},
@@ -10,6 +8,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use std::time::Instant;
+use tracing::Instrument;
 
 /// What pages may do: their own files only, in no frame.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; \
@@ -25,13 +24,13 @@ const FROM_PLATFORMS: [&str; 2] = ["/lti/login", "/lti/launch"];
 pub(super) async fn same_site(State(house): State<House>, request: Request, next: Next) -> Response {
     if is_harmless(request.method())
         || FROM_PLATFORMS.contains(&request.uri().path())
-        || Secrets::of(request.headers(), house.is_secure()).bearer.is_some()
+        || who::secrets(request.headers(), house.is_secure()).bearer.is_some()
         || is_own(request.headers(), &house)
     {
         return next.run(request).await;
     }
     // A program that forgot its token: nobody asks, whatever the site.
-    if request.uri().path().starts_with("/api/") && Secrets::of(request.headers(), house.is_secure()).session.is_none()
+    if request.uri().path().starts_with("/api/") && who::secrets(request.headers(), house.is_secure()).session.is_none()
     {
         return Problem::not_signed_in().into_response();
     }
@@ -40,7 +39,7 @@ pub(super) async fn same_site(State(house): State<House>, request: Request, next
 
 /// Sends a session's cookie again when it lasts longer from now on.
 pub(super) async fn renew(State(house): State<House>, mut request: Request, next: Next) -> Response {
-    let renewed = Renewed::default();
+    let renewed = who::Renewed::default();
     request.extensions_mut().insert(renewed.clone());
     let mut response = next.run(request).await;
     if let Some(session) = renewed.session()
@@ -54,7 +53,7 @@ pub(super) async fn renew(State(house): State<House>, mut request: Request, next
 
 /// A session's cookie, which lasts as long as the session does.
 pub(super) fn session_cookie(house: &House, session: &str) -> String {
-    let (name, secure) = (cookie_name(house.is_secure()), if house.is_secure() { "; Secure" } else { "" });
+    let (name, secure) = (who::cookie_name(house.is_secure()), if house.is_secure() { "; Secure" } else { "" });
     format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age=1209600{secure}")
 }
 
@@ -97,7 +96,17 @@ pub(super) async fn log(State(house): State<House>, request: Request, next: Next
     let in_flight = house.instruments().begin();
     let method = request.method().clone();
     let route = request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned();
-    let response = next.run(request).await;
+    // By OpenTelemetry's conventions.
+    let span = tracing::info_span!(
+        "request",
+        otel.name = format!("{method} {route}"),
+        otel.kind = "server",
+        http.request.method = %method,
+        http.route = route,
+        http.response.status_code = tracing::field::Empty,
+    );
+    let response = next.run(request).instrument(span.clone()).await;
+    span.record("http.response.status_code", response.status().as_u16());
     drop(in_flight);
     let (status, took) = (response.status().as_u16(), start.elapsed());
     let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS, Method::PATCH];

@@ -1,14 +1,12 @@
 //! Reading requests, with answers that say what is wrong.
-use crate::{
-    access::{House, SignedIn},
-    problem::Problem,
-};
+use super::who::SignedIn;
+use crate::{access::House, problem::Problem};
 use axum::{
     extract::{FromRequest, FromRequestParts, Path, Query, Request},
     http::{HeaderMap, header, request::Parts},
 };
 use futures_util::StreamExt;
-use serde::de::DeserializeOwned;
+use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 
 /// A body in JSON.
@@ -20,8 +18,18 @@ pub(super) struct Text(pub(super) String);
 /// A body of a form.
 pub(super) struct Fields<T>(pub(super) T);
 
-/// The parts of an address that vary.
-pub(super) struct Params<T>(pub(super) T);
+/// What an address names; a part that it does not have is empty.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct At {
+    pub(super) course: String,
+    pub(super) assignment: String,
+    pub(super) login: String,
+    pub(super) name: String,
+    pub(super) digest: String,
+    pub(super) secret: String,
+    pub(super) id: i64,
+}
 
 /// What stands behind the question mark.
 pub(super) struct Asked<T>(pub(super) T);
@@ -115,12 +123,12 @@ impl<T: DeserializeOwned> FromRequest<House> for Fields<T> {
     }
 }
 
-impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for Params<T> {
+impl<S: Send + Sync> FromRequestParts<S> for At {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
-        let found = Path::<T>::from_request_parts(parts, state).await;
-        found.map(|Path(found)| Self(found)).map_err(|_| Problem::not_found("page"))
+        let found = Path::<Self>::from_request_parts(parts, state).await;
+        found.map(|Path(found)| found).map_err(|_| Problem::not_found("page"))
     }
 }
 

@@ -6,10 +6,10 @@ mod download;
 mod guard;
 mod input;
 pub mod pages;
+mod refusal;
 mod status;
 mod upload;
-
-pub(crate) use api::{Alive, Fault, Finished, Held, Manners};
+mod who;
 
 use crate::{access::House, problem::Problem};
 use axum::{Router, extract::DefaultBodyLimit, middleware};
@@ -30,7 +30,6 @@ fn api_router() -> (Router<House>, utoipa::openapi::OpenApi) {
 }
 
 /// The description of the API, as it is served and committed.
-#[must_use]
 pub fn openapi() -> String {
     let mut text = api_router().1.to_pretty_json().unwrap_or_default();
     text.push('\n');

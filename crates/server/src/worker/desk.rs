@@ -38,6 +38,9 @@ pub enum DeskError {
     /// It never will.
     #[error("{0}")]
     Refused(String),
+    /// The worker's token is not known, or not any more.
+    #[error("its token is unknown or revoked: an administrator makes another one on the page \"Administration\"")]
+    Dismissed,
 }
 
 /// Where workers get their jobs and bring their results.

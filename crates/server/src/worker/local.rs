@@ -55,14 +55,12 @@ impl From<StoreError> for DeskError {
 
 impl LocalDesk {
     /// A desk for the worker of this name.
-    #[must_use]
     pub fn new(database: Database, store: Store, bell: Bell, policy: Policy, worker: String) -> Self {
         let ear = Mutex::new(bell.ear());
         Self { database, store, bell, ear, policy, worker, token: None }
     }
 
     /// The same for a worker that came by this token.
-    #[must_use]
     pub fn with_token(self, token: i64) -> Self {
         Self { token: Some(token), ..self }
     }
@@ -73,31 +71,18 @@ fn longest(task: &Task, policy: &Policy) -> Duration {
     Duration::from_secs(task.seconds) + GRACE + LEAST_MARGIN.max(policy.lease * 10)
 }
 
-fn report(tick: &queue::Tick) {
-    if tick.outage {
-        tracing::warn!("nobody looked after the queue for a while, so all leases begin anew");
-    }
-    if tick.retried > 0 {
-        tracing::warn!(jobs = tick.retried, "jobs of workers that went silent wait again");
-    }
-    for job in &tick.buried {
-        tracing::error!(job = job.job, worker = job.worker, fault = job.fault, "a job was tried too often");
-    }
-}
-
 impl Desk for LocalDesk {
     async fn claim(&self, is_idle: bool) -> Result<Option<Job>, DeskError> {
         let claimant = Claimant { worker: &self.worker, is_idle, token: self.token };
+        ledger::tick(&self.database, &self.policy).await?;
         loop {
             let mut transaction = self.database.begin().await?;
-            let tick = ledger::tick(&mut transaction, &self.policy).await?;
             let claim = if health::may_claim(&mut transaction, &self.policy, claimant).await? {
                 queue::claim(&mut transaction, &self.policy, Lane::Grading, claimant).await?
             } else {
                 None
             };
             transaction.commit().await?;
-            report(&tick);
             let Some(claim) = claim else { return Ok(None) };
             match serde_json::from_str(&claim.payload) {
                 Ok(task) => {
@@ -117,16 +102,15 @@ impl Desk for LocalDesk {
     }
 
     async fn renew(&self, lease: &Lease) -> Result<Answer, DeskError> {
-        let mut transaction = self.database.begin().await?;
         // A step of the clock is noticed before it can end a lease.
-        let tick = ledger::tick(&mut transaction, &self.policy).await?;
+        ledger::tick(&self.database, &self.policy).await?;
+        let mut transaction = self.database.begin().await?;
         let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());
         let held = match task {
             Some(task) => queue::renew(&mut transaction, &self.policy, lease, longest(&task, &self.policy)).await?,
             None => false,
         };
         transaction.commit().await?;
-        report(&tick);
         Ok(if held { Answer::Held } else { Answer::Lost })
     }
 
@@ -181,10 +165,8 @@ impl Desk for LocalDesk {
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), DeskError> {
         let mut transaction = self.database.begin().await?;
         health::seen(&mut transaction, &self.worker, self.token, slots, fault).await?;
-        let tick = ledger::tick(&mut transaction, &self.policy).await?;
         transaction.commit().await?;
-        report(&tick);
-        Ok(())
+        Ok(ledger::tick(&self.database, &self.policy).await?)
     }
 
     fn tick_every(&self) -> Duration {

@@ -51,7 +51,6 @@ type Stamp = (u64, u64, i64, i64);
 
 impl Program {
     /// The grader at this path, with so many scenes of a job at one time.
-    #[must_use]
     pub fn new(path: PathBuf, threads: usize) -> Self {
         Self { path, threads, digested: Arc::default() }
     }

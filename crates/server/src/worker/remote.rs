@@ -1,11 +1,10 @@
 //! The desk of workers on other machines: a server over HTTP. They hold a token, no password of a database.
 use super::{Answer, Desk, DeskError, Job};
 use crate::{
-    access::Claimed,
     queue::Lease,
     store::{Artefact, Digest, digest_of_file},
     task::Outcome,
-    web::{Alive, Fault, Finished, Held, Manners},
+    wire::{Alive, Claimed, Fault, Finished, Held, Manners},
 };
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
@@ -50,7 +49,6 @@ impl fmt::Debug for RemoteDesk {
 
 impl RemoteDesk {
     /// A desk at a server's address, for a worker of this name.
-    #[must_use]
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
             // What a server says with a status is looked at here.
@@ -129,13 +127,11 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, DeskError> {
         return Ok(answer);
     }
     let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().unwrap_or_default();
-    let said = serde_json::from_slice::<serde_json::Value>(&body)
-        .ok()
-        .and_then(|problem| problem["detail"].as_str().map(str::to_owned))
-        .unwrap_or_default();
-    let text = format!("{status}: {said}");
-    // Our own mistakes, and what is not there, stay so; a proxy's troubles pass, and a revoked token may be renewed.
+    let problem: serde_json::Value = serde_json::from_slice(&body).unwrap_or_default();
+    let text = format!("{status}: {}", problem["detail"].as_str().unwrap_or_default());
+    // Our own mistakes, and what is not there, stay so; a proxy's troubles pass.
     match status.as_u16() {
+        401 if problem["type"] == "urn:fosssim:unknown-secret" => Err(DeskError::Dismissed),
         400 | 403 | 404 | 409 | 413 | 422 => Err(DeskError::Refused(text)),
         _ => Err(DeskError::Away(text)),
     }

@@ -35,7 +35,15 @@ pub struct Options {
 }
 
 /// Does jobs until `stop` is cancelled; then gives back what it holds, and ends.
-pub async fn work<D: Desk, G: Grader>(desk: D, grader: G, options: Options, stop: CancellationToken) {
+///
+/// # Errors
+/// When the desk does not know the worker any more: what it holds counts for nothing.
+pub async fn work<D: Desk, G: Grader>(
+    desk: D,
+    grader: G,
+    options: Options,
+    stop: CancellationToken,
+) -> Result<(), DeskError> {
     let gate = Arc::new(RwLock::new(()));
     let health = Health::new(grader.clone(), options.folder.clone());
     let mut slots = tokio::task::JoinSet::new();
@@ -46,8 +54,10 @@ pub async fn work<D: Desk, G: Grader>(desk: D, grader: G, options: Options, stop
     let ticking = async {
         loop {
             let slots = if health.is_proven() { options.slots } else { 0 };
-            if let Err(error) = desk.tick(slots, health.fault().as_deref()).await {
-                tracing::warn!(%error, "the worker can't say that it is alive");
+            match desk.tick(slots, health.fault().as_deref()).await {
+                Ok(()) => {}
+                Err(DeskError::Dismissed) => return DeskError::Dismissed,
+                Err(error) => tracing::warn!(%error, "the worker can't say that it is alive"),
             }
             tokio::select! {
                 () = tokio::time::sleep(desk.tick_every()) => {}
@@ -56,8 +66,8 @@ pub async fn work<D: Desk, G: Grader>(desk: D, grader: G, options: Options, stop
         }
     };
     tokio::select! {
-        () = ticking => {}
-        () = async { while slots.join_next().await.is_some() {} } => {}
+        error = ticking => Err(error),
+        () = async { while slots.join_next().await.is_some() {} } => Ok(()),
     }
 }
 
@@ -294,8 +304,8 @@ async fn settle<D: Desk>(desk: &D, lease: &Lease, ending: Ending, stop: &Cancell
         match answer {
             Ok(Answer::Held) => return,
             Ok(Answer::Lost) => return tracing::warn!(job = lease.job, "too late: the lease is lost"),
-            Err(DeskError::Refused(error)) => {
-                return tracing::error!(job = lease.job, error, "the result is refused; the lease will run out");
+            Err(error @ (DeskError::Refused(_) | DeskError::Dismissed)) => {
+                return tracing::error!(job = lease.job, %error, "the result is refused; the lease will run out");
             }
             Err(DeskError::Away(error)) => tracing::warn!(job = lease.job, error, "the result can't be delivered yet"),
         }

@@ -11,6 +11,7 @@ on_both_engines!(
     a_class_is_graded_again_in_the_background,
     a_regrade_goes_on_after_the_server_died,
     a_result_and_the_end_of_its_regrade_do_not_wait_for_each_other,
+    what_is_being_applied_can_be_taken_back,
 );
 
 const BASE: &str = "/api/v1/courses/physics/assignments/m1/regrades";
@@ -195,4 +196,51 @@ async fn a_result_and_the_end_of_its_regrade_do_not_wait_for_each_other(fresh: F
     assert_eq!(written.expect("nobody waits for whoever waits for him"), 1);
     worker.commit().await.expect("commit");
     assert_eq!(discarding.join().expect("no panic").expect(200).json()["state"], "discarded");
+}
+
+async fn what_is_being_applied_can_be_taken_back(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0", "--requests-per-minute", "100000"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    rows::fill(&fresh.database, assignment(&fresh).await, 10, 700).await;
+    let halves = "SELECT count(*) AS n FROM grade JOIN result ON result.id = grade.result WHERE result.points = '50'";
+    let wish = r#"{"reason": "by other rules", "settings": {"rules": "parity"}}"#;
+    let id = admin.post_json(BASE, wish).json()["id"].clone();
+    settled(&admin, &id);
+    grade_all(&fresh).await;
+    admin.post_json(&format!("{BASE}/{id}/apply"), "");
+    assert_eq!(settled(&admin, &id)["state"], "applied");
+    assert_eq!(number(&fresh, halves).await, 350);
+    // As if it were not done yet when somebody takes it back, or as a server leaves it that dies while it does.
+    let is_postgres = fresh.database.dialect() == Dialect::Postgres;
+    let mut transaction = fresh.database.begin().await.expect("a transaction");
+    transaction
+        .execute(
+            "UPDATE campaign SET state = 'open', doing = ?, cursor = 0, done = 0",
+            values![if is_postgres { "apply" } else { "undo" }],
+        )
+        .await
+        .expect("a statement");
+    let discarding = is_postgres.then(|| {
+        let (admin, path) = (admin.clone(), format!("{BASE}/{id}/discard"));
+        std::thread::spawn(move || admin.post_json(&path, ""))
+    });
+    if discarding.is_some() {
+        let waiting = "SELECT count(*) AS n FROM pg_stat_activity
+                       WHERE datname = current_database() AND wait_event_type = 'Lock'";
+        while number(&fresh, waiting).await == 0 {
+            tokio::task::yield_now().await;
+        }
+    }
+    transaction.commit().await.expect("commit");
+    if let Some(discarding) = discarding {
+        assert!(matches!(discarding.join().expect("no panic").status, 200 | 202));
+    }
+    assert_eq!(settled(&admin, &id)["state"], "discarded");
+    assert_eq!(number(&fresh, halves).await, 0);
+    let taken_back = "SELECT count(*) AS n FROM grade_change WHERE reason LIKE '%taken back'";
+    assert_eq!(number(&fresh, taken_back).await, 700);
+    let settings = admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["settings"].clone();
+    assert_eq!(settings.get("rules"), None, "{settings}");
+    admin.post_json(&format!("{BASE}/{id}/apply"), "").expect(409);
 }

@@ -24,6 +24,7 @@ struct Watchful {
     most: Arc<AtomicUsize>,
     beside_the_suspect: Arc<AtomicUsize>,
     done: Arc<AtomicUsize>,
+    needs_company: bool,
 }
 
 impl Grader for Watchful {
@@ -46,6 +47,10 @@ impl Grader for Watchful {
             if task.submission.name == "suspect" {
                 self.beside_the_suspect.fetch_max(self.running.load(Ordering::SeqCst) - 1, Ordering::SeqCst);
             }
+        }
+        // The first one waits for another beside it, however slow the machine is.
+        while self.needs_company && task.submission.name != "suspect" && self.most.load(Ordering::SeqCst) < 2 {
+            tokio::time::sleep(Duration::from_millis(2)).await;
         }
         self.running.fetch_sub(1, Ordering::SeqCst);
         self.done.fetch_add(1, Ordering::SeqCst);
@@ -153,7 +158,7 @@ fn a_broken_worker_costs_no_job_its_tries() {
             }
             stop.cancel();
             for worker in workers {
-                worker.await.expect("a worker");
+                worker.await.expect("no panic").expect("a worker");
             }
             let tried = broken.tried.load(Ordering::SeqCst);
             assert!(if knows { tried == 0 } else { tried <= 30 }, "{tried} tries by a broken worker");
@@ -169,7 +174,7 @@ fn a_job_that_may_kill_its_worker_runs_alone() {
         let store = Store::folder(&folder.path().join("store")).expect("a store");
         let artefact = store.put(b"a program".to_vec()).await.expect("an artefact");
         enqueue(&fresh, &artefact, 12, 5).await;
-        let grader = Watchful::default();
+        let grader = Watchful { needs_company: true, ..Watchful::default() };
         let stop = CancellationToken::new();
         let desk =
             LocalDesk::new(fresh.database.clone(), store, Bell::default(), Policy::default(), "worker".to_owned());
@@ -180,7 +185,7 @@ fn a_job_that_may_kill_its_worker_runs_alone() {
             tokio::time::sleep(Duration::from_millis(5)).await;
         }
         stop.cancel();
-        working.await.expect("the worker");
+        working.await.expect("no panic").expect("the worker");
         assert!(grader.most.load(Ordering::SeqCst) > 1, "others run side by side");
         assert_eq!(grader.beside_the_suspect.load(Ordering::SeqCst), 0);
         assert_eq!(count(&fresh, "done").await, 12);

@@ -1,5 +1,5 @@
 //! Accounts, tokens, and what administrators see.
-use super::super::input::{Asked, Body, Params};
+use super::super::input::{Asked, At, Body};
 use crate::{
     access::{Account, Admin, Event, NewSecret, Person, Queue, TokenInfo},
     problem::Problem,
@@ -76,30 +76,22 @@ pub(super) fn link(house: &crate::access::House, secret: Option<NewSecret>) -> L
 
 /// Who asks.
 #[utoipa::path(get, path = "/api/v1/me", tag = "accounts",
-    responses((status = 200, body = Account), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Account)))]
 pub(super) async fn me(person: Person) -> Json<Account> {
     Json(person.account().clone())
 }
 
 /// Sets one's own password, where the server takes passwords. All sessions end.
 #[utoipa::path(put, path = "/api/v1/password", tag = "accounts", security(("session" = [])), request_body = PasswordWish,
-    responses((status = 204, description = "Set"),
-        (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 204, description = "Set")))]
 pub(super) async fn set_password(person: Person, Body(wish): Body<PasswordWish>) -> Result<StatusCode, Problem> {
     person.set_password(&wish.old, &wish.new).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// One's own tokens.
-#[utoipa::path(get, path = "/api/v1/tokens", tag = "accounts",
-    responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn tokens(person: Person) -> Result<Json<Vec<TokenInfo>>, Problem> {
-    Ok(Json(person.tokens().await?))
-}
-
 /// Makes a token for oneself.
 #[utoipa::path(post, path = "/api/v1/tokens", tag = "accounts", security(("session" = [])), request_body = TokenName,
-    responses((status = 201, body = NewToken), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 201, body = NewToken)))]
 pub(super) async fn new_token(
     person: Person,
     Body(wish): Body<TokenName>,
@@ -108,59 +100,21 @@ pub(super) async fn new_token(
     Ok((StatusCode::CREATED, Json(NewToken { info, token: secret.reveal().to_owned() })))
 }
 
-/// Revokes one of one's own tokens.
-#[utoipa::path(delete, path = "/api/v1/tokens/{id}", tag = "accounts", params(("id" = i64, Path)),
-    responses((status = 204, description = "Revoked"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn revoke_token(person: Person, Params(id): Params<i64>) -> Result<StatusCode, Problem> {
-    person.revoke_token(id).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
-/// All accounts.
-#[utoipa::path(get, path = "/api/v1/accounts", tag = "administration",
-    responses((status = 200, body = Vec<Account>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn accounts(admin: Admin) -> Result<Json<Vec<Account>>, Problem> {
-    Ok(Json(admin.accounts().await?))
-}
-
 /// Makes an account or changes it, and returns a link that signs in once.
-#[utoipa::path(put, path = "/api/v1/accounts/{login}", tag = "administration", params(("login" = String, Path)),
-    request_body = AccountWish, responses((status = 200, body = Link), (status = "default", body = Problem, content_type = "application/problem+json")))]
+#[utoipa::path(put, path = "/api/v1/accounts/{login}", tag = "administration",
+    request_body = AccountWish, responses((status = 200, body = Link)))]
 pub(super) async fn set_account(
     admin: Admin,
-    Params(login): Params<String>,
+    At { login, .. }: At,
     Body(wish): Body<AccountWish>,
 ) -> Result<Json<Link>, Problem> {
     let secret = admin.set_account(&login, &wish.name, wish.is_admin).await?;
     Ok(Json(link(admin.house(), Some(secret))))
 }
 
-/// Shuts an account.
-#[utoipa::path(delete, path = "/api/v1/accounts/{login}", tag = "administration", params(("login" = String, Path)),
-    responses((status = 204, description = "Shut"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn disable_account(admin: Admin, Params(login): Params<String>) -> Result<StatusCode, Problem> {
-    admin.disable_account(&login).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
-/// Removes a person: what they handed in, what it came to, their names, and every way in. Nothing of it comes back.
-#[utoipa::path(delete, path = "/api/v1/accounts/{login}/data", tag = "administration", params(("login" = String, Path)),
-    responses((status = 204, description = "Removed"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn remove_person(admin: Admin, Params(login): Params<String>) -> Result<StatusCode, Problem> {
-    admin.remove_person(&login).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
-/// The tokens of workers.
-#[utoipa::path(get, path = "/api/v1/worker-tokens", tag = "administration",
-    responses((status = 200, body = Vec<TokenInfo>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn worker_tokens(admin: Admin) -> Result<Json<Vec<TokenInfo>>, Problem> {
-    Ok(Json(admin.worker_tokens().await?))
-}
-
 /// Makes a token for workers on other machines.
 #[utoipa::path(post, path = "/api/v1/worker-tokens", tag = "administration", request_body = WorkerTokenName,
-    responses((status = 201, body = NewToken), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 201, body = NewToken)))]
 pub(super) async fn new_worker_token(
     admin: Admin,
     Body(wish): Body<WorkerTokenName>,
@@ -169,25 +123,36 @@ pub(super) async fn new_worker_token(
     Ok((StatusCode::CREATED, Json(NewToken { info, token: secret.reveal().to_owned() })))
 }
 
-/// Revokes a token of workers.
-#[utoipa::path(delete, path = "/api/v1/worker-tokens/{id}", tag = "administration", params(("id" = i64, Path)),
-    responses((status = 204, description = "Revoked"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn revoke_worker_token(admin: Admin, Params(id): Params<i64>) -> Result<StatusCode, Problem> {
-    admin.revoke_worker_token(id).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
-/// The queue and the workers.
-#[utoipa::path(get, path = "/api/v1/queue", tag = "administration",
-    responses((status = 200, body = Queue), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn queue(admin: Admin) -> Result<Json<Queue>, Problem> {
-    Ok(Json(admin.queue().await?))
-}
-
 /// Everything that happened, latest first, 200 at a time.
 #[utoipa::path(get, path = "/api/v1/audit", tag = "administration",
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
-    responses((status = 200, body = Vec<Event>), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Vec<Event>)))]
 pub(super) async fn audit(admin: Admin, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
     Ok(Json(admin.audit(asked.before).await?))
+}
+
+answers! {
+    /// One's own tokens.
+    get "/api/v1/tokens" "accounts" tokens(person: Person) -> Vec<TokenInfo>: person.tokens();
+    /// All accounts.
+    get "/api/v1/accounts" "administration" accounts(admin: Admin) -> Vec<Account>: admin.accounts();
+    /// The tokens of workers.
+    get "/api/v1/worker-tokens" "administration" worker_tokens(admin: Admin) -> Vec<TokenInfo>: admin.worker_tokens();
+    /// The queue and the workers.
+    get "/api/v1/queue" "administration" queue(admin: Admin) -> Queue: admin.queue();
+}
+
+deeds! {
+    /// Revokes one of one's own tokens.
+    delete "/api/v1/tokens/{id}" "accounts"
+        revoke_token(person: Person, { id }) -> "Revoked": person.revoke_token(id);
+    /// Shuts an account.
+    delete "/api/v1/accounts/{login}" "administration"
+        disable_account(admin: Admin, { login }) -> "Shut": admin.disable_account(&login);
+    /// Removes a person: what they handed in, what it came to, their names, and every way in. Nothing of it comes back.
+    delete "/api/v1/accounts/{login}/data" "administration"
+        remove_person(admin: Admin, { login }) -> "Removed": admin.remove_person(&login);
+    /// Revokes a token of workers.
+    delete "/api/v1/worker-tokens/{id}" "administration"
+        revoke_worker_token(admin: Admin, { id }) -> "Revoked": admin.revoke_worker_token(id);
 }

@@ -1,5 +1,5 @@
 //! Grading once more what the grader failed on.
-use super::super::input::Params;
+use super::super::input::At;
 use crate::{access::Staff, problem::Problem};
 use axum::{Json, http::StatusCode};
 use serde::Serialize;
@@ -14,31 +14,26 @@ pub(super) struct Again {
 
 /// Grades a submission once more, by the assignment's settings as they are.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/submissions/{id}/again", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 202, body = Again), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn grade_again(
-    staff: Staff,
-    Params((_, id)): Params<(String, i64)>,
-) -> Result<(StatusCode, Json<Again>), Problem> {
+    responses((status = 202, body = Again)))]
+pub(super) async fn grade_again(staff: Staff, At { id, .. }: At) -> Result<(StatusCode, Json<Again>), Problem> {
     Ok((StatusCode::ACCEPTED, Json(Again { jobs: staff.grade_again(id).await? })))
 }
 
 /// Grades all submissions to an assignment on which the grader failed once more, and goes on with it if it waits for
 /// staff.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again",
-    tag = "submissions", params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 202, body = Again), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    tag = "submissions",
+    responses((status = 202, body = Again)))]
 pub(super) async fn grade_errors_again(
     staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
+    At { assignment, .. }: At,
 ) -> Result<(StatusCode, Json<Again>), Problem> {
     Ok((StatusCode::ACCEPTED, Json(Again { jobs: staff.grade_errors_again(Some(&assignment)).await? })))
 }
 
 /// The same for all assignments of a course.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/judge-errors/again", tag = "submissions",
-    params(("course" = String, Path)),
-    responses((status = 202, body = Again), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 202, body = Again)))]
 pub(super) async fn grade_all_errors_again(staff: Staff) -> Result<(StatusCode, Json<Again>), Problem> {
     Ok((StatusCode::ACCEPTED, Json(Again { jobs: staff.grade_errors_again(None).await? })))
 }

@@ -1,6 +1,6 @@
 //! Assignments, and how a class stands in them.
 use super::super::{
-    input::{Asked, Body, Params},
+    input::{Asked, At, Body},
     upload,
 };
 use crate::{
@@ -42,47 +42,15 @@ pub(super) struct Format {
     format: Option<String>,
 }
 
-/// The assignments of a course.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments", tag = "assignments",
-    params(("course" = String, Path)),
-    responses((status = 200, body = Vec<Assignment>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn assignments(member: Member) -> Result<Json<Vec<Assignment>>, Problem> {
-    Ok(Json(member.assignments().await?))
-}
-
-/// An assignment.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn assignment(
-    member: Member,
-    Params((_, assignment)): Params<(String, String)>,
-) -> Result<Json<Assignment>, Problem> {
-    Ok(Json(member.assignment(&assignment).await?))
-}
-
 /// Makes an assignment or changes it. Submissions that are graded already stay as they are: that takes a regrade.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path)), request_body = AssignmentWish,
-    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
+#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments", request_body = AssignmentWish,
+    responses((status = 200, body = Assignment)))]
 pub(super) async fn set_assignment(
     staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
+    At { assignment, .. }: At,
     Body(wish): Body<AssignmentWish>,
 ) -> Result<Json<Assignment>, Problem> {
     Ok(Json(staff.set_assignment(&assignment, &wish.title, wish.visible, &wish.settings).await?))
-}
-
-/// Removes an assignment with all submissions to it, for ever.
-#[utoipa::path(delete, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 204, description = "Removed"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn remove_assignment(
-    staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
-) -> Result<StatusCode, Problem> {
-    staff.remove_assignment(&assignment).await?;
-    Ok(StatusCode::NO_CONTENT)
 }
 
 /// A due date of a student's own.
@@ -96,38 +64,24 @@ pub(super) struct Extension {
 }
 
 /// Lets a student hand in until another moment than the others.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path), ("login" = String, Path)), request_body = Extension,
-    responses((status = 204, description = "Set"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}", tag = "assignments", request_body = Extension,
+    responses((status = 204, description = "Set")))]
 pub(super) async fn extend(
     staff: Staff,
-    Params((_, assignment, login)): Params<(String, String, String)>,
+    At { assignment, login, .. }: At,
     Body(wish): Body<Extension>,
 ) -> Result<StatusCode, Problem> {
     staff.extend(&assignment, &login, wish.due_at).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Lets them hand in as long as the others again.
-#[utoipa::path(delete, path = "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path), ("login" = String, Path)),
-    responses((status = 204, description = "Set"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn extend_no_more(
-    staff: Staff,
-    Params((_, assignment, login)): Params<(String, String, String)>,
-) -> Result<StatusCode, Problem> {
-    staff.extend(&assignment, &login, None).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
 /// Uploads an archive (zip, 7z, tar, tar.gz, tar.xz, tar.bz2) with a `suite.toml` at its top as the assignment's suite.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Assignment)))]
 pub(super) async fn set_suite(
     staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
+    At { assignment, .. }: At,
     request: Request,
 ) -> Result<Json<Assignment>, Problem> {
     Ok(Json(receive_suite(&staff, &assignment, request).await?))
@@ -170,47 +124,13 @@ fn unpack_suite(archive: &Path, incoming: &Path) -> Result<tempfile::TempDir, Pr
     Ok(folder)
 }
 
-/// Shows students what the suite hides: groups that are not visible count in what they see from now on, too.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/published", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn publish(
-    staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
-) -> Result<Json<Assignment>, Problem> {
-    Ok(Json(staff.publish(&assignment, true).await?))
-}
-
-/// Withholds it again.
-#[utoipa::path(delete, path = "/api/v1/courses/{course}/assignments/{assignment}/published", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Assignment), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn withhold(
-    staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
-) -> Result<Json<Assignment>, Problem> {
-    Ok(Json(staff.publish(&assignment, false).await?))
-}
-
-/// How all students stand: which submission counts, and for what.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/class", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Vec<Standing>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn standings(
-    staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
-) -> Result<Json<Vec<Standing>>, Problem> {
-    Ok(Json(staff.standings(&assignment).await?))
-}
-
 /// The class's grades as a table (`csv`, one line per student) or all submissions as JSON lines (`jsonl`).
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/export", tag = "assignments",
-    params(("course" = String, Path), ("assignment" = String, Path),
-        ("format" = Option<String>, Query, description = "csv (the default) or jsonl")),
-    responses((status = 200, description = "The grades"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    params(("format" = Option<String>, Query, description = "csv (the default) or jsonl")),
+    responses((status = 200, description = "The grades")))]
 pub(super) async fn export(
     staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
+    At { assignment, .. }: At,
     Asked(asked): Asked<Format>,
 ) -> Result<Response, Problem> {
     let (kind, body) = match asked.format.as_deref().unwrap_or("csv") {
@@ -241,4 +161,31 @@ async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
         }
     });
     Ok(HttpBody::from_stream(pages))
+}
+
+answers! {
+    /// The assignments of a course.
+    get "/api/v1/courses/{course}/assignments" "assignments"
+        assignments(member: Member) -> Vec<Assignment>: member.assignments();
+    /// An assignment.
+    get "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
+        assignment(member: Member, { assignment }) -> Assignment: member.assignment(&assignment);
+    /// Shows students what the suite hides: groups that are not visible count in what they see from now on, too.
+    put "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
+        publish(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, true);
+    /// Withholds it again.
+    delete "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
+        withhold(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, false);
+    /// How all students stand: which submission counts, and for what.
+    get "/api/v1/courses/{course}/assignments/{assignment}/class" "assignments"
+        standings(staff: Staff, { assignment }) -> Vec<Standing>: staff.standings(&assignment);
+}
+
+deeds! {
+    /// Removes an assignment with all submissions to it, for ever.
+    delete "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
+        remove_assignment(staff: Staff, { assignment }) -> "Removed": staff.remove_assignment(&assignment);
+    /// Lets them hand in as long as the others again.
+    delete "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
+        extend_no_more(staff: Staff, { assignment, login }) -> "Set": staff.extend(&assignment, &login, None);
 }

@@ -1,6 +1,6 @@
 //! Courses and their members.
 use super::{
-    super::input::{Asked, Body, Params, Text},
+    super::input::{Asked, At, Body, Text},
     accounts::{Before, Link, link},
 };
 use crate::{
@@ -43,16 +43,9 @@ pub(super) struct MemberLinks {
     invitation: Option<String>,
 }
 
-/// The courses that one is in.
-#[utoipa::path(get, path = "/api/v1/courses", tag = "courses",
-    responses((status = 200, body = Vec<CourseOf>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn courses(person: Person) -> Result<Json<Vec<CourseOf>>, Problem> {
-    Ok(Json(person.courses().await?))
-}
-
 /// Makes a course.
 #[utoipa::path(post, path = "/api/v1/courses", tag = "administration", request_body = CourseWish,
-    responses((status = 201, body = Course), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 201, body = Course)))]
 pub(super) async fn new_course(
     admin: Admin,
     Body(wish): Body<CourseWish>,
@@ -60,30 +53,13 @@ pub(super) async fn new_course(
     Ok((StatusCode::CREATED, Json(admin.new_course(&wish.slug, &wish.title).await?)))
 }
 
-/// Puts a course away: nobody hands in any more, and everything stays to be read.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/archived", tag = "administration", params(("course" = String, Path)),
-    responses((status = 204, description = "Archived"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn archive(admin: Admin, Params(course): Params<String>) -> Result<StatusCode, Problem> {
-    admin.archive_course(&course, true).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
-/// Takes it out again.
-#[utoipa::path(delete, path = "/api/v1/courses/{course}/archived", tag = "administration",
-    params(("course" = String, Path)),
-    responses((status = 204, description = "Open again"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn reopen(admin: Admin, Params(course): Params<String>) -> Result<StatusCode, Problem> {
-    admin.archive_course(&course, false).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
 /// Removes a course with its assignments, submissions and log, for ever. Accounts stay.
 #[utoipa::path(delete, path = "/api/v1/courses/{course}", tag = "administration",
-    params(("course" = String, Path), ("confirm" = String, Query, description = "The course's name once more")),
-    responses((status = 204, description = "Removed"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    params(("confirm" = String, Query, description = "The course's name once more")),
+    responses((status = 204, description = "Removed")))]
 pub(super) async fn remove_course(
     admin: Admin,
-    Params(course): Params<String>,
+    At { course, .. }: At,
     Asked(asked): Asked<Confirm>,
 ) -> Result<StatusCode, Problem> {
     if asked.confirm != course {
@@ -102,21 +78,13 @@ pub(super) struct Confirm {
     confirm: String,
 }
 
-/// The members of a course.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/members", tag = "courses", params(("course" = String, Path)),
-    responses((status = 200, body = Vec<MemberInfo>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn members(staff: Staff) -> Result<Json<Vec<MemberInfo>>, Problem> {
-    Ok(Json(staff.members().await?))
-}
-
 /// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once. Whoever
 /// has an account of their own is invited, and nothing changes until they accept.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/members/{login}", tag = "courses",
-    params(("course" = String, Path), ("login" = String, Path)), request_body = MemberWish,
-    responses((status = 200, body = MemberLinks), (status = "default", body = Problem, content_type = "application/problem+json")))]
+#[utoipa::path(put, path = "/api/v1/courses/{course}/members/{login}", tag = "courses", request_body = MemberWish,
+    responses((status = 200, body = MemberLinks)))]
 pub(super) async fn set_member(
     staff: Staff,
-    Params((_, login)): Params<(String, String)>,
+    At { login, .. }: At,
     Body(wish): Body<MemberWish>,
 ) -> Result<Json<MemberLinks>, Problem> {
     let added = staff.set_member(&login, &wish.name, &wish.role).await?;
@@ -149,9 +117,9 @@ pub(super) struct Preview {
 /// Makes all members of a table: `name,login,email,role`, or as its first line names them. If anything is wrong with a
 /// line, nothing is done.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members", tag = "courses",
-    params(("course" = String, Path), ("preview" = Option<bool>, Query, description = "Only look at the table")),
+    params(("preview" = Option<bool>, Query, description = "Only look at the table")),
     request_body(content = String, content_type = "text/csv"),
-    responses((status = 200, body = Vec<MemberLine>), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Vec<MemberLine>)))]
 pub(super) async fn import(
     staff: Staff,
     Asked(asked): Asked<Preview>,
@@ -174,34 +142,37 @@ pub(super) async fn import(
     Ok(Json(told.collect()))
 }
 
-/// Takes somebody out of the course; what they handed in stays.
-#[utoipa::path(delete, path = "/api/v1/courses/{course}/members/{login}", tag = "courses",
-    params(("course" = String, Path), ("login" = String, Path)),
-    responses((status = 204, description = "They are out"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn remove_member(
-    staff: Staff,
-    Params((_, login)): Params<(String, String)>,
-) -> Result<StatusCode, Problem> {
-    staff.remove_member(&login).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
 /// A new link that signs a student of this course in once.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members/{login}/link", tag = "courses",
-    params(("course" = String, Path), ("login" = String, Path)),
-    responses((status = 200, body = Link), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn member_link(
-    staff: Staff,
-    Params((_, login)): Params<(String, String)>,
-) -> Result<Json<Link>, Problem> {
+    responses((status = 200, body = Link)))]
+pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Result<Json<Link>, Problem> {
     let secret = staff.new_link(&login).await?;
     Ok(Json(link(staff.member().house(), Some(secret))))
 }
 
 /// What happened in the course, latest first, 200 at a time.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/audit", operation_id = "course_audit", tag = "courses",
-    params(("course" = String, Path), ("before" = Option<i64>, Query, description = "Only events before this one")),
-    responses((status = 200, body = Vec<Event>), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    params(("before" = Option<i64>, Query, description = "Only events before this one")),
+    responses((status = 200, body = Vec<Event>)))]
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
     Ok(Json(staff.audit(asked.before).await?))
+}
+
+answers! {
+    /// The courses that one is in.
+    get "/api/v1/courses" "courses" courses(person: Person) -> Vec<CourseOf>: person.courses();
+    /// The members of a course.
+    get "/api/v1/courses/{course}/members" "courses" members(staff: Staff) -> Vec<MemberInfo>: staff.members();
+}
+
+deeds! {
+    /// Puts a course away: nobody hands in any more, and everything stays to be read.
+    put "/api/v1/courses/{course}/archived" "administration"
+        archive(admin: Admin, { course }) -> "Archived": admin.archive_course(&course, true);
+    /// Takes it out again.
+    delete "/api/v1/courses/{course}/archived" "administration"
+        reopen(admin: Admin, { course }) -> "Open again": admin.archive_course(&course, false);
+    /// Takes somebody out of the course; what they handed in stays.
+    delete "/api/v1/courses/{course}/members/{login}" "courses"
+        remove_member(staff: Staff, { login }) -> "They are out": staff.remove_member(&login);
 }

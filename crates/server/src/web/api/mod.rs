@@ -1,5 +1,31 @@
 //! The API. Each handler says by its first argument whom it serves.
 
+/// Operations that answer with what was asked for, one a row: method, address, tag, and name; whom it serves, and which
+/// parts of the address it takes; and what it answers with.
+macro_rules! answers {
+    ($($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
+        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })?) -> $type:ty: $answer:expr;)*) => {
+        $($(#[doc = $doc])*
+        #[utoipa::path($method, path = $path, tag = $tag, responses((status = 200, body = $type)))]
+        pub(super) async fn $name($who: $role $(, At { $($at,)* .. }: At)?) -> Result<Json<$type>, Problem> {
+            Ok(Json($answer.await?))
+        })*
+    };
+}
+
+/// The same for those that only do something: then it is said in words what was done.
+macro_rules! deeds {
+    ($($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
+        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })?) -> $done:tt: $do:expr;)*) => {
+        $($(#[doc = $doc])*
+        #[utoipa::path($method, path = $path, tag = $tag, responses((status = 204, description = $done)))]
+        pub(super) async fn $name($who: $role $(, At { $($at,)* .. }: At)?) -> Result<StatusCode, Problem> {
+            $do.await?;
+            Ok(StatusCode::NO_CONTENT)
+        })*
+    };
+}
+
 mod accounts;
 mod again;
 mod assignments;
@@ -14,8 +40,6 @@ mod workers;
 pub(super) use assignments::receive_suite;
 pub use submissions::export_csv;
 pub(super) use submissions::{receive, report_response, upload_response};
-
-pub(crate) use workers::{Alive, Fault, Finished, Held, Manners};
 
 use crate::access::House;
 use utoipa_axum::{router::OpenApiRouter, routes};

@@ -16,7 +16,7 @@ pub(super) async fn health() -> &'static str {
 
 /// Whether requests can be served: the database answers, and its tables are of this version.
 #[utoipa::path(get, path = "/ready", tag = "operations",
-    responses((status = 200, body = String, content_type = "text/plain", description = "They can"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = String, content_type = "text/plain", description = "They can")))]
 pub(super) async fn ready(visitor: Visitor) -> Result<&'static str, Problem> {
     visitor.ready().await?;
     Ok("ready\n")
@@ -36,8 +36,7 @@ fn line(text: &mut String, line: &str) {
 
 /// Numbers for Prometheus. They tell of nobody. Without a database that answers they are those of the process alone.
 #[utoipa::path(get, path = "/metrics", tag = "operations",
-    responses((status = 200, body = String, content_type = "text/plain", description = "Prometheus' text format"),
-        (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = String, content_type = "text/plain", description = "Prometheus' text format")))]
 pub(super) async fn metrics(visitor: Visitor) -> Result<Response, Problem> {
     let mut text = visitor.instruments()?;
     let asked = visitor.metrics().await;
@@ -78,6 +77,16 @@ fn of_queue(text: &mut String, metrics: &Metrics) {
     ] {
         head(text, name, "gauge", help);
         line(text, &format!("fosssim_{name} {value}"));
+    }
+    head(
+        text,
+        "workers_by_state",
+        "gauge",
+        "Workers that were seen lately: they grade, wait for a job, or can't grade.",
+    );
+    let idle = metrics.workers - metrics.working - metrics.aside;
+    for (state, value) in [("working", metrics.working), ("idle", idle), ("aside", metrics.aside)] {
+        line(text, &format!("fosssim_workers_by_state{{state=\"{state}\"}} {value}"));
     }
     head(text, "submissions_total", "counter", "Submissions.");
     line(text, &format!("fosssim_submissions_total {}", metrics.submissions));

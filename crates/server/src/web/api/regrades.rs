@@ -1,5 +1,5 @@
 //! Regrades: begun, looked at, applied or discarded.
-use super::super::input::{Asked, Body, Params};
+use super::super::input::{Asked, At, Body};
 use crate::{
     access::{Regrade, Settings, Staff},
     problem::Problem,
@@ -20,25 +20,12 @@ pub(super) struct RegradeWish {
     settings: Option<Settings>,
 }
 
-/// The regrades of an assignment, latest first.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
-    params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Vec<Regrade>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn regrades(
-    staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
-) -> Result<Json<Vec<Regrade>>, Problem> {
-    Ok(Json(staff.regrades(&assignment).await?))
-}
-
 /// Grades all submissions again, beside their grades. Nothing changes until it is applied.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
-    params(("course" = String, Path), ("assignment" = String, Path)), request_body = RegradeWish,
-    responses((status = 201, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`"),
-        (status = "default", body = Problem, content_type = "application/problem+json")))]
+#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades", request_body = RegradeWish,
+    responses((status = 201, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`")))]
 pub(super) async fn begin(
     staff: Staff,
-    Params((_, assignment)): Params<(String, String)>,
+    At { assignment, .. }: At,
     Body(wish): Body<RegradeWish>,
 ) -> Result<(StatusCode, Json<Regrade>), Problem> {
     let regrade = staff.regrade(&assignment, &wish.reason, wish.settings.as_ref()).await?;
@@ -47,12 +34,11 @@ pub(super) async fn begin(
 
 /// What a regrade would change, or did, and why.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
-    params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path),
-        ("after" = Option<i64>, Query, description = "Only changes of submissions after this one: `next` of the answer before")),
-    responses((status = 200, body = Regrade), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    params(("after" = Option<i64>, Query, description = "Only changes of submissions after this one: `next` of the answer before")),
+    responses((status = 200, body = Regrade)))]
 pub(super) async fn show(
     staff: Staff,
-    Params((_, assignment, id)): Params<(String, String, i64)>,
+    At { assignment, id, .. }: At,
     Asked(asked): Asked<After>,
 ) -> Result<Json<Regrade>, Problem> {
     Ok(Json(staff.show_regrade(&assignment, id, asked.after).await?))
@@ -71,26 +57,27 @@ fn status(regrade: &Regrade, done: StatusCode) -> StatusCode {
 
 /// Makes its results count.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply",
-    tag = "regrades", params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`"),
-        (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn apply(
-    staff: Staff,
-    Params((_, assignment, id)): Params<(String, String, i64)>,
-) -> Result<(StatusCode, Json<Regrade>), Problem> {
+    tag = "regrades",
+    responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`")))]
+pub(super) async fn apply(staff: Staff, At { assignment, id, .. }: At) -> Result<(StatusCode, Json<Regrade>), Problem> {
     let regrade = staff.apply_regrade(&assignment, id).await?;
     Ok((status(&regrade, StatusCode::OK), Json(regrade)))
 }
 
 /// Gives it up; nothing changes.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard",
-    tag = "regrades", params(("course" = String, Path), ("assignment" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`"),
-        (status = "default", body = Problem, content_type = "application/problem+json")))]
+    tag = "regrades",
+    responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`")))]
 pub(super) async fn discard(
     staff: Staff,
-    Params((_, assignment, id)): Params<(String, String, i64)>,
+    At { assignment, id, .. }: At,
 ) -> Result<(StatusCode, Json<Regrade>), Problem> {
     let regrade = staff.discard_regrade(&assignment, id).await?;
     Ok((status(&regrade, StatusCode::OK), Json(regrade)))
+}
+
+answers! {
+    /// The regrades of an assignment, latest first.
+    get "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
+        regrades(staff: Staff, { assignment }) -> Vec<Regrade>: staff.regrades(&assignment);
 }

@@ -1,7 +1,7 @@
 //! Submissions.
 use super::super::{
     download,
-    input::{Asked, Body, Params},
+    input::{Asked, At, Body},
     status, upload,
 };
 use crate::{
@@ -24,30 +24,17 @@ pub(super) struct About {
     form: Option<String>,
 }
 
-/// One's own submissions, newest first.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
-    params(("course" = String, Path), ("assignment" = String, Path)),
-    responses((status = 200, body = Vec<Submission>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn own(
-    member: Member,
-    Params((_, assignment)): Params<(String, String)>,
-) -> Result<Json<Vec<Submission>>, Problem> {
-    Ok(Json(member.submissions(&assignment).await?))
-}
-
 /// Hands in: the body is the file, or a form (`multipart/form-data`) with a field `file`. With an `Idempotency-Key` the
 /// same upload sent twice is one submission: 201 the first time, 200 from then on.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
-    params(("course" = String, Path), ("assignment" = String, Path),
-        ("name" = Option<String>, Query, description = "What the file is called"),
+    params(("name" = Option<String>, Query, description = "What the file is called"),
         ("form" = Option<String>, Query, description = "program, sources or traces; told from the file otherwise"),
         ("Idempotency-Key" = Option<String>, Header, description = "A name of the sender's own for this upload")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses((status = 201, body = Submission), (status = 200, body = Submission),
-        (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 201, body = Submission), (status = 200, body = Submission)))]
 pub(super) async fn submit(
     member: Member,
-    Params((_, assignment)): Params<(String, String)>,
+    At { assignment, .. }: At,
     Asked(about): Asked<About>,
     headers: HeaderMap,
     request: Request,
@@ -97,29 +84,6 @@ pub(in crate::web) async fn receive(
     Ok((accepted.submission, accepted.repeated))
 }
 
-/// A submission: where it is in the queue, and what it came to.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Submission), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn submission(
-    member: Member,
-    Params((_, id)): Params<(String, i64)>,
-) -> Result<Json<Submission>, Problem> {
-    Ok(Json(member.submission(id).await?))
-}
-
-/// Removes a submission with its grades and reports, for ever.
-#[utoipa::path(delete, path = "/api/v1/courses/{course}/submissions/{id}", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 204, description = "Removed"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn remove_submission(
-    staff: Staff,
-    Params((_, id)): Params<(String, i64)>,
-) -> Result<StatusCode, Problem> {
-    staff.remove_submission(id).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
 /// What staff says of a submission.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -144,12 +108,11 @@ pub(super) struct RequestWish {
 }
 
 /// Gives a submission other points than the grader, with a comment, or the grader's again.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/submissions/{id}/mark", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path)), request_body = MarkWish,
-    responses((status = 200, body = Submission), (status = "default", body = Problem, content_type = "application/problem+json")))]
+#[utoipa::path(put, path = "/api/v1/courses/{course}/submissions/{id}/mark", tag = "submissions", request_body = MarkWish,
+    responses((status = 200, body = Submission)))]
 pub(super) async fn mark(
     staff: Staff,
-    Params((_, id)): Params<(String, i64)>,
+    At { id, .. }: At,
     Body(wish): Body<MarkWish>,
 ) -> Result<Json<Submission>, Problem> {
     let points = wish.points.map(|points| points.to_string());
@@ -157,47 +120,29 @@ pub(super) async fn mark(
 }
 
 /// Asks staff to look at one's own submission again.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/submissions/{id}/request", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path)), request_body = RequestWish,
-    responses((status = 204, description = "Staff sees it"), (status = "default", body = Problem, content_type = "application/problem+json")))]
+#[utoipa::path(post, path = "/api/v1/courses/{course}/submissions/{id}/request", tag = "submissions", request_body = RequestWish,
+    responses((status = 204, description = "Staff sees it")))]
 pub(super) async fn request(
     member: Member,
-    Params((_, id)): Params<(String, i64)>,
+    At { id, .. }: At,
     Body(wish): Body<RequestWish>,
 ) -> Result<StatusCode, Problem> {
     member.request(id, &wish.text).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// How its grade came to be: who, when, why, by which version and rules.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/history", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, body = Vec<History>), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn history(
-    member: Member,
-    Params((_, id)): Params<(String, i64)>,
-) -> Result<Json<Vec<History>>, Problem> {
-    Ok(Json(member.history(id).await?))
-}
-
 /// Its state as server-sent events: one at once, one whenever it changes; the stream ends with the grade. Each event is
 /// the whole state, so that nothing is lost with a connection.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/events", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, description = "text/event-stream of submissions"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn events(member: Member, Params((_, id)): Params<(String, i64)>) -> Result<Response, Problem> {
+    responses((status = 200, description = "text/event-stream of submissions")))]
+pub(super) async fn events(member: Member, At { id, .. }: At) -> Result<Response, Problem> {
     status::stream(member, id).await
 }
 
 /// A report on it, as the grader wrote it: `grade.json`, `report.txt`, ...
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/files/{name}", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path), ("name" = String, Path)),
-    responses((status = 200, description = "The report"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn report(
-    member: Member,
-    Params((_, id, name)): Params<(String, i64, String)>,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
+    responses((status = 200, description = "The report")))]
+pub(super) async fn report(member: Member, At { id, name, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     report_response(&member, id, &name, &headers).await
 }
 
@@ -221,13 +166,8 @@ pub(in crate::web) async fn report_response(
 
 /// What was handed in.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
-    params(("course" = String, Path), ("id" = i64, Path)),
-    responses((status = 200, description = "The file"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn upload(
-    member: Member,
-    Params((_, id)): Params<(String, i64)>,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
+    responses((status = 200, description = "The file")))]
+pub(super) async fn upload(member: Member, At { id, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     upload_response(&member, id, &headers).await
 }
 
@@ -280,4 +220,22 @@ pub fn export_csv(standings: &[Standing]) -> Result<String, Problem> {
 
 fn cell(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
+}
+
+answers! {
+    /// One's own submissions, newest first.
+    get "/api/v1/courses/{course}/assignments/{assignment}/submissions" "submissions"
+        own(member: Member, { assignment }) -> Vec<Submission>: member.submissions(&assignment);
+    /// A submission: where it is in the queue, and what it came to.
+    get "/api/v1/courses/{course}/submissions/{id}" "submissions"
+        submission(member: Member, { id }) -> Submission: member.submission(id);
+    /// How its grade came to be: who, when, why, by which version and rules.
+    get "/api/v1/courses/{course}/submissions/{id}/history" "submissions"
+        history(member: Member, { id }) -> Vec<History>: member.history(id);
+}
+
+deeds! {
+    /// Removes a submission with its grades and reports, for ever.
+    delete "/api/v1/courses/{course}/submissions/{id}" "submissions"
+        remove_submission(staff: Staff, { id }) -> "Removed": staff.remove_submission(id);
 }

@@ -2,15 +2,15 @@
 //! in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
 use super::super::{
     download,
-    input::{Asked, Body, Params},
+    input::{Asked, At, Body},
     upload,
 };
 use crate::{
-    access::{Claimed, Remote},
+    access::Remote,
     problem::Problem,
     queue::Lease,
     store::{Artefact, Digest},
-    task::Outcome,
+    wire::{Alive, Claimed, Fault, Finished, Held, Manners},
 };
 use axum::{
     Json,
@@ -18,55 +18,11 @@ use axum::{
     http::{HeaderMap, StatusCode, header},
     response::{IntoResponse, Response},
 };
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
-/// A sign of life.
-#[derive(Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Alive {
-    /// How many gradings it does at one time; 0 while it can't grade.
-    #[schema(maximum = 10_000)]
-    pub(crate) slots: usize,
-    /// Why it can't.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) fault: Option<String>,
-}
-
-/// What a worker is to know.
-#[derive(Serialize, Deserialize, ToSchema)]
-pub(crate) struct Manners {
-    /// How often to say that it is alive, in milliseconds.
-    pub(crate) tick_every: u64,
-}
-
-/// Whether the lease still holds.
-#[derive(Serialize, Deserialize, ToSchema)]
-pub(crate) struct Held {
-    /// If not, somebody else has the job and nothing was changed.
-    pub(crate) held: bool,
-}
-
-/// Why a try came to nothing.
-#[derive(Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Fault {
-    pub(crate) lease: Lease,
-    #[schema(max_length = 2000)]
-    pub(crate) fault: String,
-}
-
-/// A result.
-#[derive(Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Finished {
-    pub(crate) lease: Lease,
-    pub(crate) outcome: Outcome,
-}
+use serde::Deserialize;
 
 /// Says that the worker is alive.
 #[utoipa::path(post, path = "/api/v1/worker/tick", tag = "workers", request_body = Alive,
-    responses((status = 200, body = Manners), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Manners)))]
 pub(super) async fn tick(remote: Remote, Body(alive): Body<Alive>) -> Result<Json<Manners>, Problem> {
     remote.tick(alive.slots, alive.fault.as_deref()).await?;
     Ok(Json(Manners { tick_every: remote.tick_every() }))
@@ -82,8 +38,7 @@ pub(super) struct Claimant {
 #[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
     params(("idle" = Option<bool>, Query, description = "Whether nothing else runs in this worker (the default): then \
         it may get a job that must run alone")),
-    responses((status = 200, body = Claimed), (status = 204, description = "No job"),
-        (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Claimed), (status = 204, description = "No job")))]
 pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> Result<Response, Problem> {
     Ok(match remote.claim(claimant.idle.unwrap_or(true)).await? {
         Some(job) => Json(job).into_response(),
@@ -93,28 +48,28 @@ pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> R
 
 /// Extends a lease.
 #[utoipa::path(post, path = "/api/v1/worker/renew", tag = "workers", request_body = Lease,
-    responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Held)))]
 pub(super) async fn renew(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.renew(&lease).await? }))
 }
 
 /// Gives a job back at no cost.
 #[utoipa::path(post, path = "/api/v1/worker/release", tag = "workers", request_body = Lease,
-    responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Held)))]
 pub(super) async fn release(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.release(&lease).await? }))
 }
 
 /// Says that a try came to nothing.
 #[utoipa::path(post, path = "/api/v1/worker/fail", tag = "workers", request_body = Fault,
-    responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Held)))]
 pub(super) async fn fail(remote: Remote, Body(fault): Body<Fault>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.fail(&fault.lease, &fault.fault).await? }))
 }
 
 /// Brings a result.
 #[utoipa::path(post, path = "/api/v1/worker/finish", tag = "workers", request_body = Finished,
-    responses((status = 200, body = Held), (status = "default", body = Problem, content_type = "application/problem+json")))]
+    responses((status = 200, body = Held)))]
 pub(super) async fn finish(remote: Remote, Body(result): Body<Finished>) -> Result<Json<Held>, Problem> {
     Ok(Json(Held { held: remote.finish(&result.lease, &result.outcome).await? }))
 }
@@ -131,13 +86,9 @@ fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
 
 /// A file of a job that the worker holds.
 #[utoipa::path(get, path = "/api/v1/worker/files/{digest}", tag = "workers",
-    params(("digest" = String, Path), ("Fosssim-Lease" = String, Header)),
-    responses((status = 200, description = "Its bytes"), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn artefact(
-    remote: Remote,
-    Params(digest): Params<String>,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
+    params(("Fosssim-Lease" = String, Header)),
+    responses((status = 200, description = "Its bytes")))]
+pub(super) async fn artefact(remote: Remote, At { digest, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let opened = remote.artefact(&lease(&headers)?, &digest).await?;
     let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
@@ -146,14 +97,10 @@ pub(super) async fn artefact(
 
 /// Stores a report of a job that the worker holds; the digest must be that of its bytes.
 #[utoipa::path(put, path = "/api/v1/worker/files/{digest}", tag = "workers",
-    params(("digest" = String, Path), ("Fosssim-Lease" = String, Header)),
+    params(("Fosssim-Lease" = String, Header)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses((status = 200, body = Artefact), (status = "default", body = Problem, content_type = "application/problem+json")))]
-pub(super) async fn store(
-    remote: Remote,
-    Params(digest): Params<String>,
-    request: Request,
-) -> Result<Json<Artefact>, Problem> {
+    responses((status = 200, body = Artefact)))]
+pub(super) async fn store(remote: Remote, At { digest, .. }: At, request: Request) -> Result<Json<Artefact>, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let lease = lease(request.headers())?;
     let most = remote.check_held(&lease).await?;

@@ -1,6 +1,6 @@
 //! One's courses and tokens.
 use super::{
-    super::input::{Fields, Params},
+    super::input::{At, Fields},
     Frame, see, show, text,
 };
 use crate::{
@@ -56,22 +56,22 @@ pub(super) async fn home(person: Person) -> Result<Html<String>, Problem> {
 }
 
 /// Opening the link does nothing yet.
-pub(super) async fn invitation(person: Person, Params(secret): Params<String>) -> Result<Html<String>, Problem> {
+pub(super) async fn invitation(person: Person, At { secret, .. }: At) -> Result<Html<String>, Problem> {
     let invitation = person.invitation(&secret).await?;
     show(&InvitationPage { frame: Frame::of(person.account()), secret, invitation })
 }
 
-pub(super) async fn accept_by_link(person: Person, Params(secret): Params<String>) -> Result<Redirect, Problem> {
+pub(super) async fn accept_by_link(person: Person, At { secret, .. }: At) -> Result<Redirect, Problem> {
     let course = person.accept_by_link(&secret).await?;
     Ok(see(&format!("/c/{}", course.slug)))
 }
 
-pub(super) async fn accept(person: Person, Params(course): Params<String>) -> Result<Redirect, Problem> {
+pub(super) async fn accept(person: Person, At { course, .. }: At) -> Result<Redirect, Problem> {
     person.answer_invitation(&course, true).await?;
     Ok(see(&format!("/c/{course}")))
 }
 
-pub(super) async fn decline(person: Person, Params(course): Params<String>) -> Result<Redirect, Problem> {
+pub(super) async fn decline(person: Person, At { course, .. }: At) -> Result<Redirect, Problem> {
     person.answer_invitation(&course, false).await?;
     Ok(see("/"))
 }
@@ -92,7 +92,7 @@ pub(super) async fn new_token(person: Person, Fields(form): Fields<Name>) -> Res
     page(&person, Some(secret.reveal().to_owned())).await
 }
 
-pub(super) async fn revoke_token(person: Person, Params(id): Params<i64>) -> Result<Redirect, Problem> {
+pub(super) async fn revoke_token(person: Person, At { id, .. }: At) -> Result<Redirect, Problem> {
     person.revoke_token(id).await?;
     Ok(see("/account"))
 }

@@ -1,6 +1,6 @@
 //! What administrators see.
 use super::{
-    super::input::{Fields, Params},
+    super::input::{At, Fields},
     Frame, see, show, text,
 };
 use crate::{
@@ -79,7 +79,7 @@ pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<NewWorker>) ->
     make(&admin, None, Some(secret.reveal().to_owned())).await
 }
 
-pub(super) async fn revoke_worker(admin: Admin, Params(id): Params<i64>) -> Result<Redirect, Problem> {
+pub(super) async fn revoke_worker(admin: Admin, At { id, .. }: At) -> Result<Redirect, Problem> {
     admin.revoke_worker_token(id).await?;
     Ok(see("/admin"))
 }

@@ -1,6 +1,6 @@
 //! A course: its assignments, members, queue and audit log.
 use super::{
-    super::input::{Asked, Fields, Params},
+    super::input::{Asked, At, Fields},
     Frame, see, show, text,
 };
 use crate::{
@@ -118,18 +118,12 @@ pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) ->
     members_page(&staff, link).await
 }
 
-pub(super) async fn remove_member(
-    staff: Staff,
-    Params((slug, login)): Params<(String, String)>,
-) -> Result<Redirect, Problem> {
+pub(super) async fn remove_member(staff: Staff, At { course: slug, login, .. }: At) -> Result<Redirect, Problem> {
     staff.remove_member(&login).await?;
     Ok(see(&format!("/c/{slug}/members")))
 }
 
-pub(super) async fn member_link(
-    staff: Staff,
-    Params((_, login)): Params<(String, String)>,
-) -> Result<Html<String>, Problem> {
+pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Result<Html<String>, Problem> {
     let secret = staff.new_link(&login).await?;
     let link = staff.member().house().welcome_address(&secret);
     members_page(&staff, Some((login, SIGNS_IN, link))).await

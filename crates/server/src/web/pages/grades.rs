@@ -1,6 +1,6 @@
 //! The class, and regrades.
 use super::{
-    super::input::{Asked, Fields, Params},
+    super::input::{Asked, At, Fields},
     Frame, see,
     settings::{Grading, GradingFields},
     show,
@@ -100,7 +100,7 @@ pub(super) struct NewRegrade {
 
 pub(super) async fn class(
     staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
+    At { course: slug, assignment, .. }: At,
     Asked(look): Asked<Look>,
 ) -> Result<Html<String>, Problem> {
     let assignment = staff.member().assignment(&assignment).await?;
@@ -134,7 +134,7 @@ pub(super) async fn class(
 
 pub(super) async fn begin(
     staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
+    At { course: slug, assignment, .. }: At,
     Fields(form): Fields<NewRegrade>,
 ) -> Result<Redirect, Problem> {
     let settings = form.grading.over(&staff.member().assignment(&assignment).await?.settings)?;
@@ -142,18 +142,12 @@ pub(super) async fn begin(
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }
 
-pub(super) async fn publish(
-    staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
-) -> Result<Redirect, Problem> {
+pub(super) async fn publish(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Redirect, Problem> {
     staff.publish(&assignment, true).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
-pub(super) async fn withhold(
-    staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
-) -> Result<Redirect, Problem> {
+pub(super) async fn withhold(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Redirect, Problem> {
     staff.publish(&assignment, false).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
@@ -176,48 +170,36 @@ async fn show_page(
 
 pub(super) async fn show_regrade(
     staff: Staff,
-    Params((slug, assignment, id)): Params<(String, String, i64)>,
+    At { course: slug, assignment, id, .. }: At,
     Asked(asked): Asked<After>,
 ) -> Result<Html<String>, Problem> {
     show_page(&staff, slug, &assignment, id, asked.after).await
 }
 
-pub(super) async fn apply(
-    staff: Staff,
-    Params((slug, assignment, id)): Params<(String, String, i64)>,
-) -> Result<Redirect, Problem> {
+pub(super) async fn apply(staff: Staff, At { course: slug, assignment, id, .. }: At) -> Result<Redirect, Problem> {
     staff.apply_regrade(&assignment, id).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{id}")))
 }
 
-pub(super) async fn discard(
-    staff: Staff,
-    Params((slug, assignment, id)): Params<(String, String, i64)>,
-) -> Result<Redirect, Problem> {
+pub(super) async fn discard(staff: Staff, At { course: slug, assignment, id, .. }: At) -> Result<Redirect, Problem> {
     staff.discard_regrade(&assignment, id).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{id}")))
 }
 
 pub(super) async fn grade_errors_again(
     staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
+    At { course: slug, assignment, .. }: At,
 ) -> Result<Redirect, Problem> {
     staff.grade_errors_again(Some(&assignment)).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
-pub(super) async fn dismiss(
-    staff: Staff,
-    Params((slug, assignment, id)): Params<(String, String, i64)>,
-) -> Result<Redirect, Problem> {
+pub(super) async fn dismiss(staff: Staff, At { course: slug, assignment, id, .. }: At) -> Result<Redirect, Problem> {
     staff.decide_suspicion(&assignment, id, false).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
-pub(super) async fn tell(
-    staff: Staff,
-    Params((slug, assignment, id)): Params<(String, String, i64)>,
-) -> Result<Redirect, Problem> {
+pub(super) async fn tell(staff: Staff, At { course: slug, assignment, id, .. }: At) -> Result<Redirect, Problem> {
     staff.decide_suspicion(&assignment, id, true).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }

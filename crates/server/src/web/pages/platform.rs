@@ -1,10 +1,13 @@
 //! Coming from a learning platform.
 use super::{
-    super::input::{Asked, Fields, Params},
+    super::{
+        input::{Asked, At, Fields},
+        who::browser_cookie,
+    },
     Frame, see, show, sign_in,
 };
 use crate::{
-    access::{Admin, Assignment, Choice, Chosen, Course, House, LoginRequest, Person, Staff, Visitor, browser_cookie},
+    access::{Admin, Assignment, Choice, Chosen, Course, House, LoginRequest, Person, Staff, Visitor},
     problem::Problem,
 };
 use askama::Template;
@@ -218,7 +221,7 @@ pub(super) async fn configuration(State(house): State<House>) -> Json<Value> {
     }))
 }
 
-pub(super) async fn choose(person: Person, Params(secret): Params<String>) -> Result<Html<String>, Problem> {
+pub(super) async fn choose(person: Person, At { secret, .. }: At) -> Result<Html<String>, Problem> {
     let frame = Frame::of(person.account());
     match person.choice(&secret).await? {
         Choice::Course { platform, title, slug, courses } => {
@@ -232,7 +235,7 @@ pub(super) async fn choose(person: Person, Params(secret): Params<String>) -> Re
 
 pub(super) async fn choose_course(
     person: Person,
-    Params(secret): Params<String>,
+    At { secret, .. }: At,
     Fields(choice): Fields<CourseChoice>,
 ) -> Result<Redirect, Problem> {
     let known = choice.known.as_deref().filter(|slug| !slug.is_empty());
@@ -242,7 +245,7 @@ pub(super) async fn choose_course(
 
 pub(super) async fn choose_assignment(
     person: Person,
-    Params(secret): Params<String>,
+    At { secret, .. }: At,
     Fields(choice): Fields<AssignmentChoice>,
 ) -> Result<Response, Problem> {
     match person.choose_assignment(&secret, &choice.assignment).await? {
@@ -276,7 +279,7 @@ pub(super) async fn set_platform(admin: Admin, Fields(form): Fields<NewPlatform>
     Ok(see("/admin"))
 }
 
-pub(super) async fn shut_platform(admin: Admin, Params(name): Params<String>) -> Result<Redirect, Problem> {
+pub(super) async fn shut_platform(admin: Admin, At { name, .. }: At) -> Result<Redirect, Problem> {
     admin.shut_platform(&name).await?;
     Ok(see("/admin"))
 }
@@ -291,10 +294,7 @@ pub(super) async fn read_roster(staff: Staff) -> Result<Redirect, Problem> {
     Ok(see(&format!("/c/{}/members", staff.member().course().slug)))
 }
 
-pub(super) async fn send_scores(
-    staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
-) -> Result<Redirect, Problem> {
+pub(super) async fn send_scores(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Redirect, Problem> {
     staff.send_scores(&assignment).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }

@@ -1,6 +1,6 @@
 //! Removing for ever: a page that says what goes, and a button that means it.
 use super::{
-    super::input::{Fields, Params},
+    super::input::{At, Fields},
     Frame, see, show,
 };
 use crate::{
@@ -45,10 +45,7 @@ const COURSE: &str = "Its assignments, all submissions, grades and reports, its 
 const PERSON: &str = "All that they handed in, what it came to, their login and name, tokens and links are removed for ever, in all \
                       courses. A shut account only can't sign in any more.";
 
-pub(super) async fn submission(
-    staff: Staff,
-    Params((slug, id)): Params<(String, i64)>,
-) -> Result<Html<String>, Problem> {
+pub(super) async fn submission(staff: Staff, At { course: slug, id, .. }: At) -> Result<Html<String>, Problem> {
     let submission = staff.member().submission(id).await?;
     let frame =
         Frame::course(staff.member()).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
@@ -58,7 +55,7 @@ pub(super) async fn submission(
 
 pub(super) async fn remove_submission(
     staff: Staff,
-    Params((slug, id)): Params<(String, i64)>,
+    At { course: slug, id, .. }: At,
     Fields(form): Fields<Confirmed>,
 ) -> Result<Redirect, Problem> {
     form.is(&id.to_string())?;
@@ -67,10 +64,7 @@ pub(super) async fn remove_submission(
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
-pub(super) async fn assignment(
-    staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
-) -> Result<Html<String>, Problem> {
+pub(super) async fn assignment(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Html<String>, Problem> {
     let assignment = staff.member().assignment(&assignment).await?;
     let frame = Frame::course(staff.member()).then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title);
     show(&RemovePage { frame, title: assignment.title, words: ASSIGNMENT, confirm: assignment.slug, instead: None })
@@ -78,7 +72,7 @@ pub(super) async fn assignment(
 
 pub(super) async fn remove_assignment(
     staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
+    At { course: slug, assignment, .. }: At,
     Fields(form): Fields<Confirmed>,
 ) -> Result<Redirect, Problem> {
     form.is(&assignment)?;
@@ -99,7 +93,7 @@ pub(super) async fn course(admin: Admin, staff: Staff) -> Result<Html<String>, P
 
 pub(super) async fn remove_course(
     admin: Admin,
-    Params(slug): Params<String>,
+    At { course: slug, .. }: At,
     Fields(form): Fields<Confirmed>,
 ) -> Result<Redirect, Problem> {
     form.is(&slug)?;
@@ -107,17 +101,17 @@ pub(super) async fn remove_course(
     Ok(see("/"))
 }
 
-pub(super) async fn archive(admin: Admin, Params(slug): Params<String>) -> Result<Redirect, Problem> {
+pub(super) async fn archive(admin: Admin, At { course: slug, .. }: At) -> Result<Redirect, Problem> {
     admin.archive_course(&slug, true).await?;
     Ok(see(&format!("/c/{slug}")))
 }
 
-pub(super) async fn reopen(admin: Admin, Params(slug): Params<String>) -> Result<Redirect, Problem> {
+pub(super) async fn reopen(admin: Admin, At { course: slug, .. }: At) -> Result<Redirect, Problem> {
     admin.archive_course(&slug, false).await?;
     Ok(see(&format!("/c/{slug}")))
 }
 
-pub(super) async fn person(admin: Admin, Params(login): Params<String>) -> Result<Html<String>, Problem> {
+pub(super) async fn person(admin: Admin, At { login, .. }: At) -> Result<Html<String>, Problem> {
     let found = admin.accounts().await?.into_iter().find(|account| account.login == login);
     let account = found.ok_or_else(|| Problem::not_found("account"))?;
     let frame = Frame::of(admin.account()).then("/admin".to_owned(), "Administration");
@@ -128,7 +122,7 @@ pub(super) async fn person(admin: Admin, Params(login): Params<String>) -> Resul
 
 pub(super) async fn remove_person(
     admin: Admin,
-    Params(login): Params<String>,
+    At { login, .. }: At,
     Fields(form): Fields<Confirmed>,
 ) -> Result<Redirect, Problem> {
     form.is(&login)?;
@@ -136,7 +130,7 @@ pub(super) async fn remove_person(
     Ok(see("/admin"))
 }
 
-pub(super) async fn shut_account(admin: Admin, Params(login): Params<String>) -> Result<Redirect, Problem> {
+pub(super) async fn shut_account(admin: Admin, At { login, .. }: At) -> Result<Redirect, Problem> {
     admin.disable_account(&login).await?;
     Ok(see("/admin"))
 }

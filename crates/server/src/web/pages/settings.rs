@@ -2,7 +2,7 @@
 use super::{
     super::{
         api,
-        input::{Fields, Params},
+        input::{At, Fields},
     },
     Frame, see, show, text,
 };
@@ -149,10 +149,7 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
     Ok(same.or(Some(at)))
 }
 
-pub(super) async fn page(
-    staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
-) -> Result<Html<String>, Problem> {
+pub(super) async fn page(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Html<String>, Problem> {
     let assignment = staff.member().assignment(&assignment).await?;
     let frame = Frame::course(staff.member())
         .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
@@ -164,7 +161,7 @@ pub(super) async fn page(
 
 pub(super) async fn set(
     staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
+    At { course: slug, assignment, .. }: At,
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
     // An assignment is made on the course's page: a typing error in an address makes none.
@@ -176,7 +173,7 @@ pub(super) async fn set(
 
 pub(super) async fn set_suite(
     staff: Staff,
-    Params((slug, assignment)): Params<(String, String)>,
+    At { course: slug, assignment, .. }: At,
     request: Request,
 ) -> Result<Redirect, Problem> {
     let assignment = api::receive_suite(&staff, &assignment, request).await?;

@@ -2,12 +2,13 @@
 use super::{
     super::{
         guard::session_cookie,
-        input::{Fields, Params},
+        input::{At, Fields},
+        who::cookie_name,
     },
     Frame, see, show,
 };
 use crate::{
-    access::{House, Session, Visitor, cookie_name},
+    access::{House, Session, Visitor},
     problem::Problem,
 };
 use askama::Template;
@@ -73,7 +74,7 @@ pub(super) async fn welcome(_: Visitor) -> Result<Html<String>, Problem> {
     show(&Welcome { frame: Frame::nobody() })
 }
 
-pub(super) async fn by_link(visitor: Visitor, Params(secret): Params<String>) -> Result<Response, Problem> {
+pub(super) async fn by_link(visitor: Visitor, At { secret, .. }: At) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
     Ok(enter(visitor.house(), &session, "/"))
 }

@@ -1,6 +1,6 @@
 //! One student's work, as staff sees it; and the table by which a class comes in.
 use super::{
-    super::input::{Fields, Params},
+    super::input::{At, Fields},
     Frame, see,
     settings::moment,
     show, text,
@@ -72,7 +72,7 @@ pub(super) struct Table {
 
 pub(super) async fn page(
     staff: Staff,
-    Params((slug, assignment, login)): Params<(String, String, String)>,
+    At { course: slug, assignment, login, .. }: At,
 ) -> Result<Html<String>, Problem> {
     let assignment = staff.member().assignment(&assignment).await?;
     let work = staff.work(&assignment.slug, &login).await?;
@@ -85,7 +85,7 @@ pub(super) async fn page(
 
 pub(super) async fn extend(
     staff: Staff,
-    Params((slug, assignment, login)): Params<(String, String, String)>,
+    At { course: slug, assignment, login, .. }: At,
     Fields(form): Fields<NewExtension>,
 ) -> Result<Redirect, Problem> {
     let before = staff.work(&assignment, &login).await?.extended_to;
@@ -95,7 +95,7 @@ pub(super) async fn extend(
 
 pub(super) async fn mark(
     staff: Staff,
-    Params((slug, id)): Params<(String, i64)>,
+    At { course: slug, id, .. }: At,
     Fields(form): Fields<NewMark>,
 ) -> Result<Redirect, Problem> {
     let points = Some(form.points.trim()).filter(|points| !points.is_empty());
@@ -105,7 +105,7 @@ pub(super) async fn mark(
 
 pub(super) async fn request(
     member: Member,
-    Params((slug, id)): Params<(String, i64)>,
+    At { course: slug, id, .. }: At,
     Fields(form): Fields<NewRequest>,
 ) -> Result<Redirect, Problem> {
     member.request(id, form.text.trim()).await?;

@@ -1,6 +1,6 @@
 //! Handing in, and what came of it.
 use super::{
-    super::{api, input::Params},
+    super::{api, input::At},
     Frame, see, show, text,
 };
 use crate::{
@@ -49,7 +49,7 @@ struct SubmissionPage {
 
 pub(super) async fn assignment(
     member: Member,
-    Params((slug, assignment)): Params<(String, String)>,
+    At { course: slug, assignment, .. }: At,
 ) -> Result<Html<String>, Problem> {
     let assignment = member.assignment(&assignment).await?;
     let frame = Frame::course(&member).then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title);
@@ -61,17 +61,14 @@ pub(super) async fn assignment(
 
 pub(super) async fn submit(
     member: Member,
-    Params((slug, assignment)): Params<(String, String)>,
+    At { course: slug, assignment, .. }: At,
     request: Request,
 ) -> Result<Redirect, Problem> {
     let (submission, _) = api::receive(&member, &assignment, request, None, None, None).await?;
     Ok(see(&format!("/c/{slug}/s/{}", submission.id)))
 }
 
-pub(super) async fn submission(
-    member: Member,
-    Params((slug, id)): Params<(String, i64)>,
-) -> Result<Html<String>, Problem> {
+pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) -> Result<Html<String>, Problem> {
     let submission = member.submission(id).await?;
     let frame = Frame::course(&member)
         .then(format!("/c/{slug}/a/{}", submission.assignment), &submission.title)
@@ -98,23 +95,15 @@ pub(super) async fn submission(
     })
 }
 
-pub(super) async fn grade_again(staff: Staff, Params((slug, id)): Params<(String, i64)>) -> Result<Redirect, Problem> {
+pub(super) async fn grade_again(staff: Staff, At { course: slug, id, .. }: At) -> Result<Redirect, Problem> {
     staff.grade_again(id).await?;
     Ok(see(&format!("/c/{slug}/s/{id}")))
 }
 
-pub(super) async fn report(
-    member: Member,
-    Params((_, id, name)): Params<(String, i64, String)>,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
+pub(super) async fn report(member: Member, At { id, name, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     api::report_response(&member, id, &name, &headers).await
 }
 
-pub(super) async fn upload(
-    member: Member,
-    Params((_, id)): Params<(String, i64)>,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
+pub(super) async fn upload(member: Member, At { id, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     api::upload_response(&member, id, &headers).await
 }

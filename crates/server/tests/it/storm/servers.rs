@@ -1,12 +1,15 @@
 //! Two servers with their workers on one database and one store, and workers over HTTP of which one lies about its
-//! health and one has no room: killed and frozen while students hand in, some of it poison.
+//! health and one has no room: killed and frozen while students hand in, some of it poison. The store's disk is full for
+//! a while, and the pooler is killed, where there is one.
 use crate::support::{
     disk::SmallDisk,
     engines::{Fresh, on_all_engines},
     server::{Client, Server, program},
 };
+use fosssim_server::db::Dialect;
 use std::{
     fs,
+    io::Write,
     os::unix::fs::PermissionsExt,
     path::Path,
     process::{Child, Command, Stdio},
@@ -56,6 +59,20 @@ fn script(path: &Path, text: &str) {
     fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("permissions");
 }
 
+/// How large the store's disk is.
+const DISK: u64 = 128 << 20;
+
+/// Fills a disk for a moment.
+fn fill(disk: &Path) -> std::thread::JoinHandle<()> {
+    let filler = disk.join("filler");
+    std::thread::spawn(move || {
+        let mut file = fs::File::create(&filler).expect("a file");
+        while file.write_all(&[1; 4096]).is_ok() {}
+        std::thread::sleep(Duration::from_millis(1500));
+        fs::remove_file(&filler).expect("room");
+    })
+}
+
 /// Xorshift: any order of events will do.
 struct Dice(u64);
 
@@ -68,13 +85,14 @@ impl Dice {
     }
 }
 
-async fn two_servers_lose_nothing(fresh: Fresh) {
+async fn two_servers_lose_nothing(mut fresh: Fresh) {
     let size = Size::from_environment();
     // A small storm is enough here: a server's start takes longer than a worker's.
     let size = if std::env::var_os("FOSSSIM_STORM").is_some() { size } else { Size { submissions: 24, kills: 6 } };
     let folder = tempfile::tempdir().expect("a folder");
     let options = ["--workers", "2", "--lease", "2", "--requests-per-minute", "1000000"];
     let data = folder.path().join("data");
+    let store = SmallDisk::mount_at(&data.join("store"), DISK);
     let mut first = Server::start_in(&fresh, &options, data.clone());
     let admin = first.admin();
     first.course(&admin, "physics");
@@ -94,7 +112,7 @@ async fn two_servers_lose_nothing(fresh: Fresh) {
     machines.extend(disk.as_ref().map(|disk| Worker::start(&servers[1], token, &disk.path().join("data"), &good)));
     let seed = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).expect("a clock").as_nanos();
     let mut dice = Dice(u64::try_from(seed).expect("a date") | 1);
-    let (start, mut kills, mut freezes) = (Instant::now(), 0, 0);
+    let (start, mut kills, mut freezes, mut full, mut poolers) = (Instant::now(), 0, 0, Vec::new(), 0);
     let mut expected = Vec::new();
     while expected.len() < size.submissions || kills < size.kills {
         let due = (kills + 1) * size.submissions / size.kills.max(1);
@@ -115,6 +133,13 @@ async fn two_servers_lose_nothing(fresh: Fresh) {
             expected.push((id.expect("a number"), poison));
         }
         std::thread::sleep(Duration::from_millis(u64::try_from(50 + dice.roll(300)).expect("short")));
+        if let Some(store) = store.as_ref().filter(|_| kills > 20 * full.len()) {
+            full.push(fill(store.path()));
+        }
+        if let Some(pooler) = fresh.pooler.as_mut().filter(|_| kills >= 3 + 20 * poolers) {
+            pooler.kill_for(Duration::from_millis(u64::try_from(dice.roll(1500)).expect("short")));
+            poolers += 1;
+        }
         let victim = dice.roll(2);
         match dice.roll(8) {
             0 if freezes * 8 <= kills => {
@@ -135,6 +160,7 @@ async fn two_servers_lose_nothing(fresh: Fresh) {
             }
         }
     }
+    let full = full.into_iter().map(|filling| filling.join().expect("room again")).count();
     let (mut wrong, mut buried, mut doubled) = (Vec::new(), 0, Vec::new());
     for (number, (id, poison)) in expected.iter().enumerate() {
         let student = &students[number % students.len()];
@@ -169,10 +195,16 @@ async fn two_servers_lose_nothing(fresh: Fresh) {
     }
     servers[0].stop();
     let leaked = left("workers") + left("work");
+    let engine = match (fresh.database.dialect(), &fresh.pooler) {
+        (Dialect::Sqlite, _) => "SQLite",
+        (Dialect::Postgres, None) => "PostgreSQL",
+        (Dialect::Postgres, Some(_)) => "PostgreSQL behind PgBouncer",
+    };
     println!(
-        "| two servers | {} | {kills} | {freezes} | 0 | {} | {} | {buried} | {leaked} | {:.0} s |",
+        "| {engine} | {} | {kills} | {freezes} | {full} | {poolers} | {} | {} | {} | {buried} | {leaked} | {:.0} s |",
         expected.len(),
-        doubled.len(),
+        expected.len() - all.min(expected.len()),
+        doubled.len() + all.saturating_sub(expected.len()),
         wrong.len(),
         start.elapsed().as_secs_f64()
     );

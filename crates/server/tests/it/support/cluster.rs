@@ -225,6 +225,7 @@ impl Shared {
 /// connection, prepared statements are not known, and no start-up setting is ignored.
 pub(crate) struct Pooler {
     folder: tempfile::TempDir,
+    command: Command,
     server: std::process::Child,
 }
 
@@ -250,21 +251,35 @@ impl Pooler {
         if let Some((user, group)) = cluster.programs.user {
             command.uid(user).gid(group);
         }
-        let server = command
-            .arg("--quiet")
-            .arg(folder.path().join("settings"))
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("pgbouncer");
+        command.arg("--quiet").arg(folder.path().join("settings"));
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        let server = command.spawn().expect("pgbouncer");
+        let pooler = Self { folder, command, server };
+        pooler.wait_until_ready();
+        Some(pooler)
+    }
+
+    fn socket(&self) -> PathBuf {
+        self.folder.path().join(".s.PGSQL.6432")
+    }
+
+    fn wait_until_ready(&self) {
         let start = Instant::now();
-        while !folder.path().join(".s.PGSQL.6432").exists() {
-            let log = || fs::read_to_string(folder.path().join("log")).unwrap_or_default();
+        while !self.socket().exists() {
+            let log = || fs::read_to_string(self.folder.path().join("log")).unwrap_or_default();
             assert!(start.elapsed() < Duration::from_secs(60), "PgBouncer does not start: {}", log());
             std::thread::sleep(Duration::from_millis(10));
         }
-        Some(Self { folder, server })
+    }
+
+    /// Kills it, and starts it again after a pause.
+    pub(crate) fn kill_for(&mut self, pause: Duration) {
+        self.server.kill().expect("kill");
+        self.server.wait().expect("wait");
+        fs::remove_file(self.socket()).expect("its socket");
+        std::thread::sleep(pause);
+        self.server = self.command.spawn().expect("pgbouncer");
+        self.wait_until_ready();
     }
 
     /// The same database, reached through the pooler.

@@ -1,21 +1,35 @@
 //! A file system that is soon full, and what lies in a server's folders.
 use super::server::Server;
 use fosssim_testing::{Need, skip};
-use std::{path::Path, process::Command};
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// A file system of a few MiB in memory, unmounted at the end.
-pub(crate) struct SmallDisk(tempfile::TempDir);
+pub(crate) struct SmallDisk {
+    place: PathBuf,
+    folder: Option<tempfile::TempDir>,
+}
 
 impl SmallDisk {
     /// One of so many bytes; nothing where this user may not mount.
     pub(crate) fn mount(bytes: u64) -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
+        let mut disk = Self::mount_at(folder.path(), bytes)?;
+        disk.folder = Some(folder);
+        Some(disk)
+    }
+
+    /// The same at a folder, which is made.
+    pub(crate) fn mount_at(folder: &Path, bytes: u64) -> Option<Self> {
+        std::fs::create_dir_all(folder).expect("a folder");
         let mount = Command::new("mount")
             .args(["-t", "tmpfs", "-o", &format!("size={bytes},mode=700"), "tmpfs"])
-            .arg(folder.path())
+            .arg(folder)
             .output();
         match mount {
-            Ok(output) if output.status.success() => Some(Self(folder)),
+            Ok(output) if output.status.success() => Some(Self { place: folder.to_owned(), folder: None }),
             Ok(output) => {
                 skip(Need::Mounts, String::from_utf8_lossy(&output.stderr));
                 None
@@ -28,14 +42,15 @@ impl SmallDisk {
     }
 
     pub(crate) fn path(&self) -> &Path {
-        self.0.path()
+        &self.place
     }
 }
 
 impl Drop for SmallDisk {
     fn drop(&mut self) {
         // Lazily: a server that is just ending may still have a file open.
-        drop(Command::new("umount").arg("--lazy").arg(self.0.path()).status());
+        drop(Command::new("umount").arg("--lazy").arg(&self.place).status());
+        drop(self.folder.take());
     }
 }
 

@@ -8,7 +8,7 @@ pub(crate) struct Fresh {
     pub(crate) database: Database,
     pub(crate) address: Address,
     _folder: Option<tempfile::TempDir>,
-    _pooler: Option<cluster::Pooler>,
+    pub(crate) pooler: Option<cluster::Pooler>,
     _cluster: Option<cluster::Shared>,
 }
 
@@ -18,14 +18,14 @@ impl Fresh {
         let folder = tempfile::tempdir().expect("a folder");
         let address = Address::Sqlite(folder.path().join("fosssim.db"));
         let database = Database::open(&address).await.expect("a database");
-        Some(Self { database, address, _folder: Some(folder), _pooler: None, _cluster: None })
+        Some(Self { database, address, _folder: Some(folder), pooler: None, _cluster: None })
     }
 
     /// A SQLite file in this folder, without tables.
     pub(crate) async fn sqlite_in(folder: &std::path::Path) -> Self {
         let address = Address::Sqlite(folder.join("fosssim.db"));
         let database = Database::open(&address).await.expect("a database");
-        Self { database, address, _folder: None, _pooler: None, _cluster: None }
+        Self { database, address, _folder: None, pooler: None, _cluster: None }
     }
 
     /// A database in the tests' own PostgreSQL, without tables; nothing where PostgreSQL is not installed.
@@ -33,7 +33,7 @@ impl Fresh {
         let cluster = cluster::Shared::join()?;
         let address = cluster.new_database();
         let database = Database::open(&address).await.expect("a database");
-        Some(Self { database, address, _folder: None, _pooler: None, _cluster: Some(cluster) })
+        Some(Self { database, address, _folder: None, pooler: None, _cluster: Some(cluster) })
     }
 
     /// The same behind PgBouncer; nothing where either is not installed.
@@ -42,7 +42,7 @@ impl Fresh {
         let pooler = cluster::Pooler::start(&cluster)?;
         let address = pooler.address(&cluster.new_database());
         let database = Database::open(&address).await.expect("a database");
-        Some(Self { database, address, _folder: None, _pooler: Some(pooler), _cluster: Some(cluster) })
+        Some(Self { database, address, _folder: None, pooler: Some(pooler), _cluster: Some(cluster) })
     }
 
     /// The same with all tables.

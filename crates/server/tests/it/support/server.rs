@@ -8,6 +8,7 @@ use std::{
     os::unix::fs::PermissionsExt,
     path::{Path, PathBuf},
     process::{Child, ChildStdout, Command, Stdio},
+    sync::atomic::{AtomicU32, Ordering},
     time::{Duration, Instant},
 };
 
@@ -53,8 +54,9 @@ if [ "$code" = POISON ]; then
     kill -KILL $PPID
     sleep 60
 fi
+# Ends when somebody lets it.
 if [ "$code" = SLOW ]; then
-    sleep 1
+    while [ ! -e "$0.mended" ]; do sleep 0.1; done
     code=AC
 fi
 # Fails until somebody has mended it.
@@ -119,7 +121,12 @@ impl Server {
             Address::Postgres(url) => url.clone(),
         };
         let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
-        let (child, output, url) = Self::spawn(&folder, &grader, &database, "127.0.0.1:0", &options).expect("a server");
+        // An address of its own: nobody else takes its port while it is started again.
+        static COUNT: AtomicU32 = AtomicU32::new(1);
+        let [_, of_process, high, low] =
+            (std::process::id() << 16 | COUNT.fetch_add(1, Ordering::Relaxed)).to_be_bytes();
+        let listen = format!("127.{}.{high}.{low}:0", of_process % 250 + 1);
+        let (child, output, url) = Self::spawn(&folder, &grader, &database, &listen, &options).expect("a server");
         Self { child, output, url, folder, options, database, _temp: temp }
     }
 

@@ -32,7 +32,7 @@ fn ask(client: &Client, path: &str) -> TcpStream {
 }
 
 async fn files_are_sent_in_pieces(fresh: Fresh) {
-    let mut server = Server::start(&fresh, &["--workers", "0", "--transfers", "12", "--patience", "2"]);
+    let mut server = Server::start(&fresh, &["--workers", "0", "--transfers", "12", "--patience", "8"]);
     let admin = server.admin();
     server.course(&admin, "physics");
     let ada = server.member(&admin, "physics", "ada", "student");
@@ -188,9 +188,9 @@ fn half_open_requests_keep_nobody_out() {
         }
         // Who is being answered keeps its place.
         server.visitor().get("/health").expect(200);
-        let stopping = Instant::now();
         assert!(server.stop().success());
-        assert!(stopping.elapsed() < Duration::from_secs(15), "requests that never end hold the server's end up");
+        let log = server.log();
+        assert!(!log.contains("some connections did not end"), "requests that never end hold the server's end up");
     });
 }
 

@@ -2,6 +2,7 @@
 
 mod again;
 mod backup;
+mod collisions;
 mod crashes;
 mod description;
 mod example;
@@ -21,5 +22,7 @@ mod signs;
 mod storage;
 mod suspicion;
 mod teaching;
+#[cfg(feature = "otel")]
+mod traces;
 mod upgrade;
 mod workers;

@@ -36,6 +36,7 @@ fn the_database_is_copied_before_its_tables_change() {
             "ALTER TABLE worker DROP COLUMN aside_since",
             "ALTER TABLE assignment DROP COLUMN paused_at",
             "ALTER TABLE assignment DROP COLUMN paused_fault",
+            "ALTER TABLE campaign DROP COLUMN settings_before",
             "ALTER TABLE campaign DROP COLUMN doing",
             "ALTER TABLE campaign DROP COLUMN cursor",
             "ALTER TABLE campaign DROP COLUMN done",

@@ -12,6 +12,7 @@ on_both_engines!(
     a_worker_of_another_machine_grades,
     kills_of_workers_and_server_lose_nothing,
     a_worker_reaches_the_jobs_that_it_holds_and_nothing_else,
+    a_worker_whose_token_is_revoked_says_so_and_ends,
 );
 
 /// A worker as a process with a data folder of its own, killed at the end.
@@ -239,4 +240,24 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
     let id = &tokens[0]["id"];
     admin.send("DELETE", &format!("/api/v1/worker-tokens/{id}"), &[], b"").expect(204);
     worker.post_json("/api/v1/worker/claim", "{}").expect(401);
+}
+
+async fn a_worker_whose_token_is_revoked_says_so_and_ends(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0", "--lease", "4"]);
+    let admin = server.admin();
+    let token = admin.post_json("/api/v1/worker-tokens", r#"{"name": "lab"}"#).expect(201).json();
+    let (id, token) = (&token["id"], token["token"].as_str().expect("a token"));
+    let mut machine = Machine::start(&server, token);
+    let working = || admin.get("/api/v1/queue").expect(200).json()["workers"].as_array().is_some_and(|w| !w.is_empty());
+    while !working() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    admin.send("DELETE", &format!("/api/v1/worker-tokens/{id}"), &[], b"").expect(204);
+    assert_eq!(machine.child.wait().expect("an end").code(), Some(2));
+    // The same when it is started.
+    assert_eq!(Machine::start(&server, token).child.wait().expect("an end").code(), Some(2));
+    let log = fs::read_to_string(server.folder.with_file_name("worker.log")).expect("a log");
+    let said =
+        log.lines().filter(|line| line.starts_with("error: ") && line.contains("its token is unknown or revoked"));
+    assert_eq!(said.count(), 2, "{log}");
 }

@@ -1,0 +1,121 @@
+//! Who asks: a handler says by the type of its argument whom it serves, and is not called for others.
+use super::input::At;
+use crate::{
+    access::{Admin, House, Member, Person, Remote, Secrets, Staff, Visitor},
+    net::ClientAddress,
+    problem::Problem,
+};
+use axum::{
+    extract::FromRequestParts,
+    http::{HeaderMap, HeaderValue, header, request::Parts},
+};
+use std::sync::{Arc, OnceLock};
+
+/// Where a request's session is noted when it lasts longer from now on: the browser is to keep its cookie as long.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Renewed(Arc<OnceLock<String>>);
+
+impl Renewed {
+    /// What the cookie holds, if it is to be sent again.
+    pub(super) fn session(&self) -> Option<&str> {
+        self.0.get().map(String::as_str)
+    }
+}
+
+/// Stands in a request once it is known who asks: more of its body may be read then.
+#[derive(Clone, Copy)]
+pub(super) struct SignedIn;
+
+/// The session's cookie: by HTTPS one that no other host and no script can set or read.
+pub(super) fn cookie_name(secure: bool) -> &'static str {
+    if secure { "__Host-fosssim" } else { "fosssim" }
+}
+
+/// The cookie of a browser while it comes from a learning platform.
+pub(super) fn browser_cookie(secure: bool) -> &'static str {
+    if secure { "__Host-fosssim-lti" } else { "fosssim-lti" }
+}
+
+/// The secrets in a request's headers.
+pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
+    let text = |name| headers.get(name).and_then(|value: &HeaderValue| value.to_str().ok());
+    let bearer = text(header::AUTHORIZATION)
+        .and_then(|value| value.split_once(' '))
+        .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
+        .map(|(_, token)| token.trim().to_owned());
+    let cookie = |wanted: &str| {
+        let texts = headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
+        let mut pairs = texts.flat_map(|value| value.split(';')).filter_map(|pair| pair.trim().split_once('='));
+        pairs.find(|(name, _)| *name == wanted).map(|(_, value)| value.to_owned())
+    };
+    let (session, browser) = (cookie(cookie_name(secure)), cookie(browser_cookie(secure)));
+    Secrets { bearer, session, browser, address: None }
+}
+
+fn of_parts(parts: &Parts, house: &House) -> Secrets {
+    let address = parts.extensions.get::<ClientAddress>().map(|ClientAddress(address)| *address);
+    Secrets { address, ..secrets(&parts.headers, house.is_secure()) }
+}
+
+impl FromRequestParts<House> for Visitor {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        Ok(house.visitor(of_parts(parts, house)))
+    }
+}
+
+impl FromRequestParts<House> for Person {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let secrets = of_parts(parts, house);
+        let person = house.person(&secrets).await?;
+        parts.extensions.insert(SignedIn);
+        if let (true, Some(secret), Some(renewed)) =
+            (person.is_renewed(), secrets.session, parts.extensions.get::<Renewed>())
+        {
+            // Another part of the same request may have noted it.
+            drop(renewed.0.set(secret));
+        }
+        Ok(person)
+    }
+}
+
+impl FromRequestParts<House> for Member {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let person = Person::from_request_parts(parts, house).await?;
+        let at = At::from_request_parts(parts, house).await;
+        person.member_of(&at.unwrap_or_default().course).await
+    }
+}
+
+impl FromRequestParts<House> for Staff {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        Member::from_request_parts(parts, house).await?.staff()
+    }
+}
+
+impl FromRequestParts<House> for Admin {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        Person::from_request_parts(parts, house).await?.admin()
+    }
+}
+
+impl FromRequestParts<House> for Remote {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
+        let token = of_parts(parts, house).bearer.ok_or_else(Problem::not_signed_in)?;
+        let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
+        let remote = house.remote(&token, name).await?;
+        parts.extensions.insert(SignedIn);
+        Ok(remote)
+    }
+}

@@ -1,0 +1,63 @@
+//! What workers on other machines and the server say to each other, as JSON.
+use crate::{
+    queue::Lease,
+    task::{Outcome, Task},
+};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A job for a worker.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Claimed {
+    /// What to show from now on.
+    pub lease: Lease,
+    /// How often to renew it, in milliseconds.
+    pub renew_every: u64,
+    /// What to do.
+    pub task: Task,
+    /// Whether nothing else may run beside it.
+    pub alone: bool,
+}
+
+/// A sign of life.
+#[derive(Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Alive {
+    /// How many gradings it does at one time; 0 while it can't grade.
+    #[schema(maximum = 10_000)]
+    pub(crate) slots: usize,
+    /// Why it can't.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) fault: Option<String>,
+}
+
+/// What a worker is to know.
+#[derive(Serialize, Deserialize, ToSchema)]
+pub(crate) struct Manners {
+    /// How often to say that it is alive, in milliseconds.
+    pub(crate) tick_every: u64,
+}
+
+/// Whether the lease still holds.
+#[derive(Serialize, Deserialize, ToSchema)]
+pub(crate) struct Held {
+    /// If not, somebody else has the job and nothing was changed.
+    pub(crate) held: bool,
+}
+
+/// Why a try came to nothing.
+#[derive(Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Fault {
+    pub(crate) lease: Lease,
+    #[schema(max_length = 2000)]
+    pub(crate) fault: String,
+}
+
+/// A result.
+#[derive(Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Finished {
+    pub(crate) lease: Lease,
+    pub(crate) outcome: Outcome,
+}
